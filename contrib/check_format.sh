@@ -1,0 +1,11 @@
+#!/usr/bin/env bash
+# Says which files are not laid out as .clang-format asks. `contrib/check_format.sh --fix` mends them.
+set -euo pipefail
+
+cd "$(dirname "$0")/.."
+mode=(--dry-run --Werror)
+if [ "${1:-}" = --fix ]; then
+  mode=(-i)
+fi
+find include source applications tests -name '*.h' -o -name '*.cc' | sort |
+  xargs clang-format --style=file "${mode[@]}"

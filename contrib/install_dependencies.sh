@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Installs what Eunoe needs and this machine lacks, from Debian's packages. Every dependency is
+# named here, once.
+set -euo pipefail
+
+build=(
+  g++                          # compiler, 12 or newer
+  cmake
+  ninja-build
+  git
+  libdeal.ii-dev               # particles, meshes, parameters; brings p4est, Trilinos, Boost, Open MPI
+  libboost-program-options-dev # command line
+  nlohmann-json3-dev           # summary.json
+)
+report=(
+  python3-numpy
+  python3-matplotlib
+)
+checks=(
+  numdiff      # comparison of test output
+  perl         # deal.II's test driver
+  clang-format # layout of the code
+)
+
+missing=()
+for package in "${build[@]}" "${report[@]}" "${checks[@]}"; do
+  if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+    missing+=("$package")
+  fi
+done
+if [ ${#missing[@]} -eq 0 ]; then
+  exit 0
+fi
+
+echo "Installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null; then
+    echo "Installing packages needs root: run 'apt-get install ${missing[*]}' as root, then try again." >&2
+    exit 1
+  fi
+  as_root=(sudo)
+fi
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+  "${missing[@]}" >/dev/null

@@ -1,0 +1,153 @@
+"""The report of a spreading run."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import bed_pictures
+from .apparatus import Apparatus
+from .bed_pictures import STATIC_BELOW
+from .case_section import add_case_section
+from .evidence import Evidence, Fields, gather
+from .layer_charts import budget_figure, density_figure
+from .layer_results import DensityNoise, counting_noise, moved_over_plate
+from .measured import Measured, read_measured
+from .page import Page, table
+from .quantities import SPACE, count, length, number, percent
+from .run_folder import Layers, Run
+from .run_section import add_run_section
+from .summary_text import summary_text
+
+OUTLETS = {"1": "Went to the collector", "2": "Fell into the gaps"}
+
+
+def noise_of(layers: Layers, evidence: Evidence) -> DensityNoise | None:
+    """The counting noise, with the sizes of the particles on the plate where they are known."""
+    if evidence.apparatus is None or layers.particles[-1] == 0:
+        return None
+    grain = layers.mass[-1] / layers.particles[-1]
+    if evidence.last is not None:
+        masses = evidence.last["mass"][evidence.last["on_plate"] > 0].astype(float)
+        if len(masses):
+            grain = float((masses**2).sum() / masses.sum())
+    return counting_noise(layers, evidence.apparatus.full_layer_mass, grain)
+
+
+def _progress_notice(run: Run, layers: Layers, apparatus: Apparatus | None) -> str:
+    """What an unfinished run lacks; empty for a finished one."""
+    if run.summary is None:
+        expected = f" of {apparatus.n_layers}" if apparatus else ""
+        return (f"The run has not finished (there is no summary.json): {len(layers)}{expected} "
+                "layers are weighed so far.")
+    if float(run.summary.get("simulated_time", np.inf)) < layers.time[-1] * (1. - 1e-9):
+        return "summary.json is of an earlier run in this folder: layers.csv is newer."
+    if apparatus and len(layers) < apparatus.n_layers:
+        return (f"{len(layers)} of {apparatus.n_layers} layers are weighed: the run was stopped, or it "
+                "goes on and summary.json is of an earlier run in this folder.")
+    return ""
+
+
+def _layer_rows(layers: Layers, noise: DensityNoise | None) -> list[list[str]]:
+    def density(value: float, error: float) -> str:
+        if not np.isfinite(value):
+            return ""
+        return f"{100. * value:.1f}" + (f" ± {100. * error:.1f}" if np.isfinite(error) else "")
+
+    unknown = np.full(len(layers), np.nan)
+    lrd_noise, crd_noise = (noise.lrd, noise.crd) if noise else (unknown, unknown)
+    return [[count(layers.layer[k]), f"{layers.time[k]:.4f}", count(layers.particles[k]),
+             density(layers.lrd[k], lrd_noise[k]), density(layers.crd[k], crd_noise[k]),
+             number(1e6 * layers.mass[k], 4), number(1e6 * layers.removed[k]),
+             number(1e6 * layers.to_gap[k]), number(1e6 * layers.to_collector[k])]
+            for k in range(len(layers))]
+
+
+def _add_densities(page: Page, layers: Layers, noise: DensityNoise | None,
+                   measured: Measured) -> None:
+    page.heading("Density of the layers")
+    caption = ("Relative density of the layers. Measured: Ti-6Al-4V 45–106 µm, layers of 100 µm, "
+               "100 mm/s, full-size apparatus; mean and standard deviation of three repeats. They "
+               "are by the authors of Gaboriault et al. (2025), published in lethe-utils; that "
+               "they are the runs of that paper is an inference.")
+    if noise is not None:
+        caption += (" Bars: one standard deviation of counting noise, for particles that come and "
+                    "leave independently; in a packing they do not, so it is an upper estimate.")
+    page.figure(density_figure(layers, noise, measured), caption)
+    page.fold("Numbers of all layers", table(
+        ("Layer", "Time (s)", "Particles", "LRD (%)", "CRD (%)", "Mass (mg)", "Removed (mg)",
+         "To gaps (mg)", "To collector (mg)"), _layer_rows(layers, noise)))
+
+
+def _drawn(share: float, apparatus: Apparatus) -> str:
+    """A sentence on how much of the depth a picture shows."""
+    if share < 1.:
+        return (f" Of the {length(apparatus.depth)} in depth the front "
+                f"{length(share * apparatus.depth)} are drawn.")
+    return f" The whole depth of {length(apparatus.depth)} is drawn."
+
+
+def _add_pictures(page: Page, layers: Layers, evidence: Evidence) -> None:
+    apparatus, last = evidence.apparatus, evidence.last
+    if apparatus is None or last is None:
+        return
+    page.heading("The powder bed")
+    layer = max(evidence.pictures)
+    figure, share = bed_pictures.layers_figure(evidence.pictures, apparatus, layer + 1)
+    page.figure(figure, "Side views of the measuring plate when layers were weighed, to scale; "
+                "circles are the particles. The colour tells the pass that first brought a "
+                "particle onto the plate; pale grey: not yet weighed there. Grey: plates and "
+                "spreader. The newest layers are in front." + _drawn(share, apparatus))
+    if layer > 0 and (last["tracked"] > 0).any():
+        _add_displacement(page, last, apparatus, layer)
+    height = apparatus.platform_height(layer, _weighing_times(layers, apparatus))
+    figure, share = bed_pictures.overview_figure(last, apparatus, layer, height)
+    page.figure(figure, f"The whole apparatus when layer {layer} was weighed: feedstock platform, "
+                "transfer plate, measuring plate between its gaps, exit plate. Colours as above."
+                + _drawn(share, apparatus))
+
+
+def _weighing_times(layers: Layers, apparatus: Apparatus) -> list[float]:
+    """Of all layers so far and, for the platform may already rise for it, of the next (s)."""
+    times = list(layers.time)
+    if 1 < len(times) < apparatus.n_layers:
+        times.append(2. * times[-1] - times[-2])
+    return times
+
+
+def _add_displacement(page: Page, last: Fields, apparatus: Apparatus, layer: int) -> None:
+    tracked = last["tracked"] > 0
+    moved = moved_over_plate(last)[tracked]
+    figure, share = bed_pictures.displacement_figure(last, apparatus, layer)
+    threshold = length(STATIC_BELOW)
+    page.figure(figure, f"Displacement in x-y of the powder on the plate in pass {layer}, relative "
+                f"to the plate. Grey: static, moved by less than {threshold}; white: not on the plate at both weighings. Of "
+                f"{count(len(moved))} particles {percent((moved < STATIC_BELOW).mean(), 0)} are "
+                f"static; the median of all is {number(1e6 * np.median(moved))}{SPACE}µm."
+                + _drawn(share, apparatus))
+
+
+def spreading_report(run: Run, layers: Layers) -> Page:
+    """The page for a run that has weighed at least one layer."""
+    evidence = gather(run)
+    measured = read_measured()
+    noise = noise_of(layers, evidence)
+    n = len(layers)
+    page = Page(f"Spreading of {n} {'layer' if n == 1 else 'layers'} of powder", f"Run {run.name}")
+    notice = _progress_notice(run, layers, evidence.apparatus)
+    for text in [notice] * bool(notice) + evidence.problems:
+        page.notice(text)
+    page.paragraph(summary_text(layers, evidence, noise, measured))
+    _add_densities(page, layers, noise, measured)
+    if evidence.apparatus is not None:
+        largest = evidence.last["diameter"].max() if evidence.last else 0.
+        add_case_section(page, layers, evidence.apparatus, measured, float(largest))
+    _add_pictures(page, layers, evidence)
+    page.heading("Mass, force and time of the layers")
+    page.figure(budget_figure(layers),
+                "Per layer: (a) powder on the plate at the weighing, what came new in the pass, "
+                "and what the pass removed of the older powder (below 0); (b) powder that fell "
+                "into the gaps and that went to the collector since the last weighing; (c) force "
+                "on the spreader while its lowest line is over the plate; (d) wall-clock time "
+                "since the last weighing.")
+    add_run_section(page, run, OUTLETS)
+    return page

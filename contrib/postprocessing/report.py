@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""Turns the output folder of a run into one page, report.html, that any browser shows.
+
+Usage: python3 contrib/postprocessing/report.py output/quickstart [--out FILE]
+
+Needs numpy and matplotlib, as Debian's packages python3-numpy and python3-matplotlib have them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+from pathlib import Path
+
+try:
+    import matplotlib  # noqa: F401
+    import numpy  # noqa: F401
+except ImportError as error:
+    sys.exit(f"{sys.executable} has no {error.name}: install python3-numpy and "
+             "python3-matplotlib, and run this script with Debian's /usr/bin/python3.")
+
+from eunoe_report.general_report import general_report
+from eunoe_report.run_folder import ReportError, read_run
+from eunoe_report.spreading_report import spreading_report
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("folder", type=Path, help="output folder of a run")
+    parser.add_argument("--out", type=Path, help="file to write (default: FOLDER/report.html)")
+    options = parser.parse_args(arguments)
+    # matplotlib tells of the building of its font cache, which says nothing about the run.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    target = options.out or options.folder / "report.html"
+    try:
+        run = read_run(options.folder)
+        page = spreading_report(run, run.layers) if run.layers is not None else general_report(run)
+        target.write_text(page.html(), encoding="utf-8")
+    except ReportError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
+        return 2
+    print(f"Report: {target}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

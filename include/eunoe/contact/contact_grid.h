@@ -1,0 +1,46 @@
+#ifndef eunoe_contact_contact_grid_h
+#define eunoe_contact_contact_grid_h
+
+#include <eunoe/contact/pair_list.h>
+#include <eunoe/core/periodic_box.h>
+#include <eunoe/particles/particle_arrays.h>
+
+#include <array>
+#include <cstdint>
+
+namespace eunoe {
+
+/// A grid of cells as wide as the contact search reaches, the same on every rank. It orders the
+/// particles and finds the pairs; the distributed background mesh is another, coarser thing.
+class ContactGrid
+{
+public:
+  /// @param lower, upper corners of the domain (m); what lies outside counts to the border cells
+  /// @param cell_size smallest allowed width of a cell (m)
+  ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box, double cell_size);
+
+  /// Place of a position's cell in the order of all cells; near positions have near keys.
+  std::uint64_t key(const Vec3 &x) const;
+
+  /// Lists all pairs with at least one owned particle and a gap of at most @p reach (m).
+  /// The positions are those of the search; owned and ghost particles must each be ordered by
+  /// (key, id).
+  void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs) const;
+
+private:
+  using Cell = std::array<int, 3>;
+
+  Cell cell(const Vec3 &x) const;
+
+  Vec3 lower;
+  Vec3 inverse_width;
+  PeriodicBox box;
+  Cell n;
+  /// Axis of the outermost, middle and innermost loop over cells: longest first, so that
+  /// neighbours stay close in memory.
+  Cell axis;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,67 @@
+#ifndef eunoe_contact_contact_rows_h
+#define eunoe_contact_contact_rows_h
+
+#include <eunoe/contact/pair_list.h>
+#include <eunoe/contact/solid_contacts.h>
+#include <eunoe/particles/particle_arrays.h>
+
+#include <mpi.h>
+
+namespace eunoe {
+
+/// Where a particle's row of remembered contacts is kept while the particle moves between ranks.
+struct Origin
+{
+  std::int32_t rank = -1; ///< -1: the particle has no memory
+  std::int32_t row = 0;
+};
+
+/// The memory of contacts by particle, for the time in which lists are rebuilt: one row a particle
+/// with a record a contact. A pair of particles stands in the rows of both, so that either one can
+/// take it along to another rank; both copies have the same bits.
+class ContactRows
+{
+public:
+  explicit ContactRows(unsigned int n_history) : n_history(n_history) {}
+
+  std::size_t size() const { return starts.size() - 1; }
+
+  /// Collects the rows of all owned particles, in their order.
+  void collect(const ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids);
+
+  /// Fetches the rows of particles that are now here from where they were collected; collective.
+  ContactRows fetch(const std::vector<Origin> &origins, MPI_Comm comm) const;
+
+  /// Gives the rows, which must be those of the owned particles in their order, back to freshly
+  /// built lists.
+  void attach(const ParticleArrays &particles, PairList &pairs, SolidContacts &solids) const;
+
+  /// @name Single records, for those who save, copy or transform rows
+  ///@{
+  struct Record
+  {
+    bool with_solid;
+    std::uint32_t partner; ///< id of a particle or number of a solid
+    Vec3 normal;           ///< with a solid: in its own frame
+    const double *history; ///< with particles: oriented from the lower to the higher id
+  };
+  std::vector<Record> records(std::size_t row) const;
+  void start_row() { starts.push_back(values.size()); }
+  void add(const Record &record);
+  ///@}
+
+private:
+  /// Doubles of a record: kind, partner, then the normal for a solid, then the history.
+  std::size_t length(const double *record) const
+  {
+    return 2 + (record[0] != 0. ? 3 : 0) + n_history;
+  }
+
+  unsigned int n_history;
+  std::vector<std::size_t> starts = {0};
+  std::vector<double> values;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,53 @@
+#ifndef eunoe_contact_model_parameters_h
+#define eunoe_contact_model_parameters_h
+
+#include <eunoe/contact/contact_model.h>
+#include <eunoe/core/parameter_section.h>
+
+namespace eunoe {
+
+/// When the work is shared out anew over the ranks: `subsection load balancing`.
+struct LoadBalancingParameters
+{
+  std::string method = "none"; ///< none, once, frequent or dynamic
+  unsigned int step = 100000;
+  unsigned int frequency = 100000;
+  unsigned int check_frequency = 10000;
+  double threshold = 0.5;
+  unsigned int particle_weight = 2000;
+  unsigned int cell_weight = 1000;
+};
+
+/// `subsection model parameters`.
+struct ModelParameters : public ParameterSection
+{
+  std::string contact_method = "hertz_mindlin_limit_overlap";
+  std::string wall_method = "nonlinear";
+  std::string rolling_method = "constant";
+  ContactLawOptions options;
+  std::string epsd_inertia = "contact point";
+  std::string integration_method = "velocity_verlet";
+
+  std::string detection_method = "dynamic";
+  unsigned int detection_frequency = 1;
+  double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
+  double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
+
+  LoadBalancingParameters load_balancing;
+
+  /// The laws behind the names of the input file.
+  ContactModelNames laws() const;
+
+  /// Gap up to which the search lists pairs (m), for particles of at most @p largest_diameter.
+  double skin(double largest_diameter) const
+  {
+    return (neighborhood_threshold - 1.) * largest_diameter;
+  }
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+} // namespace eunoe
+
+#endif

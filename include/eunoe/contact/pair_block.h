@@ -1,0 +1,58 @@
+#ifndef eunoe_contact_pair_block_h
+#define eunoe_contact_pair_block_h
+
+#include <array>
+#include <cstdint>
+
+namespace eunoe {
+
+/// A batch of contacts, one array a quantity, on which every active law runs one vector loop.
+///
+/// Body i is always a particle; body j is a particle or a piece of a solid surface (infinite
+/// radius and mass). The normal points from i to j. What the laws write acts **on j**; i feels
+/// the opposite. Unused places at the end hold copies of a valid contact, so that every loop runs
+/// over the whole block with the same arithmetic for each pair.
+///
+/// SI units throughout. Formulas and sign conventions: doc/physics.md.
+struct alignas(64) PairBlock
+{
+  static constexpr unsigned int size = 64;
+  static constexpr unsigned int max_history = 12;
+
+  using Lanes = double[size];
+
+  /// Number of real contacts, the first ones.
+  unsigned int n = 0;
+  /// Row in every law's table of coefficients, shared by the whole block if >= 0 ...
+  int uniform_kind = -1;
+  /// ... else one a contact.
+  std::int32_t kind[size];
+
+  /// @name Written by the geometry, read by the laws
+  ///@{
+  alignas(64) Lanes nx, ny, nz;    ///< unit normal from i to j
+  alignas(64) Lanes overlap;       ///< positive in contact, negative across a gap (m)
+  alignas(64) Lanes radius;        ///< effective radius (m)
+  alignas(64) Lanes mass;          ///< effective mass (kg)
+  alignas(64) Lanes inertia;       ///< effective moment of inertia about the centres (kg m2)
+  alignas(64) Lanes closing_speed; ///< normal velocity of i against j, positive in approach (m/s)
+  alignas(64) Lanes slip_x, slip_y, slip_z; ///< tangential velocity of i's surface against j's
+  alignas(64) Lanes roll_x, roll_y, roll_z; ///< spin of i less spin of j, without twist (rad/s)
+  ///@}
+
+  /// @name Written by the laws
+  ///@{
+  alignas(64) Lanes stiffness;     ///< normal secant stiffness k_n (N/m)
+  alignas(64) Lanes contact_force; ///< normal elastic + damping force, repulsion positive (N)
+  alignas(64) Lanes cohesion;      ///< attraction, positive (N)
+  alignas(64) Lanes shear_x, shear_y, shear_z;    ///< tangential force on j (N)
+  alignas(64) Lanes torque_x, torque_y, torque_z; ///< rolling-resistance torque on i (N m)
+  ///@}
+
+  /// What the contacts remember, `[component][contact]`; each law owns a range of components.
+  alignas(64) double history[max_history][size];
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,45 @@
+#ifndef eunoe_contact_pair_list_h
+#define eunoe_contact_pair_list_h
+
+#include <eunoe/contact/contact_memory.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace eunoe {
+
+/// Pairs of particles that can touch before the next search, with what their contacts remember.
+///
+/// `i` and `j` are rows of ParticleArrays with id[i] < id[j]; at least one is owned. The order is
+/// that of (contact-grid cell, id) of the pair's first and then second particle, which does not
+/// depend on the distribution over ranks; so every particle sums its forces in the same order
+/// everywhere.
+struct PairList
+{
+  std::vector<std::int32_t> i, j;
+  /// Record of the contact in `memory`, ContactMemory::none while the pair is out of reach.
+  std::vector<std::int32_t> record;
+  /// Oriented from i to j.
+  ContactMemory memory;
+
+  std::size_t size() const { return i.size(); }
+
+  void clear(unsigned int n_history)
+  {
+    i.clear();
+    j.clear();
+    record.clear();
+    memory.clear(n_history);
+  }
+
+  void push_back(std::int32_t a, std::int32_t b)
+  {
+    i.push_back(a);
+    j.push_back(b);
+    record.push_back(ContactMemory::none);
+  }
+};
+
+} // namespace eunoe
+
+#endif

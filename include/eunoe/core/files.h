@@ -1,0 +1,41 @@
+#ifndef eunoe_core_files_h
+#define eunoe_core_files_h
+
+#include <mpi.h>
+#include <string>
+#include <vector>
+
+namespace eunoe {
+
+/// The whole text of a file, read once and given to every rank; collective.
+/// Throws a UserError on every rank if it cannot be read.
+std::string read_file(const std::string &path, MPI_Comm comm);
+
+/// Writes a file beside the old one and renames it when it is complete. To be called by one rank.
+/// Throws a UserError if that fails, and leaves the old file as it was.
+void write_file(const std::string &path, const std::string &text);
+
+/// Removes a file if there is one. To be called by one rank.
+void remove_file(const std::string &path);
+
+/// Creates a folder and those above it, on one rank of @p comm; collective.
+/// Throws a UserError on every rank if it cannot be written to.
+void create_folder(const std::string &path, MPI_Comm comm);
+
+/// A table in the form "a; b; c;" with a header line: columns by the names of the header.
+struct Table
+{
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;
+
+  /// Place of a column, -1 if there is none of that name.
+  int column(const std::string &name) const;
+};
+
+/// Reads a table with columns separated by ';' (as Lethe writes them) or ','.
+/// Throws a UserError that names the line.
+Table parse_table(const std::string &text, const std::string &file);
+
+} // namespace eunoe
+
+#endif

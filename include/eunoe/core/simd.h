@@ -1,0 +1,56 @@
+#ifndef eunoe_core_simd_h
+#define eunoe_core_simd_h
+
+#include <eunoe/core/vec3.h>
+
+/// Compiles a kernel for several instruction sets and picks one when the program starts.
+/// All of them round every operation alike (the project is built without contraction of
+/// multiply-add), so the choice changes the speed of a run and never its bits.
+/// Sanitizers cannot run before the picking does, hence the escape.
+#if defined(__x86_64__) && !defined(EUNOE_SINGLE_VERSION) && !defined(__SANITIZE_ADDRESS__)
+#define EUNOE_MULTIVERSION                                                                         \
+  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define EUNOE_MULTIVERSION
+#endif
+
+#define EUNOE_ALWAYS_INLINE inline __attribute__((always_inline))
+
+namespace eunoe::simd {
+
+/// Four doubles that the compiler keeps in one register where the machine has one.
+typedef double Four __attribute__((vector_size(32), may_alias));
+
+EUNOE_ALWAYS_INLINE Four &four(Quad &q)
+{
+  return reinterpret_cast<Four &>(q);
+}
+EUNOE_ALWAYS_INLINE const Four &four(const Quad &q)
+{
+  return reinterpret_cast<const Four &>(q);
+}
+EUNOE_ALWAYS_INLINE Four &four(double *p)
+{
+  return *reinterpret_cast<Four *>(p);
+}
+EUNOE_ALWAYS_INLINE const Four &four(const double *p)
+{
+  return *reinterpret_cast<const Four *>(p);
+}
+
+/// Transposes the 4x4 matrix with rows a, b, c, d in place.
+EUNOE_ALWAYS_INLINE void transpose(Four &a, Four &b, Four &c, Four &d)
+{
+  const Four ab_low = __builtin_shufflevector(a, b, 0, 4, 2, 6);
+  const Four ab_high = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Four cd_low = __builtin_shufflevector(c, d, 0, 4, 2, 6);
+  const Four cd_high = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+} // namespace eunoe::simd
+
+#endif

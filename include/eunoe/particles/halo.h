@@ -1,0 +1,41 @@
+#ifndef eunoe_particles_halo_h
+#define eunoe_particles_halo_h
+
+#include <eunoe/contact/contact_grid.h>
+#include <eunoe/particles/particle_store.h>
+
+#include <mpi.h>
+
+namespace eunoe {
+
+/// Copies of the neighbours' particles (ghosts): who needs which, and their state step by step.
+class Halo
+{
+public:
+  explicit Halo(MPI_Comm comm) : comm(comm) {}
+
+  /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
+  void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid);
+
+  /// Brings position, velocity and spin of the ghosts up to date; collective.
+  void update(ParticleArrays &particles);
+
+private:
+  struct Neighbour
+  {
+    int rank;
+    std::vector<std::int32_t> sent;     ///< rows of owned particles
+    std::vector<std::int32_t> received; ///< rows of ghosts
+    std::vector<double> out, in;
+  };
+
+  /// Sends `out` to and fills `in` from every neighbour; both have their sizes already.
+  void exchange(int tag);
+
+  MPI_Comm comm;
+  std::vector<Neighbour> neighbours;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,71 @@
+#ifndef eunoe_particles_insertion_h
+#define eunoe_particles_insertion_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/registry.h>
+#include <eunoe/particles/new_particle.h>
+#include <eunoe/particles/physical_properties.h>
+
+#include <mpi.h>
+
+namespace eunoe {
+
+/// `subsection insertion info`.
+struct InsertionParameters : public ParameterSection
+{
+  std::string method = "volume";
+  unsigned int per_event = 0; ///< "inserted number of particles at each time step"
+  unsigned int frequency = 0; ///< steps between events; 0: one event only
+  std::vector<std::string> files = {"particles.input"};
+  std::vector<double> list_x, list_y, list_z, list_vx, list_vy, list_vz, list_wx, list_wy, list_wz,
+      list_diameters;
+  std::vector<int> directions = {0, 1, 2};
+  Vec3 box_lower, box_upper = {1., 1., 1.};
+  double distance_threshold = 1.;
+  double maximum_offset = 1.;
+  unsigned int seed = 1;
+  Vec3 velocity, spin;
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+/// Supplies the particles of one event after another.
+class Insertion
+{
+public:
+  virtual ~Insertion() = default;
+
+  /// This rank's share of the particles of the next event; the shares of all ranks together are
+  /// the same for any number of ranks. Collective.
+  /// @param next_id first free id, raised by the number of particles of all ranks
+  virtual std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) = 0;
+
+  /// Whether all particles have been supplied.
+  virtual bool finished() const = 0;
+};
+
+using InsertionRegistry =
+    Registry<std::unique_ptr<Insertion>, const InsertionParameters &, const PhysicalProperties &>;
+InsertionRegistry &insertion_methods();
+
+/// Rank's part [first, second) of a range of @p n items.
+std::pair<std::size_t, std::size_t> share_of(std::size_t n, MPI_Comm comm);
+
+/// Particles in a regular grid of a box with a random offset each, as dense as asked for.
+struct VolumeGrid
+{
+  Vec3 lower, upper;      ///< the box (m)
+  double pitch = 0.;      ///< distance of the grid points (m)
+  double offset = 0.;     ///< largest random shift in each direction (m)
+  std::vector<int> order; ///< directions from the first filled to the last
+
+  /// Number of points that fit.
+  std::size_t capacity() const;
+  /// The k-th point, shifted by draws that depend on (seed, id).
+  Vec3 point(std::size_t k, unsigned int seed, ParticleId id) const;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,42 @@
+#ifndef eunoe_particles_physical_properties_h
+#define eunoe_particles_physical_properties_h
+
+#include <eunoe/contact/material.h>
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/vec3.h>
+#include <eunoe/particles/size_distribution.h>
+
+namespace eunoe {
+
+/// `particle type i` of the input: a material with a density and a size distribution.
+struct ParticleType
+{
+  Material material;
+  double density = 1000.;
+  unsigned int number = 0;
+  SizeDistributionParameters sizes;
+};
+
+/// `subsection lagrangian physical properties`.
+struct PhysicalProperties : public ParameterSection
+{
+  Vec3 gravity;
+  std::vector<ParticleType> types;
+  Material wall;
+
+  explicit PhysicalProperties(unsigned int n_types = 1) : types(n_types) {}
+
+  /// Materials of the particle types, then the common one of walls and solids.
+  Materials materials() const;
+  int wall_material() const { return static_cast<int>(types.size()); }
+
+  /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).
+  static double rayleigh_time(double radius, double density, const Material &material);
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+} // namespace eunoe
+
+#endif

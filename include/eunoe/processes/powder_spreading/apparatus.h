@@ -1,0 +1,61 @@
+#ifndef eunoe_processes_powder_spreading_apparatus_h
+#define eunoe_processes_powder_spreading_apparatus_h
+
+#include <eunoe/processes/powder_spreading/parameters.h>
+#include <eunoe/solids/scheduled_motion.h>
+#include <eunoe/solids/solid.h>
+
+namespace eunoe::spreading {
+
+/// The spreading apparatus: x along the passes with the platform's left end at 0, y upwards with
+/// the transfer plate's surface at 0, z periodic. SI units.
+///
+///     |  platform  | transfer plate | gap | measuring plate | gap | exit plate | collector
+///     0            x_transfer       x_gap x_plate           ...                x_end
+class Apparatus
+{
+public:
+  /// @param largest_diameter of the powder (m)
+  Apparatus(const SpreadingParameters &parameters, double largest_diameter);
+
+  /// @name Places (m)
+  ///@{
+  double x_transfer, x_gap, x_plate, x_plate_end, x_exit, x_end;
+  double y_bottom, y_top;
+  double depth;
+  /// Place of the spreader's lowest line at the start of a pass, and how far the spreader reaches
+  /// before and behind that line.
+  double x_start, front, rear;
+  double spreader_height;
+  /// Depth of the settled bed, of the one for the first pass, and the platform's height under each.
+  double bed_depth, first_bed_depth;
+  ///@}
+
+  double plate_area() const { return (x_plate_end - x_plate) * depth; }
+  /// Length of the path of a pass.
+  double path() const { return x_end + rear - x_start; }
+  /// Length of the pile that a stroke gives the spreader to push.
+  double pile_length() const;
+
+  bool is_over_plate(const Vec3 &x, double plate_height) const
+  {
+    return x.x >= x_plate && x.x < x_plate_end && x.y > plate_height;
+  }
+  bool is_in_reservoir(const Vec3 &x) const { return x.x < x_transfer; }
+
+  /// The solids, with the motions that a schedule fills. The first two are the spreaders, which
+  /// take turns so that passes may overlap.
+  static constexpr unsigned int n_spreaders = 2;
+  std::vector<Solid> make_solids(int material) const;
+
+  std::shared_ptr<PassMotion> spreaders[n_spreaders];
+  std::shared_ptr<StrokeMotion> platform, plate;
+
+private:
+  const SpreadingParameters p;
+  double margin; ///< by which surfaces reach out of the periodic slice
+};
+
+} // namespace eunoe::spreading
+
+#endif

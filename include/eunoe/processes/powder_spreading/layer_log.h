@@ -1,0 +1,50 @@
+#ifndef eunoe_processes_powder_spreading_layer_log_h
+#define eunoe_processes_powder_spreading_layer_log_h
+
+#include <eunoe/core/csv_file.h>
+#include <eunoe/processes/powder_spreading/apparatus.h>
+#include <eunoe/simulation/simulation.h>
+
+namespace eunoe::spreading {
+
+/// What is measured after every layer: the row of layers.csv, and for every particle the layer
+/// that first brought it onto the plate and how far the pass moved it.
+class LayerLog
+{
+public:
+  /// The extra doubles of a particle, in this order.
+  static std::vector<Process::Field> fields();
+
+  LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
+           const Apparatus &apparatus);
+
+  /// Reads the force on a spreader; only after a step for which solid loads were wanted.
+  void sample_force(const Simulation &simulation, const std::string &spreader);
+
+  /// Weighs a layer, now; collective.
+  /// @param plate_height of the measuring plate (m)
+  void weigh(Simulation &simulation, unsigned int layer, double plate_height);
+
+private:
+  struct OutletTotals
+  {
+    ExactSum gap, collector;
+  };
+  OutletTotals outlet_totals(const Simulation &simulation) const;
+
+  const Apparatus &apparatus;
+  const double full_layer_mass; ///< of solid material that fills a layer (kg)
+  CsvFile file;
+  PictureSeries pictures, solid_pictures;
+  const bool draws;
+  ExactSum last_present;
+  double first_mass = 0., last_plate_height = 0.;
+  OutletTotals last_out;
+  double force_sum = 0., force_max = 0.;
+  unsigned int n_forces = 0;
+  double last_wall_time;
+};
+
+} // namespace eunoe::spreading
+
+#endif

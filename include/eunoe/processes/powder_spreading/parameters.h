@@ -1,0 +1,50 @@
+#ifndef eunoe_processes_powder_spreading_parameters_h
+#define eunoe_processes_powder_spreading_parameters_h
+
+#include <eunoe/core/parameter_section.h>
+
+namespace eunoe::spreading {
+
+/// `subsection powder spreading`: the apparatus and the procedure of Gaboriault et al. (2025), in
+/// the symbols of that paper. SI units.
+struct SpreadingParameters : public ParameterSection
+{
+  double w1 = 0.069, w2 = 0.056, w3 = 0.073, w4 = 0.0465; ///< lengths of the parts in x
+  double length_factor = 1.;                              ///< on w1 ... w4
+  double depth = 0.002;
+  double gap = 0.0005;
+  double lip = 0.0001;
+
+  std::string spreader = "half round";
+  double spreader_radius = 0.005;
+  double spreader_thickness = 0.002;
+  double spreader_height = 0.;
+  unsigned int spreader_facets = 50;
+  double clearance = 100e-6;
+
+  unsigned int n_layers = 21;
+  double layer_thickness = 100e-6;
+  double velocity = 0.1;
+  double stroke = 0.6e-3, first_stroke = 2.2e-3;
+  double plate_velocity = 2e-3, platform_velocity = 2e-3;
+  double overlap = 1.;
+  double rest_before_weighing = 0.;
+
+  std::string feedstock = "replenished";
+  double bed_depth = 0.;
+  double bed_margin = 0.4e-3;
+  double insertion_speed = 0.1;
+  double settled_speed = 2e-3;
+  double settling_time = 0.2;
+  unsigned int seed = 1;
+
+  bool layer_pictures = true;
+  unsigned int force_sampling = 50;
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+} // namespace eunoe::spreading
+
+#endif

@@ -1,0 +1,73 @@
+#ifndef eunoe_processes_process_h
+#define eunoe_processes_process_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/registry.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace eunoe {
+
+class Parameters;
+class Simulation;
+struct Solid;
+
+/// What a run will cost, for `--check`.
+struct RunEstimate
+{
+  double particles = 0.; ///< at a time, mean over the run
+  double most_particles = 0.;
+  double steps = 0.;
+};
+
+/// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from
+/// the parts of the engine. A process is a section of the input file.
+class Process : public ParameterSection
+{
+public:
+  /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
+  virtual void prepare(Parameters &parameters) = 0;
+
+  /// What is wrong with the process together with the other parameters.
+  virtual void check_with(const Parameters &parameters, const ParameterCheck &check) const = 0;
+
+  /// What the run will cost, as far as it can be known.
+  virtual RunEstimate estimate(const Parameters &parameters) const = 0;
+
+  /// Extra doubles that the process attaches to every particle: names and numbers of components.
+  struct Field
+  {
+    std::string name;
+    unsigned int n_components;
+    double initial;
+  };
+  virtual std::vector<Field> fields() const { return {}; }
+
+  /// Solids of the process.
+  virtual std::vector<Solid> make_solids(const Parameters &parameters) = 0;
+
+  /// Called once before the first step.
+  virtual void start(Simulation &simulation) = 0;
+
+  /// Called after every step. Must call Simulation::complete_step before it looks at particles.
+  virtual void step(Simulation &simulation) = 0;
+
+  /// Whether the forces on the solids are to be summed during the coming step.
+  virtual bool wants_solid_loads(unsigned long long step) const = 0;
+
+  /// Share of the work that is done, in [0, 1], and what is being done now.
+  virtual double progress(const Simulation &simulation) const = 0;
+  virtual std::string stage() const { return ""; }
+
+  /// Whether all work is done.
+  virtual bool finished() const = 0;
+};
+
+using ProcessRegistry = Registry<std::unique_ptr<Process>>;
+ProcessRegistry &process_kinds();
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,31 @@
+#ifndef eunoe_simulation_control_parameters_h
+#define eunoe_simulation_control_parameters_h
+
+#include <eunoe/core/parameter_section.h>
+
+namespace eunoe {
+
+/// `subsection simulation control`.
+struct ControlParameters : public ParameterSection
+{
+  double time_step = 1e-6;
+  std::string end_control = "time";
+  double time_end = 1.;
+  unsigned long long iteration_end = 0;
+  std::string output_path = "./output";
+  std::string output_name = "out";
+  std::string output_control = "iteration";
+  unsigned long long output_frequency = 0;
+  double output_time = 1.;
+  unsigned long long log_frequency = 1000;
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+
+  /// Number of steps of the run, as far as it is known beforehand.
+  unsigned long long n_steps() const;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,43 @@
+#ifndef eunoe_simulation_output_h
+#define eunoe_simulation_output_h
+
+#include <eunoe/particles/particle_arrays.h>
+#include <eunoe/processes/process.h>
+#include <eunoe/solids/solid.h>
+
+#include <mpi.h>
+#include <string>
+#include <vector>
+
+namespace eunoe {
+
+/// A series of .vtu files with their exact times in a .pvd file, for ParaView.
+class PictureSeries
+{
+public:
+  /// @param name of the .pvd file and beginning of the names of the .vtu files
+  PictureSeries(const std::string &folder, const std::string &name, MPI_Comm comm)
+      : folder(folder), name(name), comm(comm)
+  {
+  }
+
+  /// Writes the owned particles of all ranks; collective.
+  /// @param fields names of the extra doubles
+  void write(double time, const ParticleArrays &particles,
+             const std::vector<Process::Field> &fields);
+
+  /// Writes the surfaces of those solids that are drawn; collective.
+  void write(double time, const std::vector<Solid> &solids);
+
+private:
+  std::string next_file(double time);
+  void write_index() const;
+
+  const std::string folder, name;
+  MPI_Comm comm;
+  std::vector<std::pair<double, std::string>> files;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,65 @@
+#ifndef eunoe_simulation_parameters_h
+#define eunoe_simulation_parameters_h
+
+#include <eunoe/contact/model_parameters.h>
+#include <eunoe/observables/observable_parameters.h>
+#include <eunoe/particles/insertion.h>
+#include <eunoe/particles/physical_properties.h>
+#include <eunoe/processes/process.h>
+#include <eunoe/simulation/control_parameters.h>
+#include <eunoe/simulation/domain.h>
+#include <eunoe/solids/solid_parameters.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+namespace eunoe {
+
+/// Numbers of the subsections that are repeated.
+struct SectionCounts
+{
+  unsigned int particle_types = 1, boundary_conditions = 0, floating_walls = 0, solids = 0;
+};
+
+/// Everything that an input file says, as plain structs that belong to the parts of the code that
+/// they rule.
+class Parameters
+{
+public:
+  explicit Parameters(const SectionCounts &counts = {});
+
+  /// Reads an input file, then the overrides ("subsection/entry = value") in their order; all that
+  /// is wrong goes to @p problems.
+  /// @param load gives the files that the input file includes
+  static Parameters read(const std::string &text, const std::string &file,
+                         const std::vector<std::string> &overrides, Problems &problems,
+                         const FileLoader &load = {});
+
+  /// A complete, documented input file with the present values.
+  std::string as_input_file();
+
+  /// The chosen process, null for a general case.
+  Process *process() { return process_name == "none" ? nullptr : processes.at(process_name).get(); }
+
+  ControlParameters control;
+  MeshParameters mesh;
+  BoundaryParameters boundaries;
+  PhysicalProperties physics;
+  InsertionParameters insertion;
+  ModelParameters model;
+  FloatingWallParameters floating_walls;
+  SolidObjectParameters solids;
+  ObservableParameters observables;
+  std::string process_name = "none";
+  std::map<std::string, std::unique_ptr<Process>> processes;
+
+private:
+  void declare(dealii::ParameterHandler &prm);
+  std::vector<ParameterSection *> sections();
+  void set(const std::vector<InputEntry> &entries, Problems &problems);
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,97 @@
+#ifndef eunoe_simulation_particle_system_h
+#define eunoe_simulation_particle_system_h
+
+#include <eunoe/contact/contact_grid.h>
+#include <eunoe/contact/pair_forces.h>
+#include <eunoe/contact/solid_contacts.h>
+#include <eunoe/core/timers.h>
+#include <eunoe/forces/load.h>
+#include <eunoe/particles/halo.h>
+#include <eunoe/particles/particle_store.h>
+#include <eunoe/simulation/ledger.h>
+
+namespace eunoe {
+
+/// New particles with what their contacts remember.
+struct Delivery
+{
+  std::vector<NewParticle> particles; ///< this rank's share; ids larger than all before
+  /// One row a particle, or none at all; partners are named by their new ids.
+  ContactRows rows{0};
+  bool has_rows = false;
+};
+
+/// All particles of a run and their contacts: the store of record, the arrays of the hot loop, the
+/// ghosts, the lists of what can touch, and the search that rebuilds them all.
+class ParticleSystem
+{
+public:
+  /// @param skin gap up to which pairs are listed (m)
+  /// @param largest_diameter of all particles ever (m)
+  ParticleSystem(Domain &domain, const ContactModel &model, unsigned int n_extra, double skin,
+                 double largest_diameter, Ledger &ledger, Timers &timers);
+
+  /// Sets the initial values of the extra doubles of particles to come.
+  void set_extra_defaults(const std::vector<double> &values) { extra_defaults = values; }
+
+  /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
+  /// memory. Particles beyond an outlet leave. Collective.
+  void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr);
+
+  /// Adds and removes particles, then searches. Those that stay keep their forces; the new ones
+  /// have none yet. Collective.
+  /// @param removed rows of owned particles
+  /// @return the smallest id of the new particles of all ranks
+  ParticleId exchange(const Delivery &delivery, const std::vector<std::size_t> &removed,
+                      const std::vector<Solid> &solids);
+
+  /// Brings the ghosts up to date; collective.
+  void update_ghosts() { halo.update(particles); }
+
+  /// Adds the forces of all contacts and advances their memory by @p dt (s).
+  /// @param loads if not null: forces on the solids, one a solid
+  void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,
+                          std::vector<SolidLoad> *loads);
+
+  /// Computes the forces on the particles with ids from @p first_new on, which a scheme with an
+  /// opening half step needs; forces on the others and the memory of all contacts stay as they are.
+  void add_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
+                         const std::vector<Solid> &solids, double time);
+
+  /// Memory of all contacts by owned particle.
+  ContactRows contact_rows() const;
+
+  double imbalance(const LoadBalancingParameters &parameters) const
+  {
+    return store.imbalance(parameters);
+  }
+  std::uint64_t n_global() const { return store.n_global(); }
+  unsigned long long n_searches() const { return searches; }
+  unsigned long long n_balances() const { return balances; }
+  std::size_t n_pairs() const { return pairs.size(); }
+
+  ParticleArrays particles;
+
+private:
+  std::vector<std::size_t> find_leaving();
+  void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
+
+  Domain &domain;
+  const ContactModel &model;
+  const double skin;
+  Ledger &ledger;
+  Timers &timers;
+  ParticleStore store;
+  Halo halo;
+  ContactGrid grid;
+  PairForces pair_forces;
+  SolidContacts solid_contacts;
+  PairList pairs;
+  ContactRows rows;
+  std::vector<double> extra_defaults;
+  unsigned long long searches = 0, balances = 0;
+};
+
+} // namespace eunoe
+
+#endif

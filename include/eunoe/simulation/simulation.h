@@ -1,0 +1,128 @@
+#ifndef eunoe_simulation_simulation_h
+#define eunoe_simulation_simulation_h
+
+#include <eunoe/core/log.h>
+#include <eunoe/forces/load.h>
+#include <eunoe/observables/observable.h>
+#include <eunoe/simulation/integrator.h>
+#include <eunoe/simulation/output.h>
+#include <eunoe/simulation/parameters.h>
+#include <eunoe/simulation/particle_system.h>
+
+#include <functional>
+
+namespace eunoe {
+
+/// One DEM simulation: owns all parts and drives them through time. Runs on any communicator, so
+/// that several can live in one program.
+class Simulation
+{
+public:
+  /// Builds all parts; writes nothing. Throws a UserError on every rank if the case makes no sense.
+  /// Collective, like all that follows.
+  Simulation(Parameters &parameters, MPI_Comm comm, Log &log);
+  ~Simulation();
+
+  /// Creates the output folder and the tables of the observables. Throws like the constructor.
+  void open_output();
+
+  /// Runs to the end and leaves all results in the output folder.
+  /// @param look called before the first step and after every step, for tests and other programs
+  void run(const std::function<void(Simulation &)> &look = {});
+
+  /// @name For processes and observables
+  ///@{
+  MPI_Comm communicator() const { return comm; }
+  const Parameters &get_parameters() const { return parameters; }
+  Log &get_log() { return log; }
+  double time() const { return present_time; }
+  unsigned long long step_number() const { return step; }
+  double time_step() const { return parameters.control.time_step; }
+  const Domain &get_domain() const { return domain; }
+  const ContactModel &contact_model() const { return model; }
+  const std::vector<Solid> &get_solids() const { return solids; }
+  /// Number of a solid by its name, -1 if there is none.
+  int find_solid(const std::string &name) const;
+  const Ledger &get_ledger() const { return ledger; }
+  ParticleSystem &get_system() { return system; }
+
+  /// Finishes what the integrator put off, so that velocities belong to the present time. To be
+  /// called before particles are looked at; changes no result.
+  const ParticleArrays &complete_step();
+  /// Owned particles whose extra doubles (see Process::fields) may be changed.
+  ParticleArrays &changeable_particles();
+
+  /// Adds and removes particles at the present time; those that stay go on as if nothing had been.
+  void exchange(const Delivery &delivery, const std::vector<std::size_t> &removed);
+  /// Takes note that the motion of a solid was changed at the present time.
+  void renew_solids() { move_solids(); }
+  /// First id that has never been used.
+  ParticleId next_id = 1;
+
+  /// Force and torque on every solid, of all ranks; only after a step for which it was wanted.
+  std::vector<SolidLoad> global_solid_loads() const;
+
+  /// Writes the particles to a series of their own, beside the regular output.
+  void write_pictures(PictureSeries &series);
+  std::string output_file(const std::string &name) const
+  {
+    return parameters.control.output_path + "/" + name;
+  }
+  ///@}
+
+private:
+  void print_overview();
+  void start();
+  void advance();
+  void compute_forces(double dt);
+  void move_solids();
+  bool search_is_due(double moved2);
+  const LoadBalancingParameters *balance_if_due();
+  void insert_if_due();
+  void do_what_is_due();
+  void report_progress(bool at_end);
+  bool finished() const;
+  void write_summary();
+
+  Parameters &parameters;
+  MPI_Comm comm;
+  Log &log;
+  const double start_of_run;
+  Domain domain;
+  const ContactModel model;
+  Ledger ledger;
+  Timers timers;
+  ParticleSystem system;
+  std::vector<Solid> solids;
+  std::vector<RigidState> solids_at_search;
+  std::vector<std::unique_ptr<Load>> loads;
+  std::unique_ptr<Integrator> integrator;
+  std::unique_ptr<Insertion> insertion;
+  std::vector<std::unique_ptr<Observable>> observable_list;
+  std::vector<SolidLoad> solid_loads;
+  std::vector<Process::Field> fields;
+  PictureSeries particle_pictures, solid_pictures;
+
+  /// Largest sum of the displacements of two bodies before the next search (m).
+  const double allowed_displacement;
+  unsigned long long step = 0;
+  double present_time = 0.;
+  double next_output = 0.;
+  bool balanced_once = false;
+  unsigned long long last_reported_step = 0;
+  unsigned long long last_balance = 0;
+  std::uint64_t n_particles = 0;
+  double particle_steps = 0., loop_seconds = 0., last_report = 0., reported_particle_steps = 0.;
+};
+
+/// Largest diameter of all particles that the parameters can produce (m).
+double largest_diameter(const Parameters &parameters);
+
+/// What is wrong with parameters only in the light of the made domain and the sizes of particles.
+/// @param reach of the contact search (m)
+void check_domain(const Domain &domain, const Parameters &parameters, double reach,
+                  Problems &problems);
+
+} // namespace eunoe
+
+#endif

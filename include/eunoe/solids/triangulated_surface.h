@@ -1,0 +1,72 @@
+#ifndef eunoe_solids_triangulated_surface_h
+#define eunoe_solids_triangulated_surface_h
+
+#include <eunoe/solids/shape.h>
+
+#include <array>
+#include <memory>
+#include <string>
+
+namespace eunoe {
+
+/// Corners and triangles as they are read or made, not yet checked.
+struct TriangleMesh
+{
+  std::vector<Vec3> vertices;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+
+  /// Appends the quadrilateral a-b-c-d as two triangles.
+  void add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d);
+
+  /// Unites corners that lie closer than @p tolerance (m), as contacts need to know which
+  /// triangles are neighbours.
+  void merge_vertices(double tolerance);
+
+  /// A sentence that says why this cannot be a surface, empty if it can.
+  std::string defect() const;
+};
+
+/// A surface of triangles, two-sided: a particle is kept on the side where its centre is.
+class TriangulatedSurface : public Shape
+{
+public:
+  /// Edges at which the surface turns by less than this count as smooth: where such a surface is
+  /// concave, as inside a faceted cylinder, the facets are felt as one curved wall.
+  static constexpr double smooth_angle = 15. * M_PI / 180.;
+
+  explicit TriangulatedSurface(TriangleMesh mesh);
+  ~TriangulatedSurface() override;
+
+  void find_facets(const Vec3 &centre, double reach,
+                   std::vector<std::int32_t> &facets) const override;
+  unsigned int find_contacts(const Vec3 &centre, double radius, double reach,
+                             const std::int32_t *begin, const std::int32_t *end,
+                             SurfaceContact *contacts) const override;
+  Box bounding_box() const override { return box; }
+  std::vector<Vec3> triangles() const override;
+
+private:
+  struct Facet
+  {
+    std::array<Vec3, 3> corner;
+    std::array<std::int32_t, 3> vertex;
+    Vec3 normal;         ///< unit normal; the same bits in all triangles of a plane
+    double offset;       ///< normal . x on the plane
+    std::int32_t plane;  ///< connected coplanar triangles share a number
+    std::int32_t smooth; ///< triangles connected by smooth edges share a number
+  };
+  struct Touch;
+  struct Tree;
+
+  Touch closest(const Vec3 &centre, std::int32_t facet) const;
+
+  std::vector<Facet> facets;
+  /// Whether all triangles around a corner lie in one plane and close a full turn.
+  std::vector<bool> flat_vertex;
+  Box box;
+  std::unique_ptr<const Tree> tree;
+};
+
+} // namespace eunoe
+
+#endif

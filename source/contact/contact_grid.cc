@@ -1,0 +1,182 @@
+#include <eunoe/contact/contact_grid.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace eunoe {
+namespace {
+
+/// A run of neighbouring cells, as places in the order of particles: [begin, end).
+struct Run
+{
+  std::int32_t begin, end;
+};
+
+/// Sorts runs and unites those that overlap (a period of one or two cells meets itself).
+unsigned int unite(Run *runs, unsigned int n)
+{
+  std::sort(runs, runs + n, [](const Run &a, const Run &b) { return a.begin < b.begin; });
+  unsigned int last = 0;
+  for (unsigned int r = 1; r < n; ++r)
+    if (runs[r].begin < runs[last].end)
+      runs[last].end = std::max(runs[last].end, runs[r].end);
+    else
+      runs[++last] = runs[r];
+  return n == 0 ? 0 : last + 1;
+}
+
+/// The particles of a rank in the order of (cell, id), with the start of every cell of the box of
+/// cells that they occupy.
+class CellOrder
+{
+public:
+  CellOrder(const std::vector<std::array<int, 3>> &cells, const ParticleArrays &p,
+            const std::array<int, 3> &n_global)
+      : n_global(n_global)
+  {
+    first = n_global;
+    std::array<int, 3> last = {-1, -1, -1};
+    for (const auto &c : cells)
+      for (unsigned int d = 0; d < 3; ++d) {
+        first[d] = std::min(first[d], c[d]);
+        last[d] = std::max(last[d], c[d]);
+      }
+    std::size_t n_cells = 1;
+    for (unsigned int d = 0; d < 3; ++d) {
+      n[d] = std::max(0, last[d] - first[d] + 1);
+      n_cells *= n[d];
+    }
+    start.assign(n_cells + 1, 0);
+    std::vector<std::int64_t> index(cells.size());
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+      index[row] = local(cells[row]);
+      ++start[index[row] + 1];
+    }
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    rows.resize(cells.size());
+    std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+    for (std::size_t row = 0; row < cells.size(); ++row)
+      rows[next[index[row]]++] = static_cast<std::int32_t>(row);
+    for (std::size_t c = 0; c < n_cells; ++c)
+      std::sort(rows.begin() + start[c], rows.begin() + start[c + 1],
+                [&](std::int32_t a, std::int32_t b) { return p.id[a] < p.id[b]; });
+  }
+
+  std::int64_t local(const std::array<int, 3> &c) const
+  {
+    return (static_cast<std::int64_t>(c[0] - first[0]) * n[1] + (c[1] - first[1])) * n[2] +
+           (c[2] - first[2]);
+  }
+
+  /// Runs of particles in the cells around @p c, of those not before it, in ascending order.
+  unsigned int runs_around(const std::array<int, 3> &c, const std::array<bool, 3> &periodic,
+                           Run *runs) const
+  {
+    unsigned int count = 0;
+    const std::int32_t own = start[local(c)];
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy) {
+        std::array<int, 3> column = {c[0] + dx, c[1] + dy, 0};
+        if (!wrap(column, 0, periodic) || !wrap(column, 1, periodic))
+          continue;
+        const auto add = [&](int from, int to) {
+          from = std::max(from, first[2]);
+          to = std::min(to, first[2] + n[2] - 1);
+          if (from > to)
+            return;
+          const std::int64_t base = local({column[0], column[1], 0});
+          const Run run = {std::max(own, start[base + from]), start[base + to + 1]};
+          if (run.begin < run.end)
+            runs[count++] = run;
+        };
+        add(c[2] - 1, c[2] + 1);
+        if (periodic[2] && c[2] == 0)
+          add(n_global[2] - 1, n_global[2] - 1);
+        if (periodic[2] && c[2] == n_global[2] - 1)
+          add(0, 0);
+      }
+    return unite(runs, count);
+  }
+
+  std::vector<std::int32_t> rows;
+
+private:
+  /// Moves a coordinate back into the grid; false where there is nothing.
+  bool wrap(std::array<int, 3> &c, unsigned int d, const std::array<bool, 3> &periodic) const
+  {
+    if (periodic[d])
+      c[d] = (c[d] + n_global[d]) % n_global[d];
+    return c[d] >= first[d] && c[d] < first[d] + n[d];
+  }
+
+  std::array<int, 3> n_global, first, n;
+  std::vector<std::int32_t> start;
+};
+
+} // namespace
+
+ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
+                         const double cell_size)
+    : lower(lower), box(box), axis({0, 1, 2})
+{
+  const Vec3 extent = upper - lower;
+  std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  for (unsigned int d = 0; d < 3; ++d) {
+    n[d] = std::max(1, static_cast<int>(std::floor(extent[axis[d]] / cell_size)));
+    inverse_width[d] = n[d] / extent[axis[d]];
+  }
+}
+
+ContactGrid::Cell ContactGrid::cell(const Vec3 &x) const
+{
+  Cell c;
+  for (unsigned int d = 0; d < 3; ++d) {
+    const double s = (x[axis[d]] - lower[axis[d]]) * inverse_width[d];
+    c[d] = s > 0. ? static_cast<int>(std::min<double>(s, n[d] - 1)) : 0;
+  }
+  return c;
+}
+
+std::uint64_t ContactGrid::key(const Vec3 &x) const
+{
+  const Cell c = cell(x);
+  return (static_cast<std::uint64_t>(c[0]) * n[1] + c[1]) * n[2] + c[2];
+}
+
+void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairList &pairs) const
+{
+  if (p.size() == 0)
+    return;
+  std::vector<Cell> cells(p.size());
+  for (std::size_t row = 0; row < p.size(); ++row)
+    cells[row] = cell(p.position[row].vec());
+  const CellOrder order(cells, p, n);
+  const std::array<bool, 3> periodic = {box.is_periodic(axis[0]), box.is_periodic(axis[1]),
+                                        box.is_periodic(axis[2])};
+
+  const auto n_owned = static_cast<std::int32_t>(p.n_owned);
+  std::array<Run, 27> runs;
+  unsigned int n_runs = 0;
+  const Cell *run_cell = nullptr;
+  for (std::size_t a_place = 0; a_place < order.rows.size(); ++a_place) {
+    const std::int32_t a = order.rows[a_place];
+    if (run_cell == nullptr || *run_cell != cells[a]) {
+      n_runs = order.runs_around(cells[a], periodic, runs.data());
+      run_cell = &cells[a];
+    }
+    const Quad &pa = p.position[a];
+    for (unsigned int r = 0; r < n_runs; ++r)
+      for (auto b_place = std::max<std::int32_t>(runs[r].begin, a_place + 1); b_place < runs[r].end;
+           ++b_place)
+      {
+        const std::int32_t b = order.rows[b_place];
+        const Quad &pb = p.position[b];
+        const double near = pa.w + pb.w + reach;
+        if ((a < n_owned || b < n_owned) &&
+            norm_square(box.shortest(pb.vec() - pa.vec())) < near * near)
+          p.id[a] < p.id[b] ? pairs.push_back(a, b) : pairs.push_back(b, a);
+      }
+  }
+}
+
+} // namespace eunoe

@@ -1,0 +1,56 @@
+#include <eunoe/contact/contact_model.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace eunoe {
+
+ContactLawRegistry &contact_laws(const std::string &family)
+{
+  static std::map<std::string, ContactLawRegistry> registries;
+  return registries[family];
+}
+
+ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
+                           const ContactLawOptions &options)
+    : materials(std::move(materials_))
+{
+  const auto add = [&](const std::string &family, const std::string &name) {
+    laws.push_back(contact_laws(family).make(name, materials, options));
+  };
+  add("normal", names.normal);
+  for (const std::string &name : names.cohesion)
+    add("cohesion", name);
+  add("tangential", names.tangential);
+  if (names.rolling != "none")
+    add("rolling", names.rolling);
+
+  for (const auto &law : laws) {
+    first_history.push_back(n_history);
+    n_history += law->history_size();
+    for (int kind = 0; kind < materials.size() * materials.size(); ++kind)
+      largest_range = std::max(largest_range, law->range(kind));
+  }
+  if (n_history > PairBlock::max_history)
+    throw std::invalid_argument("these laws together remember " + std::to_string(n_history) +
+                                " numbers a contact, more than the " +
+                                std::to_string(PairBlock::max_history) + " that fit in a block");
+}
+
+void ContactModel::mirror(double *history, const unsigned int axis) const
+{
+  for (std::size_t l = 0; l < laws.size(); ++l)
+    laws[l]->mirror(history + first_history[l], axis);
+}
+
+void ContactModel::apply(PairBlock &block, const double dt) const
+{
+  for (double *lanes :
+       {block.stiffness, block.contact_force, block.cohesion, block.shear_x, block.shear_y,
+        block.shear_z, block.torque_x, block.torque_y, block.torque_z})
+    std::memset(lanes, 0, sizeof(PairBlock::Lanes));
+  for (std::size_t l = 0; l < laws.size(); ++l)
+    laws[l]->apply(block, first_history[l], dt);
+}
+
+} // namespace eunoe

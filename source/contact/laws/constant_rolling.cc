@@ -1,0 +1,55 @@
+#include <eunoe/contact/contact_law.h>
+#include <eunoe/core/simd.h>
+
+namespace eunoe {
+namespace {
+
+/// Rolling resistance of constant magnitude mu_r R_e |F_n| against the relative spin
+/// (Zhou, Wright, Yang, Xu, Yu 1999).
+class ConstantRolling : public ContactLaw
+{
+public:
+  explicit ConstantRolling(const Materials &materials)
+      : table(materials.table([](const Material &a, const Material &b) {
+          return Row{harmonic_mean(a.rolling_friction, b.rolling_friction)};
+        }))
+  {
+  }
+
+  void apply(PairBlock &block, unsigned int, double) const override
+  {
+    alignas(64) PairBlock::Lanes friction;
+    look_up(block, table, &Row::friction, friction);
+    kernel(block, friction);
+  }
+
+private:
+  struct Row
+  {
+    double friction;
+  };
+
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
+  {
+#pragma omp simd
+    for (unsigned int k = 0; k < PairBlock::size; ++k) {
+      const double torque = friction[k] * b.radius[k] * std::abs(b.contact_force[k]);
+      const double speed2 =
+          b.roll_x[k] * b.roll_x[k] + b.roll_y[k] * b.roll_y[k] + b.roll_z[k] * b.roll_z[k];
+      const double factor = speed2 > 0. ? -torque / std::sqrt(speed2 > 0. ? speed2 : 1.) : 0.;
+      b.torque_x[k] += factor * b.roll_x[k];
+      b.torque_y[k] += factor * b.roll_y[k];
+      b.torque_z[k] += factor * b.roll_z[k];
+    }
+  }
+
+  const std::vector<Row> table;
+};
+
+const ContactLawRegistry::Registration registration(
+    contact_laws("rolling"), "constant", [](const Materials &materials, const ContactLawOptions &) {
+      return std::make_unique<ConstantRolling>(materials);
+    });
+
+} // namespace
+} // namespace eunoe

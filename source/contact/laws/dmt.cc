@@ -1,0 +1,69 @@
+#include <eunoe/contact/contact_law.h>
+#include <eunoe/core/simd.h>
+
+namespace eunoe {
+namespace {
+
+/// Derjaguin-Muller-Toporov cohesion with the long-range van der Waals part of Meier et al. 2019:
+/// the pull-off force down to a small gap, then the attraction of two spheres, cut off where it
+/// has fallen to a given share of the pull-off force.
+class Dmt : public ContactLaw
+{
+public:
+  Dmt(const Materials &materials, const ContactLawOptions &options)
+      : table(materials.table([&](const Material &a, const Material &b) {
+          const double pull_off = 2. * M_PI * effective_surface_energy(a, b);
+          const double van_der_waals = effective_hamaker_constant(a, b) / 6.;
+          const double plateau = pull_off > 0. ? std::sqrt(van_der_waals / pull_off) : 0.;
+          return Row{pull_off, van_der_waals, plateau, plateau / std::sqrt(options.dmt_cut_off)};
+        }))
+  {
+  }
+
+  double range(int kind) const override { return table[kind].cut_off; }
+
+  void apply(PairBlock &block, unsigned int, double) const override
+  {
+    alignas(64) PairBlock::Lanes pull_off, van_der_waals, plateau, cut_off;
+    look_up(block, table, &Row::pull_off, pull_off);
+    look_up(block, table, &Row::van_der_waals, van_der_waals);
+    look_up(block, table, &Row::plateau, plateau);
+    look_up(block, table, &Row::cut_off, cut_off);
+    kernel(block, pull_off, van_der_waals, plateau, cut_off);
+  }
+
+private:
+  struct Row
+  {
+    double pull_off;      ///< pull-off force over effective radius (N/m)
+    double van_der_waals; ///< A/6 (J)
+    double plateau;       ///< gap up to which the pull-off force acts, |d_o| (m)
+    double cut_off;       ///< gap beyond which nothing acts, |d*| (m)
+  };
+
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *pull_off,
+                                        const double *van_der_waals, const double *plateau,
+                                        const double *cut_off)
+  {
+#pragma omp simd
+    for (unsigned int k = 0; k < PairBlock::size; ++k) {
+      const double gap = -b.overlap[k];
+      const bool far = gap > plateau[k];
+      const double tail = van_der_waals[k] / (far ? gap * gap : 1.);
+      const double force = (far ? tail : pull_off[k]) * b.radius[k];
+      b.cohesion[k] += gap < cut_off[k] || !far ? force : 0.;
+    }
+  }
+
+  const std::vector<Row> table;
+};
+
+const ContactLawRegistry::Registration registration(contact_laws("cohesion"), "dmt",
+                                                    [](const Materials &materials,
+                                                       const ContactLawOptions &options) {
+                                                      return std::make_unique<Dmt>(materials,
+                                                                                   options);
+                                                    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,89 @@
+#include <eunoe/contact/contact_law.h>
+#include <eunoe/contact/turn_with_plane.h>
+#include <eunoe/core/simd.h>
+
+namespace eunoe {
+namespace {
+
+/// Elastic-plastic spring-dashpot rolling resistance (Ai, Chen, Rotter, Ooi 2011, model C):
+/// a torsional spring on the relative spin, limited to mu_r R_e |F_n|, with a dashpot of which the
+/// share f remains once the spring is fully mobilised. The spring's torque turns with the contact
+/// plane.
+class EpsdRolling : public ContactLaw
+{
+public:
+  EpsdRolling(const Materials &materials, const ContactLawOptions &options)
+      : table(materials.table([](const Material &a, const Material &b) {
+          return Row{harmonic_mean(a.rolling_friction, b.rolling_friction),
+                     harmonic_mean(a.rolling_viscous_damping, b.rolling_viscous_damping)};
+        })),
+        f(options.epsd_f), inertia_factor(options.epsd_inertia_about_contact ? 3.5 : 1.)
+  {
+  }
+
+  unsigned int history_size() const override { return 3; }
+
+  void mirror(double *history, unsigned int axis) const override
+  {
+    history[(axis + 1) % 3] *= -1.;
+    history[(axis + 2) % 3] *= -1.;
+  }
+
+  void apply(PairBlock &block, unsigned int history, double dt) const override
+  {
+    alignas(64) PairBlock::Lanes friction, damping;
+    look_up(block, table, &Row::friction, friction);
+    look_up(block, table, &Row::damping, damping);
+    kernel(block, friction, damping, f, inertia_factor, block.history[history],
+           block.history[history + 1], block.history[history + 2], dt);
+  }
+
+private:
+  struct Row
+  {
+    double friction, damping;
+  };
+
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction, const double *damping,
+                                        const double f, const double inertia_factor, double *hx,
+                                        double *hy, double *hz, const double dt)
+  {
+#pragma omp simd
+    for (unsigned int k = 0; k < PairBlock::size; ++k) {
+      const bool touching = b.overlap[k] > 0.;
+      const double arm = friction[k] * b.radius[k];
+      const double stiffness = 2.25 * b.stiffness[k] * arm * arm;
+      const double damper = 2. * damping[k] * std::sqrt(inertia_factor * b.inertia[k] * stiffness);
+      const double limit = arm * std::abs(b.contact_force[k]);
+
+      const Vec3 turned = turn_with_plane(hx[k], hy[k], hz[k], b.nx[k], b.ny[k], b.nz[k]);
+      const double mx = turned.x - stiffness * b.roll_x[k] * dt;
+      const double my = turned.y - stiffness * b.roll_y[k] * dt;
+      const double mz = turned.z - stiffness * b.roll_z[k] * dt;
+
+      const double spring = std::sqrt(mx * mx + my * my + mz * mz);
+      const bool mobilised = spring >= limit;
+      const double scale = spring > limit ? limit / spring : 1.;
+      const double dashpot = mobilised ? f * damper : damper;
+      hx[k] = touching ? mx * scale : 0.;
+      hy[k] = touching ? my * scale : 0.;
+      hz[k] = touching ? mz * scale : 0.;
+      b.torque_x[k] += touching ? hx[k] - dashpot * b.roll_x[k] : 0.;
+      b.torque_y[k] += touching ? hy[k] - dashpot * b.roll_y[k] : 0.;
+      b.torque_z[k] += touching ? hz[k] - dashpot * b.roll_z[k] : 0.;
+    }
+  }
+
+  const std::vector<Row> table;
+  const double f, inertia_factor;
+};
+
+const ContactLawRegistry::Registration registration(contact_laws("rolling"), "epsd",
+                                                    [](const Materials &materials,
+                                                       const ContactLawOptions &options) {
+                                                      return std::make_unique<EpsdRolling>(
+                                                          materials, options);
+                                                    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,133 @@
+#include <eunoe/contact/model_parameters.h>
+#include <eunoe/core/declare.h>
+
+namespace eunoe {
+
+namespace {
+
+const std::string section = "model parameters";
+
+/// What the names of the input file stand for: the law between particles, the name that the same
+/// laws have for contacts with walls, and the laws.
+struct NamedModel
+{
+  std::string name, wall_name;
+  ContactModelNames laws;
+};
+
+const std::vector<NamedModel> &named_models()
+{
+  static const std::vector<NamedModel> models = {
+      {"hertz_mindlin_limit_overlap", "nonlinear", {"hertz", {}, "mindlin_limit_overlap", "none"}},
+      {"hertz_mindlin_limit_force", "nonlinear", {"hertz", {}, "mindlin_limit_force", "none"}},
+      {"DMT", "DMT", {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"}}};
+  return models;
+}
+
+const NamedModel &named_model(const std::string &name)
+{
+  for (const NamedModel &model : named_models())
+    if (model.name == name)
+      return model;
+  throw std::invalid_argument("there is no contact model '" + name + "'");
+}
+
+std::string names_of_models()
+{
+  std::string names;
+  for (const NamedModel &model : named_models())
+    names += (names.empty() ? "" : "|") + model.name;
+  return names;
+}
+
+} // namespace
+
+ContactModelNames ModelParameters::laws() const
+{
+  ContactModelNames names = named_model(contact_method).laws;
+  const std::string suffix = "_resistance";
+  const std::size_t cut = rolling_method.find(suffix);
+  const std::string rolling = rolling_method.substr(0, cut);
+  names.rolling = rolling == "no" ? "none" : rolling;
+  return names;
+}
+
+void ModelParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section);
+  declare::choice(
+      prm, "particle particle contact force method", contact_method, names_of_models(),
+      "Laws of a contact of two particles. All are Hertz's elastic force with Tsuji's "
+      "damping and Mindlin's tangential force with memory; 'DMT' adds cohesion with its "
+      "long-range part.");
+  declare::choice(prm, "particle wall contact force method", wall_method, "nonlinear|DMT",
+                  "Laws of a contact with a wall or solid: the same as between particles, so "
+                  "'DMT' where particles use it and 'nonlinear' elsewhere.");
+  prm.add_parameter("dmt cut-off threshold", options.dmt_cut_off,
+                    "Share of the pull-off force below which the long-range attraction is dropped.",
+                    declare::Patterns::Double(1e-6, 1.));
+  declare::choice(prm, "rolling resistance torque method", rolling_method,
+                  "none|no_resistance|constant|constant_resistance|epsd|epsd_resistance",
+                  "Resistance against rolling: none, a torque of constant magnitude, or the "
+                  "elastic-plastic spring-dashpot of Ai et al. (2011).");
+  prm.add_parameter("f coefficient", options.epsd_f,
+                    "EPSD: share of the viscous torque left once the spring is fully mobilised.",
+                    declare::Patterns::Double(0., 1.));
+  declare::choice(prm, "epsd inertia", epsd_inertia, "contact point|centre",
+                  "EPSD: point about which the moments of inertia in the damping are taken. Ai et "
+                  "al. (2011) use the contact point.");
+  declare::choice(prm, "integration method", integration_method, "velocity_verlet|explicit_euler",
+                  "Time integration.");
+  prm.add_action("epsd inertia", [this](const std::string &value) {
+    options.epsd_inertia_about_contact = value == "contact point";
+  });
+
+  prm.enter_subsection("contact detection");
+  declare::choice(prm, "contact detection method", detection_method, "constant|dynamic",
+                  "Search for pairs every so many steps, or when a particle has moved too far.");
+  prm.add_parameter("frequency", detection_frequency,
+                    "Steps between searches (constant) or between looks at the displacement "
+                    "(dynamic).",
+                    declare::Patterns::Integer(1));
+  prm.add_parameter("dynamic contact search size coefficient", displacement_share,
+                    "Share of the safe displacement after which the search is repeated.",
+                    declare::Patterns::Double(1e-3, 1.));
+  prm.add_parameter("neighborhood threshold", neighborhood_threshold,
+                    "The search lists pairs with gaps up to (threshold - 1) times the largest "
+                    "diameter. Larger: longer lists, fewer searches.",
+                    declare::Patterns::Double(1.));
+  prm.leave_subsection();
+
+  prm.enter_subsection("load balancing");
+  declare::choice(prm, "load balance method", load_balancing.method, "none|once|frequent|dynamic",
+                  "When the cells are shared out anew over the ranks. It happens at the next "
+                  "contact search and never changes a result.");
+  prm.add_parameter("step", load_balancing.step, "once: the step.");
+  prm.add_parameter("frequency", load_balancing.frequency, "frequent: steps between balances.",
+                    declare::Patterns::Integer(1));
+  prm.add_parameter("threshold", load_balancing.threshold,
+                    "dynamic: balance if the largest load less the smallest exceeds this share of "
+                    "the mean.",
+                    declare::Patterns::Double(0.));
+  prm.add_parameter("dynamic check frequency", load_balancing.check_frequency,
+                    "dynamic: steps between looks at the loads.", declare::Patterns::Integer(1));
+  prm.add_parameter("particle weight", load_balancing.particle_weight,
+                    "Cost of a particle, beside that of a cell.");
+  prm.add_parameter("cell weight", load_balancing.cell_weight, "Cost of a cell.",
+                    declare::Patterns::Integer(1));
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+void ModelParameters::check(const ParameterCheck &check) const
+{
+  const NamedModel &model = named_model(contact_method);
+  check.require(wall_method == model.wall_name, {section}, "particle wall contact force method",
+                "is '" + wall_method + "' while particles use '" + contact_method + "'.",
+                "Walls take the laws of the particles: set it to '" + model.wall_name + "'.");
+  check.require(neighborhood_threshold > 1., {section, "contact detection"},
+                "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
+                "Give a value above 1, for example 1.1.");
+}
+
+} // namespace eunoe

@@ -1,0 +1,251 @@
+#include <eunoe/contact/pair_forces.h>
+#include <eunoe/core/simd.h>
+
+#include <algorithm>
+
+namespace eunoe {
+namespace {
+
+constexpr unsigned int B = PairBlock::size;
+using Lanes = PairBlock::Lanes;
+
+struct Period
+{
+  Vec3 length, half;
+};
+
+EUNOE_ALWAYS_INLINE double shortest(double d, double half, double length)
+{
+  d = d > half ? d - length : d;
+  return d < -half ? d + length : d;
+}
+
+/// Writes the components of quads[rows[0..B)] to x, y, z, w.
+EUNOE_ALWAYS_INLINE void gather(const Quad *quads, const std::int32_t *rows, double *x, double *y,
+                                double *z, double *w)
+{
+  for (unsigned int k = 0; k < B; k += 4) {
+    simd::Four a = simd::four(quads[rows[k]]);
+    simd::Four b = simd::four(quads[rows[k + 1]]);
+    simd::Four c = simd::four(quads[rows[k + 2]]);
+    simd::Four d = simd::four(quads[rows[k + 3]]);
+    simd::transpose(a, b, c, d);
+    simd::four(x + k) = a;
+    simd::four(y + k) = b;
+    simd::four(z + k) = c;
+    simd::four(w + k) = d;
+  }
+}
+
+/// Sorts B candidates into those within reach and those whose contact has ended. Both outputs
+/// need room for B more entries.
+EUNOE_MULTIVERSION void select(const Quad *position, const std::int32_t *i, const std::int32_t *j,
+                               const std::int32_t *record, const std::int32_t first,
+                               const unsigned int count, const Period &period, const double range,
+                               std::int32_t *active, unsigned int &n_active, std::int32_t *ended,
+                               unsigned int &n_ended)
+{
+  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj, excess;
+  gather(position, i, xi, yi, zi, ri);
+  gather(position, j, xj, yj, zj, rj);
+#pragma omp simd
+  for (unsigned int k = 0; k < B; ++k) {
+    const double dx = shortest(xj[k] - xi[k], period.half.x, period.length.x);
+    const double dy = shortest(yj[k] - yi[k], period.half.y, period.length.y);
+    const double dz = shortest(zj[k] - zi[k], period.half.z, period.length.z);
+    const double reach = ri[k] + rj[k] + range;
+    excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
+  }
+  unsigned int a = n_active, e = n_ended;
+  for (unsigned int k = 0; k < count; ++k) {
+    const bool within = excess[k] <= 0.;
+    active[a] = first + static_cast<std::int32_t>(k);
+    a += within;
+    ended[e] = first + static_cast<std::int32_t>(k);
+    e += static_cast<unsigned int>(!within) & static_cast<unsigned int>(record[k] >= 0);
+  }
+  n_active = a;
+  n_ended = e;
+}
+
+/// Fills in the geometry and kinematics of the pairs (i[k], j[k]).
+EUNOE_MULTIVERSION void describe(PairBlock &b, const ParticleArrays &p, const std::int32_t *i,
+                                 const std::int32_t *j, const Period &period, double *ri,
+                                 double *rj)
+{
+  alignas(64) Lanes xi, yi, zi, xj, yj, zj;
+  alignas(64) Lanes vxi, vyi, vzi, mi, vxj, vyj, vzj, mj;
+  alignas(64) Lanes wxi, wyi, wzi, inertia_i, wxj, wyj, wzj, inertia_j;
+  gather(p.position.data(), i, xi, yi, zi, ri);
+  gather(p.position.data(), j, xj, yj, zj, rj);
+  gather(p.velocity.data(), i, vxi, vyi, vzi, mi);
+  gather(p.velocity.data(), j, vxj, vyj, vzj, mj);
+  gather(p.spin.data(), i, wxi, wyi, wzi, inertia_i);
+  gather(p.spin.data(), j, wxj, wyj, wzj, inertia_j);
+#pragma omp simd
+  for (unsigned int k = 0; k < B; ++k) {
+    const double dx = shortest(xj[k] - xi[k], period.half.x, period.length.x);
+    const double dy = shortest(yj[k] - yi[k], period.half.y, period.length.y);
+    const double dz = shortest(zj[k] - zi[k], period.half.z, period.length.z);
+    const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+    // Divided, not multiplied by an inverse: a normal along an axis has length one exactly.
+    const double nx = dx / distance, ny = dy / distance, nz = dz / distance;
+    b.nx[k] = nx;
+    b.ny[k] = ny;
+    b.nz[k] = nz;
+    b.overlap[k] = ri[k] + rj[k] - distance;
+    b.radius[k] = ri[k] * rj[k] / (ri[k] + rj[k]);
+    b.mass[k] = mi[k] * mj[k] / (mi[k] + mj[k]);
+    b.inertia[k] = inertia_i[k] * inertia_j[k] / (inertia_i[k] + inertia_j[k]);
+
+    const double sx = ri[k] * wxi[k] + rj[k] * wxj[k];
+    const double sy = ri[k] * wyi[k] + rj[k] * wyj[k];
+    const double sz = ri[k] * wzi[k] + rj[k] * wzj[k];
+    const double vx = vxi[k] - vxj[k] + (sy * nz - sz * ny);
+    const double vy = vyi[k] - vyj[k] + (sz * nx - sx * nz);
+    const double vz = vzi[k] - vzj[k] + (sx * ny - sy * nx);
+    const double closing = vx * nx + vy * ny + vz * nz;
+    b.closing_speed[k] = closing;
+    b.slip_x[k] = vx - closing * nx;
+    b.slip_y[k] = vy - closing * ny;
+    b.slip_z[k] = vz - closing * nz;
+
+    const double wx = wxi[k] - wxj[k], wy = wyi[k] - wyj[k], wz = wzi[k] - wzj[k];
+    const double twist = wx * nx + wy * ny + wz * nz;
+    b.roll_x[k] = wx - twist * nx;
+    b.roll_y[k] = wy - twist * ny;
+    b.roll_z[k] = wz - twist * nz;
+  }
+}
+
+EUNOE_MULTIVERSION void recall(PairBlock &block, const ContactMemory &memory,
+                               const std::int32_t *record)
+{
+  memory.load(block, record);
+}
+
+EUNOE_MULTIVERSION void remember(const PairBlock &block, ContactMemory &memory,
+                                 const std::int32_t *record)
+{
+  memory.store(block, record);
+}
+
+/// Adds the block's forces and torques to both particles of every pair, pair by pair.
+EUNOE_MULTIVERSION void scatter(const PairBlock &b, ParticleArrays &p, const std::int32_t *i,
+                                const std::int32_t *j, const double *ri, const double *rj)
+{
+  alignas(64) Lanes fx, fy, fz, tix, tiy, tiz, tjx, tjy, tjz;
+#pragma omp simd
+  for (unsigned int k = 0; k < B; ++k) {
+    const double normal = b.contact_force[k] - b.cohesion[k];
+    fx[k] = normal * b.nx[k] + b.shear_x[k];
+    fy[k] = normal * b.ny[k] + b.shear_y[k];
+    fz[k] = normal * b.nz[k] + b.shear_z[k];
+    const double cx = b.ny[k] * b.shear_z[k] - b.nz[k] * b.shear_y[k];
+    const double cy = b.nz[k] * b.shear_x[k] - b.nx[k] * b.shear_z[k];
+    const double cz = b.nx[k] * b.shear_y[k] - b.ny[k] * b.shear_x[k];
+    tix[k] = b.torque_x[k] - ri[k] * cx;
+    tiy[k] = b.torque_y[k] - ri[k] * cy;
+    tiz[k] = b.torque_z[k] - ri[k] * cz;
+    tjx[k] = -b.torque_x[k] - rj[k] * cx;
+    tjy[k] = -b.torque_y[k] - rj[k] * cy;
+    tjz[k] = -b.torque_z[k] - rj[k] * cz;
+  }
+  alignas(64) static const Lanes zero = {};
+  const auto rows = [](const double *x, const double *y, const double *z, unsigned int k,
+                       simd::Four(&out)[4]) __attribute__((always_inline))
+  {
+    out[0] = simd::four(x + k);
+    out[1] = simd::four(y + k);
+    out[2] = simd::four(z + k);
+    out[3] = simd::four(zero + k);
+    simd::transpose(out[0], out[1], out[2], out[3]);
+  };
+  Quad *const force = p.force.data(), *const torque = p.torque.data();
+  for (unsigned int k = 0; k < b.n; k += 4) {
+    simd::Four f[4], ti[4], tj[4];
+    rows(fx, fy, fz, k, f);
+    rows(tix, tiy, tiz, k, ti);
+    rows(tjx, tjy, tjz, k, tj);
+    const unsigned int count = b.n - k < 4 ? b.n - k : 4;
+    for (unsigned int l = 0; l < count; ++l) {
+      simd::four(force[i[k + l]]) -= f[l];
+      simd::four(force[j[k + l]]) += f[l];
+      simd::four(torque[i[k + l]]) += ti[l];
+      simd::four(torque[j[k + l]]) += tj[l];
+    }
+  }
+}
+
+} // namespace
+
+PairForces::PairForces(const ContactModel &model, const PeriodicBox &box)
+    : model(model), box(box), block(std::make_unique<PairBlock>()), active(2 * B), ended(2 * B)
+{
+}
+
+void PairForces::run_block(ParticleArrays &particles, PairList &pairs, const std::int32_t *active,
+                           const unsigned int n, const double dt)
+{
+  alignas(64) std::int32_t i[B], j[B], record[B];
+  alignas(64) Lanes ri, rj;
+  const Period period{box.length, box.half()};
+
+  for (unsigned int k = 0; k < B; ++k) {
+    const std::int32_t pair = active[std::min(k, n - 1)];
+    i[k] = pairs.i[pair];
+    j[k] = pairs.j[pair];
+    if (pairs.record[pair] == ContactMemory::none)
+      pairs.record[pair] = pairs.memory.create();
+    record[k] = pairs.record[pair];
+  }
+  block->n = n;
+  block->uniform_kind = model.get_materials().only_particle_kind();
+  if (block->uniform_kind < 0)
+    for (unsigned int k = 0; k < B; ++k)
+      block->kind[k] = model.get_materials().kind(particles.type[i[k]], particles.type[j[k]]);
+  recall(*block, pairs.memory, record);
+
+  describe(*block, particles, i, j, period, ri, rj);
+  model.apply(*block, dt);
+  scatter(*block, particles, i, j, ri, rj);
+  remember(*block, pairs.memory, record);
+}
+
+void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt)
+{
+  const Period period{box.length, box.half()};
+  const double range = model.range();
+  const std::size_t n_pairs = pairs.size();
+  unsigned int n_active = 0;
+  for (std::size_t first = 0; first < n_pairs; first += B) {
+    const unsigned int count = static_cast<unsigned int>(std::min<std::size_t>(B, n_pairs - first));
+    alignas(64) std::int32_t last_i[B], last_j[B];
+    const std::int32_t *i = pairs.i.data() + first, *j = pairs.j.data() + first;
+    if (count < B) {
+      for (unsigned int k = 0; k < B; ++k) {
+        last_i[k] = i[std::min(k, count - 1)];
+        last_j[k] = j[std::min(k, count - 1)];
+      }
+      i = last_i;
+      j = last_j;
+    }
+    unsigned int n_ended = 0;
+    select(particles.position.data(), i, j, pairs.record.data() + first,
+           static_cast<std::int32_t>(first), count, period, range, active.data(), n_active,
+           ended.data(), n_ended);
+    for (unsigned int e = 0; e < n_ended; ++e) {
+      pairs.memory.release(pairs.record[ended[e]]);
+      pairs.record[ended[e]] = ContactMemory::none;
+    }
+    if (n_active >= B) {
+      run_block(particles, pairs, active.data(), B, dt);
+      n_active -= B;
+      std::copy_n(active.begin() + B, n_active, active.begin());
+    }
+  }
+  if (n_active > 0)
+    run_block(particles, pairs, active.data(), n_active, dt);
+}
+
+} // namespace eunoe

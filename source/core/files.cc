@@ -1,0 +1,156 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/problems.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace eunoe {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Gives a string of the first rank to all others.
+void broadcast(std::string &text, MPI_Comm comm)
+{
+  unsigned long long size = text.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, comm);
+  text.resize(size);
+  constexpr unsigned long long part = 1u << 30;
+  for (unsigned long long first = 0; first < size; first += part)
+    MPI_Bcast(&text[first], static_cast<int>(std::min(part, size - first)), MPI_CHAR, 0, comm);
+}
+
+bool is_first(MPI_Comm comm)
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  return rank == 0;
+}
+
+} // namespace
+
+std::string read_file(const std::string &path, MPI_Comm comm)
+{
+  std::string text, error;
+  if (is_first(comm)) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream all;
+    if (fs::is_directory(path))
+      error = "it is a folder";
+    else if (!stream)
+      error = std::strerror(errno);
+    else if (stream.peek() != std::ifstream::traits_type::eof()) {
+      all << stream.rdbuf();
+      text = all.str();
+      if (!stream)
+        error = "reading failed";
+    }
+  }
+  broadcast(error, comm);
+  if (!error.empty())
+    throw UserError(path + " cannot be read: " + error + ". Check the name and the permissions.");
+  broadcast(text, comm);
+  return text;
+}
+
+void write_file(const std::string &path, const std::string &text)
+{
+  const std::string beside = path + ".new";
+  std::ofstream stream(beside, std::ios::binary);
+  stream << text;
+  stream.close();
+  std::error_code failure;
+  if (stream)
+    fs::rename(beside, path, failure);
+  if (!stream || failure) {
+    const std::string reason = failure ? failure.message() : std::strerror(errno);
+    fs::remove(beside, failure);
+    throw UserError(path + " cannot be written: " + reason +
+                    ". Check the folder's permissions and the free space.");
+  }
+}
+
+void remove_file(const std::string &path)
+{
+  std::error_code failure;
+  fs::remove(path, failure);
+}
+
+void create_folder(const std::string &path, MPI_Comm comm)
+{
+  std::string error;
+  if (is_first(comm)) {
+    std::error_code failure;
+    fs::create_directories(path, failure);
+    const std::string probe = path + "/.eunoe-probe";
+    if (failure)
+      error = failure.message();
+    else if (!std::ofstream(probe))
+      error = std::strerror(errno);
+    fs::remove(probe, failure);
+  }
+  broadcast(error, comm);
+  if (!error.empty())
+    throw UserError("The folder " + path + " cannot be written to: " + error +
+                    ". Choose another 'output path' in 'simulation control', or mend the "
+                    "permissions.");
+}
+
+int Table::column(const std::string &name) const
+{
+  const auto it = std::find(columns.begin(), columns.end(), name);
+  return it == columns.end() ? -1 : static_cast<int>(it - columns.begin());
+}
+
+Table parse_table(const std::string &text, const std::string &file)
+{
+  Table table;
+  std::istringstream stream(text);
+  std::string line;
+  unsigned int number = 0;
+  char separator = ';';
+  while (std::getline(stream, line)) {
+    ++number;
+    boost::trim(line);
+    if (line.empty() || line[0] == '#')
+      continue;
+    if (table.columns.empty() && line.find(';') == std::string::npos)
+      separator = ',';
+    std::vector<std::string> cells;
+    boost::split(cells, line, [&](char c) { return c == separator; });
+    for (std::string &cell : cells)
+      boost::trim(cell);
+    if (cells.back().empty())
+      cells.pop_back();
+    if (table.columns.empty()) {
+      table.columns = cells;
+      continue;
+    }
+    const std::string where = file + ":" + std::to_string(number) + ": ";
+    if (cells.size() != table.columns.size())
+      throw UserError(where + "there are " + std::to_string(cells.size()) +
+                      " values under a header of " + std::to_string(table.columns.size()) +
+                      " columns. Give one value a column.");
+    std::vector<double> row;
+    for (const std::string &cell : cells) {
+      char *end;
+      row.push_back(std::strtod(cell.c_str(), &end));
+      if (cell.empty() || *end != '\0')
+        throw UserError(where + "'" + cell.substr(0, 40) + "' is not a number.");
+    }
+    table.rows.push_back(row);
+  }
+  if (table.columns.empty())
+    throw UserError(file + ": it has no header line. Name the columns in the first line.");
+  return table;
+}
+
+} // namespace eunoe

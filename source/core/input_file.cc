@@ -1,0 +1,202 @@
+#include <eunoe/core/input_file.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+#include <sstream>
+
+namespace eunoe {
+
+namespace {
+
+/// Number of single-letter changes between two words (Levenshtein).
+std::size_t distance(const std::string &a, const std::string &b)
+{
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0]++;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] != b[j - 1])});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::string trimmed_words(std::string text)
+{
+  std::replace(text.begin(), text.end(), '\t', ' ');
+  std::vector<std::string> words;
+  boost::split(words, boost::trim_copy(text), boost::is_space(), boost::token_compress_on);
+  return boost::join(words, " ");
+}
+
+/// Reads "name = value"; false if it is no such thing.
+bool parse_assignment(const std::string &text, InputEntry &entry)
+{
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos)
+    return false;
+  entry.name = trimmed_words(text.substr(0, equals));
+  entry.value = boost::trim_copy(text.substr(equals + 1));
+  return !entry.name.empty();
+}
+
+} // namespace
+
+std::string describe(const std::vector<std::string> &path, const std::string &entry)
+{
+  std::string text;
+  for (const std::string &name : path)
+    text += "subsection '" + name + "' / ";
+  return entry.empty() ? text.substr(0, text.size() - std::min<std::size_t>(3, text.size()))
+                       : text + "entry '" + entry + "'";
+}
+
+std::string nearest_name(const std::string &word, const std::vector<std::string> &candidates)
+{
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string &candidate : candidates) {
+    const std::size_t d = distance(word, candidate);
+    if (d < best_distance) {
+      best = candidate;
+      best_distance = d;
+    }
+  }
+  return best;
+}
+
+namespace {
+
+/// Reads one file and those that it includes.
+class InputParser
+{
+public:
+  InputParser(Problems &problems, const FileLoader &load) : problems(problems), load(load) {}
+
+  void parse(const std::string &text, const std::string &file)
+  {
+    const std::size_t depth_before = path.size();
+    std::istringstream stream(text);
+    std::string line;
+    unsigned int number = 0;
+    while (std::getline(stream, line)) {
+      ++number;
+      const std::string where = file + ":" + std::to_string(number);
+      std::string statement = strip(line);
+      while (!statement.empty() && statement.back() == '\\' && std::getline(stream, line)) {
+        ++number;
+        statement.pop_back();
+        statement += strip(line);
+      }
+      boost::trim(statement);
+      if (!statement.empty())
+        understand(statement, file, where);
+    }
+    if (path.size() > depth_before) {
+      problems.add(file + ":",
+                   "the " + describe(path, "") + " is still open at the end of the file.",
+                   "Add the missing 'end'.");
+      path.resize(depth_before);
+    }
+  }
+
+  std::vector<InputEntry> entries;
+
+private:
+  static std::string strip(const std::string &line)
+  {
+    return boost::trim_right_copy(line.substr(0, line.find('#')));
+  }
+
+  void understand(const std::string &statement, const std::string &file, const std::string &where)
+  {
+    const std::string word = statement.substr(0, statement.find_first_of(" \t"));
+    const std::string rest = trimmed_words(statement.substr(word.size()));
+    if (word == "subsection" && !rest.empty())
+      path.push_back(rest);
+    else if (word == "end" && rest.empty()) {
+      if (path.empty())
+        problems.add(where + ":", "there is an 'end' without a 'subsection' before it.",
+                     "Remove it.");
+      else
+        path.pop_back();
+    } else if (word == "include" && !rest.empty() && load)
+      include(rest, file, where);
+    else if (word == "set") {
+      InputEntry entry;
+      entry.path = path;
+      entry.where = where;
+      if (parse_assignment(statement.substr(word.size()), entry))
+        entries.push_back(entry);
+      else
+        problems.add(where + ":", "'" + statement + "' has no '='.", "Write 'set entry = value'.");
+    } else
+      problems.add(where + ":", "'" + statement.substr(0, 60) + "' is not understood.",
+                   "A line is 'set entry = value', 'subsection name', 'end', 'include file', or a "
+                   "comment after '#'.");
+  }
+
+  void include(const std::string &name, const std::string &file, const std::string &where)
+  {
+    constexpr unsigned int deepest = 10;
+    if (depth == deepest) {
+      problems.add(where + ":", "files include each other without end.",
+                   "Remove one of the includes.");
+      return;
+    }
+    const auto folder = std::filesystem::path(file).parent_path();
+    const std::string included = (folder / name).lexically_normal().string();
+    ++depth;
+    try {
+      parse(load(included), included);
+    } catch (const UserError &error) {
+      problems.add(where + ":", error.what(), "");
+    }
+    --depth;
+  }
+
+  Problems &problems;
+  const FileLoader &load;
+  std::vector<std::string> path;
+  unsigned int depth = 0;
+};
+
+} // namespace
+
+std::vector<InputEntry> parse_input(const std::string &text, const std::string &file,
+                                    Problems &problems, const FileLoader &load)
+{
+  InputParser parser(problems, load);
+  parser.parse(text, file);
+  return parser.entries;
+}
+
+InputEntry parse_override(const std::string &text, Problems &problems)
+{
+  InputEntry entry;
+  entry.where = "--set \"" + text + "\"";
+  const std::size_t equals = text.find('=');
+  if (!parse_assignment(text, entry)) {
+    problems.add(entry.where + ":", "it has no '='.", "Write --set \"subsection/entry = value\".");
+    return entry;
+  }
+  std::vector<std::string> names;
+  boost::split(names, text.substr(0, equals), boost::is_any_of("/"));
+  for (std::string &name : names) {
+    name = trimmed_words(name);
+    if (boost::starts_with(name, "subsection "))
+      name = name.substr(11);
+  }
+  entry.name = names.back();
+  names.pop_back();
+  entry.path = names;
+  return entry;
+}
+
+} // namespace eunoe

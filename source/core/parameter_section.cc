@@ -1,0 +1,58 @@
+#include <eunoe/core/parameter_section.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace eunoe {
+
+const InputEntry *ParameterCheck::find(const Path &path, const std::string &entry) const
+{
+  // A later line overrides an earlier one, hence from the back.
+  const auto it = std::find_if(entries.rbegin(), entries.rend(), [&](const InputEntry &e) {
+    return e.path == path && e.name == entry;
+  });
+  return it == entries.rend() ? nullptr : &*it;
+}
+
+bool ParameterCheck::is_set(const Path &path, const std::string &entry) const
+{
+  return find(path, entry) != nullptr;
+}
+
+bool ParameterCheck::has_entries(const std::string &subsection) const
+{
+  return std::any_of(entries.begin(), entries.end(), [&](const InputEntry &entry) {
+    return !entry.path.empty() && entry.path.front() == subsection;
+  });
+}
+
+std::string ParameterCheck::place(const Path &path, const std::string &entry) const
+{
+  const InputEntry *const set = find(path, entry);
+  const std::string name = describe(path, entry);
+  return (set ? set->where : file) + (name.empty() ? "" : ": " + name) +
+         (set || entry.empty() ? "" : " (left at its default)");
+}
+
+void ParameterCheck::require(const bool ok, const Path &path, const std::string &entry,
+                             const std::string &what, const std::string &mend) const
+{
+  if (!ok)
+    problems.add(place(path, entry), what, mend);
+}
+
+void ParameterCheck::advise(const bool ok, const Path &path, const std::string &entry,
+                            const std::string &what, const std::string &mend) const
+{
+  if (!ok)
+    problems.warn(place(path, entry), what, mend);
+}
+
+std::string format(const double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+} // namespace eunoe

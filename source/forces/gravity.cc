@@ -1,0 +1,40 @@
+#include <eunoe/forces/load.h>
+#include <eunoe/particles/physical_properties.h>
+
+namespace eunoe {
+
+LoadRegistry &loads()
+{
+  static LoadRegistry registry;
+  return registry;
+}
+
+namespace {
+
+/// The weight of the particles.
+class Gravity : public Load
+{
+public:
+  explicit Gravity(const Vec3 &g) : g(g) {}
+
+  void add(ParticleArrays &p, double) const override
+  {
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      const double mass = p.velocity[k].w;
+      p.force[k].x += mass * g.x;
+      p.force[k].y += mass * g.y;
+      p.force[k].z += mass * g.z;
+    }
+  }
+
+private:
+  const Vec3 g;
+};
+
+const LoadRegistry::Registration registration(
+    loads(), "gravity", [](const PhysicalProperties &physics) {
+      return norm(physics.gravity) > 0. ? std::make_unique<Gravity>(physics.gravity) : nullptr;
+    });
+
+} // namespace
+} // namespace eunoe

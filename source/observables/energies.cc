@@ -1,0 +1,58 @@
+#include <eunoe/core/csv_file.h>
+#include <eunoe/simulation/simulation.h>
+
+namespace eunoe {
+namespace {
+
+/// Momentum and energies of all particles, exact sums.
+class Energies : public Observable
+{
+public:
+  Energies(const ObservableParameters &parameters, Simulation &simulation)
+      : frequency(parameters.energies_frequency),
+        file(simulation.output_file(parameters.energies_file + ".csv"),
+             {"time", "particles", "kinetic", "rotational", "potential", "momentum_x", "momentum_y",
+              "momentum_z"},
+             simulation.communicator())
+  {
+  }
+
+  void step(Simulation &simulation) override
+  {
+    if (simulation.step_number() % frequency != 0)
+      return;
+    const ParticleArrays &p = simulation.complete_step();
+    const Vec3 g = simulation.get_parameters().physics.gravity;
+    ExactSum kinetic, rotational, potential;
+    std::array<ExactSum, 3> momentum;
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      const double mass = p.velocity[k].w;
+      const Vec3 v = p.velocity[k].vec();
+      kinetic += 0.5 * mass * norm_square(v);
+      rotational += 0.5 * p.spin[k].w * norm_square(p.spin[k].vec());
+      potential += -mass * dot(g, p.position[k].vec());
+      for (unsigned int d = 0; d < 3; ++d)
+        momentum[d] += mass * v[d];
+    }
+    std::vector<double> row = {simulation.time(),
+                               static_cast<double>(simulation.get_system().n_global())};
+    for (ExactSum *sum :
+         {&kinetic, &rotational, &potential, &momentum[0], &momentum[1], &momentum[2]}) {
+      sum->reduce(simulation.communicator());
+      row.push_back(sum->value());
+    }
+    file.write(row);
+  }
+
+private:
+  const unsigned long long frequency;
+  CsvFile file;
+};
+
+const ObservableRegistry::Registration registration(
+    observables(), "energies", [](const ObservableParameters &parameters, Simulation &simulation) {
+      return parameters.energies ? std::make_unique<Energies>(parameters, simulation) : nullptr;
+    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,58 @@
+#include <eunoe/core/csv_file.h>
+#include <eunoe/simulation/simulation.h>
+
+namespace eunoe {
+namespace {
+
+/// Force and torque of the particles on every solid that is drawn, row by row.
+class SolidForces : public Observable
+{
+public:
+  SolidForces(const ObservableParameters &parameters, Simulation &simulation)
+      : frequency(parameters.solid_forces_frequency)
+  {
+    const auto &solids = simulation.get_solids();
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+      if (!solids[s].output)
+        continue;
+      char number[8];
+      std::snprintf(number, sizeof number, "_%02zu", files.size());
+      numbers.push_back(s);
+      files.push_back(std::make_unique<CsvFile>(
+          simulation.output_file(parameters.solid_forces_file + number + ".csv"),
+          std::vector<std::string>{"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"},
+          simulation.communicator()));
+    }
+  }
+
+  bool wants_solid_loads(unsigned long long step) const override { return step % frequency == 0; }
+
+  void step(Simulation &simulation) override
+  {
+    if (!wants_solid_loads(simulation.step_number()))
+      return;
+    const std::vector<SolidLoad> loads = simulation.global_solid_loads();
+    for (std::size_t f = 0; f < files.size(); ++f) {
+      std::vector<double> row = {simulation.time()};
+      for (const auto *sums : {&loads[numbers[f]].force, &loads[numbers[f]].torque})
+        for (const ExactSum &sum : *sums)
+          row.push_back(sum.value());
+      files[f]->write(row);
+    }
+  }
+
+private:
+  const unsigned long long frequency;
+  std::vector<std::size_t> numbers;
+  std::vector<std::unique_ptr<CsvFile>> files;
+};
+
+const ObservableRegistry::Registration registration(
+    observables(), "solid forces",
+    [](const ObservableParameters &parameters, Simulation &simulation) {
+      return parameters.solid_forces ? std::make_unique<SolidForces>(parameters, simulation)
+                                     : nullptr;
+    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,136 @@
+#include <eunoe/particles/halo.h>
+
+#include <algorithm>
+#include <map>
+
+namespace eunoe {
+
+namespace {
+
+constexpr int tag_build = 311, tag_update = 312;
+/// Doubles a ghost when it is made (all that is constant, then the state) and at every step.
+constexpr std::size_t build_size = 14, update_size = 9;
+
+void append(std::vector<double> &values, const Quad &q, bool with_w)
+{
+  values.insert(values.end(), {q.x, q.y, q.z});
+  if (with_w)
+    values.push_back(q.w);
+}
+
+} // namespace
+
+void Halo::exchange(const int tag)
+{
+  std::vector<MPI_Request> requests(2 * neighbours.size());
+  for (std::size_t n = 0; n < neighbours.size(); ++n) {
+    Neighbour &neighbour = neighbours[n];
+    MPI_Irecv(neighbour.in.data(), static_cast<int>(neighbour.in.size()), MPI_DOUBLE,
+              neighbour.rank, tag, comm, &requests[2 * n]);
+    MPI_Isend(neighbour.out.data(), static_cast<int>(neighbour.out.size()), MPI_DOUBLE,
+              neighbour.rank, tag, comm, &requests[2 * n + 1]);
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid)
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  neighbours.clear();
+  if (n_ranks == 1)
+    return;
+
+  std::map<int, std::vector<std::int32_t>> rows;
+  for (std::size_t row = 0; row < particles.n_owned; ++row)
+    for (const int rank : store.ranks_near(row))
+      rows[rank].push_back(static_cast<std::int32_t>(row));
+  std::vector<int> n_sent(n_ranks, 0), n_received(n_ranks, 0);
+  for (const auto &[rank, list] : rows)
+    n_sent[rank] = static_cast<int>(list.size());
+  MPI_Alltoall(n_sent.data(), 1, MPI_INT, n_received.data(), 1, MPI_INT, comm);
+
+  std::size_t n_ghosts = 0;
+  for (int rank = 0; rank < n_ranks; ++rank) {
+    if (n_sent[rank] == 0 && n_received[rank] == 0)
+      continue;
+    Neighbour neighbour;
+    neighbour.rank = rank;
+    neighbour.sent = rows[rank];
+    neighbour.received.resize(n_received[rank]);
+    for (const std::int32_t row : neighbour.sent) {
+      append(neighbour.out, particles.position[row], true);
+      append(neighbour.out, particles.velocity[row], true);
+      append(neighbour.out, particles.spin[row], true);
+      neighbour.out.push_back(particles.id[row]);
+      neighbour.out.push_back(particles.type[row]);
+    }
+    neighbour.in.resize(build_size * n_received[rank]);
+    n_ghosts += n_received[rank];
+    neighbours.push_back(std::move(neighbour));
+  }
+  exchange(tag_build);
+
+  struct Ghost
+  {
+    std::uint64_t key;
+    ParticleId id;
+    const double *values;
+    std::int32_t *row;
+  };
+  std::vector<Ghost> ghosts;
+  ghosts.reserve(n_ghosts);
+  for (Neighbour &neighbour : neighbours)
+    for (std::size_t k = 0; k < neighbour.received.size(); ++k) {
+      const double *const v = &neighbour.in[build_size * k];
+      ghosts.push_back({grid.key({v[0], v[1], v[2]}), static_cast<ParticleId>(v[12]), v,
+                        &neighbour.received[k]});
+    }
+  std::sort(ghosts.begin(), ghosts.end(), [](const Ghost &a, const Ghost &b) {
+    return a.key != b.key ? a.key < b.key : a.id < b.id;
+  });
+  particles.resize(particles.n_owned, n_ghosts, static_cast<unsigned int>(particles.extra.size()));
+  for (std::size_t g = 0; g < n_ghosts; ++g) {
+    const std::size_t row = particles.n_owned + g;
+    const double *const v = ghosts[g].values;
+    particles.position[row] = {v[0], v[1], v[2], v[3]};
+    particles.velocity[row] = {v[4], v[5], v[6], v[7]};
+    particles.spin[row] = {v[8], v[9], v[10], v[11]};
+    particles.force[row] = particles.torque[row] = Quad();
+    particles.id[row] = ghosts[g].id;
+    particles.type[row] = static_cast<std::int32_t>(v[13]);
+    *ghosts[g].row = static_cast<std::int32_t>(row);
+  }
+  for (Neighbour &neighbour : neighbours) {
+    neighbour.out.resize(update_size * neighbour.sent.size());
+    neighbour.in.resize(update_size * neighbour.received.size());
+  }
+}
+
+void Halo::update(ParticleArrays &particles)
+{
+  if (neighbours.empty())
+    return;
+  for (Neighbour &neighbour : neighbours) {
+    double *out = neighbour.out.data();
+    for (const std::int32_t row : neighbour.sent)
+      for (const Quad *q :
+           {&particles.position[row], &particles.velocity[row], &particles.spin[row]}) {
+        *out++ = q->x;
+        *out++ = q->y;
+        *out++ = q->z;
+      }
+  }
+  exchange(tag_update);
+  for (const Neighbour &neighbour : neighbours) {
+    const double *in = neighbour.in.data();
+    for (const std::int32_t row : neighbour.received)
+      for (Quad *q : {&particles.position[row], &particles.velocity[row], &particles.spin[row]}) {
+        q->x = *in++;
+        q->y = *in++;
+        q->z = *in++;
+      }
+  }
+}
+
+} // namespace eunoe

@@ -1,0 +1,59 @@
+#include <eunoe/core/random.h>
+#include <eunoe/particles/insertion.h>
+
+namespace eunoe {
+namespace {
+
+/// Particles written into the input one by one, all of type 0, in a single event.
+class List : public Insertion
+{
+public:
+  List(const InsertionParameters &parameters, const PhysicalProperties &physics)
+      : p(parameters), type(physics.types[0]), sizes(type.sizes.make())
+  {
+  }
+
+  bool finished() const override { return done; }
+
+  std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) override
+  {
+    const auto value = [](const std::vector<double> &list, std::size_t k) {
+      return list.empty() ? 0. : list[k];
+    };
+    const auto [begin, end] = share_of(p.list_x.size(), comm);
+    std::vector<NewParticle> particles;
+    for (std::size_t k = begin; k < end; ++k) {
+      NewParticle particle;
+      particle.id = next_id + static_cast<ParticleId>(k);
+      const double diameter =
+          p.list_diameters.empty() || p.list_diameters[k] <= 0.
+              ? sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id))
+              : p.list_diameters[k];
+      particle.radius = 0.5 * diameter;
+      particle.mass = sphere_mass(particle.radius, type.density);
+      particle.position = {p.list_x[k], p.list_y[k], p.list_z[k]};
+      particle.velocity = {value(p.list_vx, k), value(p.list_vy, k), value(p.list_vz, k)};
+      particle.spin = {value(p.list_wx, k), value(p.list_wy, k), value(p.list_wz, k)};
+      particles.push_back(particle);
+    }
+    next_id += static_cast<ParticleId>(p.list_x.size());
+    done = true;
+    return particles;
+  }
+
+private:
+  const InsertionParameters p;
+  const ParticleType type;
+  const std::unique_ptr<SizeDistribution> sizes;
+  bool done = false;
+};
+
+const InsertionRegistry::Registration registration(insertion_methods(), "list",
+                                                   [](const InsertionParameters &parameters,
+                                                      const PhysicalProperties &physics) {
+                                                     return std::make_unique<List>(parameters,
+                                                                                   physics);
+                                                   });
+
+} // namespace
+} // namespace eunoe

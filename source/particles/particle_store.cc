@@ -1,0 +1,299 @@
+#include <eunoe/contact/model_parameters.h>
+#include <eunoe/core/compat.h>
+#include <eunoe/particles/particle_store.h>
+
+#include <deal.II/grid/filtered_iterator.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/particles/particle_handler.h>
+
+#include "../simulation/mesh.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+namespace eunoe {
+
+namespace {
+
+/// Places of a particle's data among its properties in the handler.
+namespace property {
+constexpr unsigned int velocity = 0, spin = 3, force = 6, torque = 9, radius = 12, mass = 13,
+                       type = 14, origin = 15, extra = 16;
+} // namespace property
+
+void store(const Vec3 &v, double *values)
+{
+  values[0] = v.x;
+  values[1] = v.y;
+  values[2] = v.z;
+}
+
+Quad load(const double *values, const double w)
+{
+  return {values[0], values[1], values[2], w};
+}
+
+/// A place in memory as one double, exact below 2^53.
+double encode(const Origin &origin)
+{
+  return origin.rank < 0 ? -1. : origin.rank * 0x1p32 + origin.row;
+}
+
+Origin decode(const double code)
+{
+  if (code < 0.)
+    return {};
+  const double rank = std::floor(code / 0x1p32);
+  return {static_cast<std::int32_t>(rank), static_cast<std::int32_t>(code - rank * 0x1p32)};
+}
+
+} // namespace
+
+struct ParticleStore::Implementation
+{
+  using Handler = dealii::Particles::ParticleHandler<3>;
+
+  Implementation(Domain &domain, unsigned int n_extra)
+      : domain(domain), triangulation(domain.mesh().triangulation), n_extra(n_extra),
+        handler(triangulation, *domain.mesh().mapping, property::extra + n_extra)
+  {
+    MPI_Comm_rank(domain.communicator(), &rank);
+    find_ranks_near_cells();
+  }
+
+  void find_ranks_near_cells();
+
+  Domain &domain;
+  dealii::parallel::distributed::Triangulation<3> &triangulation;
+  const unsigned int n_extra;
+  Handler handler;
+  int rank;
+
+  /// Ranks that own a neighbour of a cell, by active cell index.
+  std::vector<std::vector<int>> ranks_near_cell;
+  /// The particles of the last read and their cells, in the order of the arrays.
+  std::vector<Handler::particle_iterator> particles;
+  std::vector<unsigned int> cells;
+};
+
+void ParticleStore::Implementation::find_ranks_near_cells()
+{
+  // Vertices that coincide, also across periodic faces, count as one.
+  std::map<unsigned int, std::vector<unsigned int>> groups;
+  std::map<unsigned int, unsigned int> group_of;
+  dealii::GridTools::collect_coinciding_vertices(triangulation, groups, group_of);
+  const auto representative = [&](unsigned int v) {
+    const auto it = group_of.find(v);
+    return it == group_of.end() ? v : groups.at(it->second).front();
+  };
+  std::vector<std::set<int>> ranks_at(triangulation.n_vertices());
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_ghost())
+      for (const unsigned int v : cell->vertex_indices())
+        ranks_at[representative(cell->vertex_index(v))].insert(
+            static_cast<int>(cell->subdomain_id()));
+  ranks_near_cell.assign(triangulation.n_active_cells(), {});
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_locally_owned()) {
+      std::set<int> ranks;
+      for (const unsigned int v : cell->vertex_indices()) {
+        const auto &at = ranks_at[representative(cell->vertex_index(v))];
+        ranks.insert(at.begin(), at.end());
+      }
+      ranks_near_cell[cell->active_cell_index()].assign(ranks.begin(), ranks.end());
+    }
+}
+
+ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra)
+    : implementation(std::make_unique<Implementation>(domain, n_extra))
+{
+}
+
+ParticleStore::~ParticleStore() = default;
+
+std::uint64_t ParticleStore::n_global() const
+{
+  return implementation->handler.n_global_particles();
+}
+
+void ParticleStore::insert(const std::vector<NewParticle> &particles,
+                           const std::vector<double> &extra, const std::vector<Origin> &origins)
+{
+  Implementation &impl = *implementation;
+  MPI_Comm comm = impl.domain.communicator();
+  std::vector<dealii::Point<3>> positions;
+  std::vector<std::vector<double>> properties;
+  std::vector<dealii::types::particle_index> ids;
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const NewParticle &p = particles[k];
+    positions.push_back(to_point(impl.domain.periods().wrap(p.position)));
+    std::vector<double> values(property::extra, 0.);
+    store(p.velocity, &values[property::velocity]);
+    store(p.spin, &values[property::spin]);
+    values[property::radius] = p.radius;
+    values[property::mass] = p.mass;
+    values[property::type] = p.type;
+    values[property::origin] = encode(origins.empty() ? Origin() : origins[k]);
+    values.insert(values.end(), extra.begin(), extra.end());
+    properties.push_back(values);
+    ids.push_back(p.id);
+  }
+
+  // Refused here, as the search for the cells of such points does not come back.
+  const std::uint64_t outside = dealii::Utilities::MPI::sum(
+      static_cast<std::uint64_t>(
+          std::count_if(particles.begin(), particles.end(),
+                        [&](const NewParticle &p) { return !impl.domain.contains(p.position); })),
+      comm);
+  if (outside > 0)
+    throw UserError("Of the particles to insert, " + std::to_string(outside) +
+                    " lie outside the mesh. Enlarge the mesh or move the place of insertion.");
+
+  const auto owned = dealii::IteratorFilters::LocallyOwnedCell();
+  const std::vector<dealii::BoundingBox<3>> boxes =
+      dealii::GridTools::compute_mesh_predicate_bounding_box(
+          impl.triangulation,
+          std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned));
+  const std::uint64_t before = n_global();
+  impl.handler.insert_global_particles(positions, dealii::Utilities::MPI::all_gather(comm, boxes),
+                                       properties, ids);
+  const std::uint64_t expected =
+      before + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
+  if (n_global() != expected)
+    throw std::logic_error("the mesh did not take over all inserted particles");
+}
+
+void ParticleStore::write(const ParticleArrays &particles)
+{
+  Implementation &impl = *implementation;
+  const PeriodicBox &box = impl.domain.periods();
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    auto &particle = *impl.particles[row];
+    particle.set_location(to_point(box.wrap(particles.position[row].vec())));
+    const auto values = particle.get_properties();
+    store(particles.velocity[row].vec(), &values[property::velocity]);
+    store(particles.spin[row].vec(), &values[property::spin]);
+    store(particles.force[row].vec(), &values[property::force]);
+    store(particles.torque[row].vec(), &values[property::torque]);
+    values[property::origin] = encode({impl.rank, static_cast<std::int32_t>(row)});
+    for (unsigned int e = 0; e < impl.n_extra; ++e)
+      values[property::extra + e] = particles.extra[e][row];
+  }
+}
+
+void ParticleStore::remove(const std::vector<std::size_t> &rows)
+{
+  Implementation &impl = *implementation;
+  std::vector<Implementation::Handler::particle_iterator> leaving;
+  for (const std::size_t row : rows)
+    leaving.push_back(impl.particles[row]);
+  impl.handler.remove_particles(leaving);
+  impl.particles.clear();
+}
+
+void ParticleStore::migrate()
+{
+  Implementation &impl = *implementation;
+  const std::uint64_t before = n_global();
+  std::string lost;
+  const auto connection =
+      impl.handler.signals.particle_lost.connect([&](const auto &particle, const auto &) {
+        if (lost.empty()) {
+          std::ostringstream text;
+          text << "particle " << particle->get_id() << " at (" << particle->get_location() << ")";
+          lost = text.str();
+        }
+      });
+  impl.handler.sort_particles_into_subdomains_and_cells();
+  connection.disconnect();
+  impl.particles.clear();
+  if (n_global() == before)
+    return;
+  const std::vector<std::string> all =
+      dealii::Utilities::MPI::all_gather(impl.domain.communicator(), lost);
+  const auto first = std::find_if(all.begin(), all.end(), [](const auto &s) { return !s.empty(); });
+  throw UserError(std::to_string(before - n_global()) + " particle(s) left the mesh" +
+                  (first == all.end() ? std::string() : ", " + *first + " m among them") +
+                  ". Check the time step and the solids, or make the boundary an outlet.");
+}
+
+void ParticleStore::repartition(const LoadBalancingParameters &parameters)
+{
+  Implementation &impl = *implementation;
+  const auto connection = compat::connect_weight(impl.triangulation, [&](const auto &cell) {
+    return parameters.cell_weight +
+           parameters.particle_weight * impl.handler.n_particles_in_cell(cell);
+  });
+  impl.handler.prepare_for_coarsening_and_refinement();
+  impl.triangulation.repartition();
+  impl.handler.unpack_after_coarsening_and_refinement();
+  connection.disconnect();
+  impl.find_ranks_near_cells();
+  impl.particles.clear();
+}
+
+double ParticleStore::imbalance(const LoadBalancingParameters &parameters) const
+{
+  const Implementation &impl = *implementation;
+  const double load =
+      static_cast<double>(parameters.cell_weight) *
+          impl.triangulation.n_locally_owned_active_cells() +
+      static_cast<double>(parameters.particle_weight) * impl.handler.n_locally_owned_particles();
+  const auto loads = dealii::Utilities::MPI::min_max_avg(load, impl.domain.communicator());
+  return (loads.max - loads.min) / loads.avg;
+}
+
+void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
+                         std::vector<Origin> &origins)
+{
+  Implementation &impl = *implementation;
+  struct Entry
+  {
+    std::uint64_t key;
+    ParticleId id;
+    unsigned int cell;
+    Implementation::Handler::particle_iterator particle;
+  };
+  std::vector<Entry> entries;
+  const std::size_t n = impl.handler.n_locally_owned_particles();
+  entries.reserve(n);
+  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
+    entries.push_back({grid.key(to_vec3(particle->get_location())),
+                       static_cast<ParticleId>(particle->get_id()),
+                       particle->get_surrounding_cell()->active_cell_index(), particle});
+  std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
+    return a.key != b.key ? a.key < b.key : a.id < b.id;
+  });
+
+  arrays.resize(n, 0, impl.n_extra);
+  origins.resize(n);
+  impl.particles.resize(n);
+  impl.cells.resize(n);
+  for (std::size_t row = 0; row < n; ++row) {
+    const Entry &entry = entries[row];
+    impl.particles[row] = entry.particle;
+    impl.cells[row] = entry.cell;
+    const auto values = entry.particle->get_properties();
+    const Vec3 x = to_vec3(entry.particle->get_location());
+    const double radius = values[property::radius], mass = values[property::mass];
+    arrays.position[row] = {x.x, x.y, x.z, radius};
+    arrays.velocity[row] = load(&values[property::velocity], mass);
+    arrays.spin[row] = load(&values[property::spin], 0.4 * mass * radius * radius);
+    arrays.force[row] = load(&values[property::force], 0.);
+    arrays.torque[row] = load(&values[property::torque], 0.);
+    arrays.id[row] = entry.id;
+    arrays.type[row] = static_cast<std::int32_t>(values[property::type]);
+    arrays.reference[row] = x;
+    origins[row] = decode(values[property::origin]);
+    for (unsigned int e = 0; e < impl.n_extra; ++e)
+      arrays.extra[e][row] = values[property::extra + e];
+  }
+}
+
+const std::vector<int> &ParticleStore::ranks_near(const std::size_t row) const
+{
+  return implementation->ranks_near_cell[implementation->cells[row]];
+}
+
+} // namespace eunoe

@@ -1,0 +1,81 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/particles/size_distribution.h>
+
+#include <numeric>
+
+namespace eunoe {
+
+SizeDistributionRegistry &size_distributions()
+{
+  static SizeDistributionRegistry registry;
+  return registry;
+}
+
+std::unique_ptr<SizeDistribution> SizeDistributionParameters::make() const
+{
+  return size_distributions().make(type, *this);
+}
+
+void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
+{
+  declare::choice(prm, "size distribution type", type, size_distributions().names(),
+                  "Distribution of the diameters: 'uniform' (all alike), 'normal', 'lognormal', or "
+                  "'custom' (listed classes).");
+  declare::positive(prm, "average diameter", average_diameter,
+                    "Diameter of a uniform distribution, mean of a normal or lognormal one (m).");
+  prm.declare_alias("average diameter", "diameter");
+  declare::positive(prm, "standard deviation", standard_deviation,
+                    "Standard deviation of the diameter itself, normal and lognormal (m).");
+  prm.add_parameter("minimum diameter cutoff", smallest,
+                    "Smallest diameter drawn from a normal or lognormal distribution (m); -1: 2.5 "
+                    "standard deviations below the mean (of the logarithm for lognormal).");
+  prm.add_parameter("maximum diameter cutoff", largest, "Largest diameter drawn, likewise (m).");
+  prm.add_parameter("custom distribution diameters values", diameters,
+                    "Diameters of the classes of a custom distribution (m).",
+                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
+  prm.declare_alias("custom distribution diameters values", "custom diameters");
+  prm.add_parameter("custom distribution diameters probabilities", fractions,
+                    "Share of each class of a custom distribution; they sum to 1.",
+                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
+  declare::choice(prm, "distribution weighting basis", basis, "number|volume",
+                  "Whether the distribution counts particles or volume.");
+  prm.add_parameter("distribution prn seed", seed, "Seed of the random draws of the diameters.");
+}
+
+void SizeDistributionParameters::check(const ParameterCheck &check,
+                                       const ParameterCheck::Path &path) const
+{
+  const std::string d = "custom distribution diameters values";
+  const std::string p = "custom distribution diameters probabilities";
+  if (type == "custom") {
+    check.require(diameters.size() == fractions.size(), path, p,
+                  "has " + std::to_string(fractions.size()) + " values for " +
+                      std::to_string(diameters.size()) + " diameters.",
+                  "Give one share for each of '" + d + "'.");
+    for (const double diameter : diameters)
+      check.require(diameter > 0., path, d, "contains a diameter of " + format(diameter) + " m.",
+                    "Give positive diameters.");
+    const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.);
+    check.require(std::abs(sum - 1.) <= 1e-5, path, p, "sums to " + format(sum) + ", not to 1.",
+                  "Divide each share by their sum, or correct the one that is wrong.");
+  } else {
+    check.require(average_diameter > 0., path, "average diameter",
+                  "is " + format(average_diameter) + " m.", "Give a positive diameter.");
+    if (type == "normal" || type == "lognormal") {
+      check.require(standard_deviation > 0., path, "standard deviation",
+                    "is " + format(standard_deviation) + " m.",
+                    "Give a positive deviation, or use the uniform distribution.");
+      check.require(
+          smallest < 0. || largest < 0. || smallest < largest, path, "minimum diameter cutoff",
+          "is " + format(smallest) + " m, not below the maximum of " + format(largest) + " m.",
+          "Exchange or correct the two cut-offs.");
+      check.require(type != "normal" || smallest > 0. ||
+                        average_diameter > 2.5 * standard_deviation,
+                    path, "standard deviation",
+                    "is so large that 2.5 deviations below the mean no diameter is left.",
+                    "Give a positive 'minimum diameter cutoff' or a smaller deviation.");
+    }
+  }
+}
+
+} // namespace eunoe

@@ -1,0 +1,114 @@
+#include <eunoe/processes/powder_spreading/apparatus.h>
+#include <eunoe/solids/shapes.h>
+
+#include <algorithm>
+
+namespace eunoe::spreading {
+
+namespace {
+
+/// Distance of the spreader's front from the platform when a pass starts (m).
+constexpr double run_up = 0.2e-3;
+/// A typical slope of a heap of metal powder, for sizes that only need to be large enough.
+const double slope = std::tan(35. * M_PI / 180.);
+
+/// A surface along z through the points of a profile in the x-y plane.
+TriangleMesh extrude(const std::vector<Vec3> &profile, double z, double length)
+{
+  TriangleMesh mesh;
+  const Vec3 along = {0., 0., length};
+  for (std::size_t k = 0; k + 1 < profile.size(); ++k) {
+    const Vec3 a = profile[k] + Vec3{0., 0., z}, b = profile[k + 1] + Vec3{0., 0., z};
+    mesh.add_quad(a, b, b + along, a + along);
+  }
+  return mesh;
+}
+
+} // namespace
+
+Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter)
+    : p(p), margin(2. * largest_diameter)
+{
+  depth = p.depth;
+  x_transfer = p.length_factor * p.w1;
+  x_gap = x_transfer + p.length_factor * p.w2;
+  x_plate = x_gap + p.gap;
+  x_plate_end = x_plate + p.length_factor * p.w3;
+  x_exit = x_plate_end + p.gap;
+  x_end = x_exit + p.length_factor * p.w4;
+
+  const bool round = p.spreader == "half round";
+  front = round ? p.spreader_radius : 0.;
+  rear = round ? p.spreader_radius : p.spreader_thickness;
+  x_start = -run_up - front;
+
+  const double strokes =
+      p.feedstock == "full" ? p.first_stroke + (p.n_layers - 1) * p.stroke : p.first_stroke;
+  bed_depth = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
+  first_bed_depth = std::max(bed_depth, strokes + p.bed_margin);
+
+  const double pile_height =
+      std::sqrt(2. * std::max(p.first_stroke, p.stroke) * x_transfer * slope);
+  spreader_height = p.spreader_height > 0.
+                        ? p.spreader_height
+                        : std::max(1.2 * front, std::max(p.first_stroke, p.stroke) + pile_height);
+  y_bottom =
+      -std::max(first_bed_depth, p.n_layers * p.layer_thickness + p.lip) - 4. * largest_diameter;
+  // Loose particles for the bed need five times its height.
+  y_top = std::max(p.clearance + spreader_height, 4.2 * bed_depth) + 2. * largest_diameter;
+
+  platform = std::make_shared<StrokeMotion>(Vec3{0., -bed_depth, 0.});
+  plate = std::make_shared<StrokeMotion>(Vec3());
+  for (auto &spreader : spreaders)
+    spreader = std::make_shared<PassMotion>(Vec3{x_start, p.clearance, 0.},
+                                            Vec3{p.velocity, 0., 0.}, path() / p.velocity);
+}
+
+double Apparatus::pile_length() const
+{
+  return std::sqrt(2. * p.stroke * x_transfer / slope);
+}
+
+std::vector<Solid> Apparatus::make_solids(const int material) const
+{
+  const double z = -margin, length = depth + 2. * margin;
+  std::vector<Solid> solids;
+  const auto add = [&](const std::string &name, const TriangleMesh &mesh,
+                       std::shared_ptr<const Motion> motion) {
+    Solid solid;
+    solid.name = name;
+    solid.shape = std::make_shared<TriangulatedSurface>(mesh);
+    solid.motion = std::move(motion);
+    solid.material = material;
+    solids.push_back(solid);
+  };
+  const TriangleMesh spreader =
+      p.spreader == "half round"
+          ? shapes::half_round_bar({0., 0., z}, length, p.spreader_radius, spreader_height,
+                                   p.spreader_facets)
+          : shapes::flat_blade({0., 0., z}, length, p.spreader_thickness, spreader_height);
+  for (unsigned int k = 0; k < n_spreaders; ++k)
+    add("spreader " + std::to_string(k), spreader, spreaders[k]);
+  add("feedstock platform", extrude({{-margin, 0., 0.}, {x_transfer, 0., 0.}}, z, length),
+      platform);
+  add("transfer plate",
+      extrude({{x_transfer, y_bottom - margin, 0.},
+               {x_transfer, 0., 0.},
+               {x_gap, 0., 0.},
+               {x_gap, -p.lip, 0.}},
+              z, length),
+      std::make_shared<AtRest>());
+  add("measuring plate",
+      extrude({{x_plate, -p.lip, 0.},
+               {x_plate, 0., 0.},
+               {x_plate_end, 0., 0.},
+               {x_plate_end, -p.lip, 0.}},
+              z, length),
+      plate);
+  add("exit plate",
+      extrude({{x_exit, -p.lip, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
+      std::make_shared<AtRest>());
+  return solids;
+}
+
+} // namespace eunoe::spreading

@@ -1,0 +1,138 @@
+#include <eunoe/core/random.h>
+#include <eunoe/processes/powder_spreading/feed_bed.h>
+
+#include <algorithm>
+
+namespace eunoe::spreading {
+
+namespace {
+
+/// Ids of all ranks, ascending; collective.
+std::vector<ParticleId> gather_sorted(const std::vector<ParticleId> &mine, MPI_Comm comm)
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  const int n = static_cast<int>(mine.size());
+  std::vector<int> counts(n_ranks), starts(n_ranks, 0);
+  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  for (int r = 1; r < n_ranks; ++r)
+    starts[r] = starts[r - 1] + counts[r - 1];
+  std::vector<ParticleId> all(starts.back() + counts.back());
+  MPI_Allgatherv(mine.data(), n, MPI_UINT32_T, all.data(), counts.data(), starts.data(),
+                 MPI_UINT32_T, comm);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+} // namespace
+
+std::vector<std::size_t> above_level(const ParticleArrays &p, const Apparatus &apparatus)
+{
+  std::vector<std::size_t> found;
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (apparatus.is_in_reservoir(p.position[row].vec()) &&
+        p.position[row].y + p.position[row].w > 0.)
+      found.push_back(row);
+  return found;
+}
+
+std::vector<std::size_t> in_reservoir(const ParticleArrays &p, const Apparatus &apparatus)
+{
+  std::vector<std::size_t> found;
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (apparatus.is_in_reservoir(p.position[row].vec()))
+      found.push_back(row);
+  return found;
+}
+
+void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const double platform_height)
+{
+  const ParticleArrays &p = simulation.complete_step();
+  const ContactRows all_rows = simulation.get_system().contact_rows();
+  const std::vector<std::size_t> found = in_reservoir(p, apparatus);
+  std::vector<ParticleId> ids;
+  for (const std::size_t row : found)
+    ids.push_back(p.id[row]);
+  const std::vector<ParticleId> bed = gather_sorted(ids, simulation.communicator());
+  const auto place = [&](ParticleId id) {
+    const auto it = std::lower_bound(bed.begin(), bed.end(), id);
+    return it != bed.end() && *it == id ? it - bed.begin() : -1;
+  };
+
+  n_global = bed.size();
+  depth = -platform_height;
+  particles.clear();
+  rows = ContactRows(simulation.contact_model().history_size());
+  for (const std::size_t row : found) {
+    NewParticle particle;
+    particle.id = static_cast<ParticleId>(place(p.id[row]));
+    particle.type = p.type[row];
+    particle.radius = p.position[row].w;
+    particle.mass = p.velocity[row].w;
+    particle.position = p.position[row].vec() - Vec3{0., platform_height, 0.};
+    particle.velocity = p.velocity[row].vec();
+    particle.spin = p.spin[row].vec();
+    particles.push_back(particle);
+    rows.start_row();
+    for (ContactRows::Record record : all_rows.records(row)) {
+      if (!record.with_solid) {
+        const auto partner = place(record.partner);
+        if (partner < 0)
+          continue;
+        record.partner = static_cast<std::uint32_t>(partner);
+      }
+      rows.add(record);
+    }
+  }
+}
+
+Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
+                        const double platform_height, const unsigned int seed,
+                        const unsigned int event) const
+{
+  const ContactModel &model = simulation.contact_model();
+  const unsigned int n_history = model.history_size();
+  Delivery delivery;
+  delivery.rows = ContactRows(n_history);
+  delivery.has_rows = true;
+  std::vector<double> history(n_history);
+
+  const auto n_copies = static_cast<unsigned int>(std::ceil(-platform_height / depth - 1e-9));
+  for (unsigned int copy = 0; copy < n_copies; ++copy) {
+    const std::uint64_t draw = (static_cast<std::uint64_t>(event) << 32) + copy;
+    const double shift = apparatus.depth * uniform(seed, Draw::feed_copy, draw, 0);
+    const bool mirrored = uniform(seed, Draw::feed_copy, draw, 1) < 0.5;
+    const ParticleId first = simulation.next_id;
+    simulation.next_id += static_cast<ParticleId>(n_global);
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      NewParticle particle = particles[k];
+      particle.position.y += platform_height + copy * depth;
+      if (particle.position.y + particle.radius > 0.)
+        continue;
+      particle.id += first;
+      if (mirrored) {
+        particle.position.z = -particle.position.z;
+        particle.velocity.z = -particle.velocity.z;
+        particle.spin.x = -particle.spin.x;
+        particle.spin.y = -particle.spin.y;
+      }
+      particle.position.z += shift;
+      delivery.particles.push_back(particle);
+      delivery.rows.start_row();
+      for (ContactRows::Record record : rows.records(k)) {
+        if (!record.with_solid)
+          record.partner += first;
+        std::copy_n(record.history, n_history, history.begin());
+        if (mirrored) {
+          model.mirror(history.data(), 2);
+          record.normal.z = -record.normal.z;
+        }
+        record.history = history.data();
+        delivery.rows.add(record);
+      }
+    }
+  }
+  return delivery;
+}
+
+} // namespace eunoe::spreading

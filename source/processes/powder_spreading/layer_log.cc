@@ -1,0 +1,139 @@
+#include <eunoe/processes/powder_spreading/layer_log.h>
+
+#include <limits>
+
+namespace eunoe::spreading {
+
+namespace {
+
+/// Places of the extra doubles of a particle.
+enum Extra : unsigned int
+{
+  layer_tag = 0,
+  tracked = 1,      ///< 1 if the particle was on the plate at this weighing and the last
+  displacement = 2, ///< between these two, against the plate
+  on_plate = 5,     ///< 1 if the particle was on the plate at the last weighing
+  last_position = 6
+};
+
+constexpr unsigned int outlet_right = 1, outlet_bottom = 2;
+
+} // namespace
+
+std::vector<Process::Field> LayerLog::fields()
+{
+  return {{"layer", 1, -1.},
+          {"tracked", 1, 0.},
+          {"displacement", 3, 0.},
+          {"on_plate", 1, 0.},
+          {"last_position", 3, 0.}};
+}
+
+LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
+                   const Apparatus &apparatus)
+    : apparatus(apparatus), full_layer_mass(simulation.get_parameters().physics.types[0].density *
+                                            apparatus.plate_area() * parameters.layer_thickness),
+      file(simulation.output_file("layers.csv"),
+           {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
+            "mass_to_collector", "spreader_force_mean", "spreader_force_max", "wall_seconds"},
+           simulation.communicator()),
+      pictures(simulation.get_parameters().control.output_path,
+               simulation.get_parameters().control.output_name + "_layers",
+               simulation.communicator()),
+      solid_pictures(simulation.get_parameters().control.output_path,
+                     simulation.get_parameters().control.output_name + "_layers_solids",
+                     simulation.communicator()),
+      draws(parameters.layer_pictures), last_wall_time(MPI_Wtime())
+{
+}
+
+LayerLog::OutletTotals LayerLog::outlet_totals(const Simulation &simulation) const
+{
+  OutletTotals totals;
+  const auto &outlets = simulation.get_domain().outlets();
+  for (std::size_t o = 0; o < outlets.size(); ++o) {
+    ExactSum mass = simulation.get_ledger().through_outlet[o].mass;
+    mass.reduce(simulation.communicator());
+    if (outlets[o].boundary_id == outlet_bottom)
+      totals.gap += mass;
+    else if (outlets[o].boundary_id == outlet_right)
+      totals.collector += mass;
+  }
+  return totals;
+}
+
+void LayerLog::sample_force(const Simulation &simulation, const std::string &spreader)
+{
+  const SolidLoad load = simulation.global_solid_loads()[simulation.find_solid(spreader)];
+  const double force =
+      norm(Vec3{load.force[0].value(), load.force[1].value(), load.force[2].value()});
+  force_sum += force;
+  force_max = std::max(force_max, force);
+  ++n_forces;
+}
+
+void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const double plate_height)
+{
+  ParticleArrays &p = simulation.changeable_particles();
+  const PeriodicBox &box = simulation.get_domain().periods();
+  const Vec3 plate_moved = {0., plate_height - last_plate_height, 0.};
+  Tally present, kept;
+  for (std::size_t row = 0; row < p.n_owned; ++row) {
+    const Vec3 x = p.position[row].vec();
+    const double mass = p.velocity[row].w;
+    const bool is_on = apparatus.is_over_plate(x, plate_height);
+    const bool was_on = p.extra[on_plate][row] != 0.;
+    double &tag = p.extra[layer_tag][row];
+    if (is_on)
+      present.count(mass);
+    if (is_on && was_on)
+      kept.count(mass);
+    if (is_on && tag < 0.)
+      tag = layer;
+    Vec3 moved;
+    if (is_on && was_on)
+      moved = box.shortest(x -
+                           Vec3{p.extra[last_position][row], p.extra[last_position + 1][row],
+                                p.extra[last_position + 2][row]} -
+                           plate_moved);
+    p.extra[tracked][row] = is_on && was_on ? 1. : 0.;
+    p.extra[on_plate][row] = is_on ? 1. : 0.;
+    for (unsigned int d = 0; d < 3; ++d) {
+      p.extra[displacement + d][row] = moved[d];
+      p.extra[last_position + d][row] = x[d];
+    }
+  }
+  present = present.global(simulation.communicator());
+  kept = kept.global(simulation.communicator());
+  // Some of what was there has left the domain, so it is not counted but inferred.
+  ExactSum removed = last_present;
+  removed -= kept.mass;
+
+  const double nothing = std::numeric_limits<double>::quiet_NaN();
+  const double mass = present.mass.value();
+  if (layer == 1)
+    first_mass = mass;
+  const OutletTotals out = outlet_totals(simulation);
+  ExactSum to_gap = out.gap, to_collector = out.collector;
+  to_gap -= last_out.gap;
+  to_collector -= last_out.collector;
+  const double now = MPI_Wtime();
+  file.write({static_cast<double>(layer), simulation.time(), mass,
+              static_cast<double>(present.number),
+              layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing,
+              layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing,
+              removed.value(), to_gap.value(), to_collector.value(),
+              n_forces > 0 ? force_sum / n_forces : 0., force_max, now - last_wall_time});
+  last_present = present.mass;
+  last_plate_height = plate_height;
+  last_out = out;
+  last_wall_time = now;
+  force_sum = force_max = 0.;
+  n_forces = 0;
+  if (draws) {
+    simulation.write_pictures(pictures);
+    solid_pictures.write(simulation.time(), simulation.get_solids());
+  }
+}
+
+} // namespace eunoe::spreading

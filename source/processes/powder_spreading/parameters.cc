@@ -1,0 +1,122 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/processes/powder_spreading/parameters.h>
+
+namespace eunoe::spreading {
+
+namespace {
+const std::string section = "powder spreading";
+} // namespace
+
+void SpreadingParameters::declare(dealii::ParameterHandler &prm)
+{
+  using declare::positive;
+  using declare::Patterns::Integer;
+  prm.enter_subsection(section);
+
+  positive(prm, "feedstock platform length W1", w1, "Length of the rising platform in x (m).");
+  positive(prm, "transfer plate length W2", w2,
+           "Length of the plate between platform and gap (m).");
+  positive(prm, "measuring plate length W3", w3, "Length of the falling plate (m).");
+  positive(prm, "exit plate length W4", w4,
+           "Length of the plate between the measuring plate's gap and the collector (m).");
+  positive(prm, "length factor", length_factor,
+           "Factor on the four lengths: n/7 for the paper's L_n; the gap and the spreader keep "
+           "their sizes.");
+  positive(prm, "depth", depth, "Depth of the simulated slice in z, which is periodic (m).");
+  positive(prm, "gap", gap, "Width of the gap on both sides of the measuring plate (m).");
+  positive(prm, "lip height", lip,
+           "Height of the edges of the plates at the gap, below which powder falls freely (m).");
+
+  declare::choice(prm, "spreader", spreader, "half round|flat blade", "Shape of the spreader.");
+  positive(prm, "spreader radius R_s", spreader_radius, "half round: radius (m).");
+  positive(prm, "spreader thickness", spreader_thickness, "flat blade: thickness in x (m).");
+  positive(prm, "spreader height", spreader_height,
+           "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
+           "can pile up.");
+  prm.add_parameter("spreader facets", spreader_facets,
+                    "half round: number of facets of the half circle.", Integer(4, 1000));
+  prm.add_parameter("spreader clearance delta_s", clearance,
+                    "Height of the spreader's lowest line over the transfer plate (m).");
+
+  prm.add_parameter("number of layers", n_layers,
+                    "Number of passes; the layers are numbered from 0.", Integer(0, 10000));
+  positive(prm, "layer thickness delta_l", layer_thickness,
+           "Stroke of the measuring plate after every pass (m).");
+  positive(prm, "spreading velocity v_s", velocity, "Velocity of the spreader (m/s).");
+  positive(prm, "feedstock stroke delta_f", stroke,
+           "Stroke of the feedstock platform before every pass (m).");
+  positive(prm, "first feedstock stroke", first_stroke,
+           "Stroke of the feedstock platform before the first pass (m).");
+  positive(prm, "measuring plate velocity", plate_velocity,
+           "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
+  positive(prm, "feedstock platform velocity", platform_velocity,
+           "Mean velocity of the feedstock platform's strokes (m/s).");
+  prm.add_parameter("pass overlap", overlap,
+                    "Share of a pass after which the next may start, as far as the plates' strokes "
+                    "allow it; 1: one after the other.",
+                    declare::Patterns::Double(0.05, 1.));
+  positive(prm, "rest before weighing", rest_before_weighing,
+           "Time between the passing of the spreader's rear over the end of the measuring plate "
+           "and the weighing (s).");
+
+  declare::choice(prm, "feedstock", feedstock, "replenished|full",
+                  "replenished: a shallow bed is settled once and copied back before every pass, "
+                  "shifted and mirrored in z at random, after what was left has been taken out. "
+                  "full: one deep reservoir for all passes.");
+  positive(prm, "feedstock bed depth", bed_depth,
+           "Depth of the bed that is settled (m); 0: the stroke and the margin.");
+  positive(prm, "feedstock margin", bed_margin,
+           "Powder left below the level of the transfer plate after the stroke (m).");
+  positive(prm, "feedstock insertion speed", insertion_speed,
+           "Downward velocity of the particles inserted for the bed (m/s).");
+  positive(
+      prm, "settled speed", settled_speed,
+      "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
+  positive(prm, "settling time", settling_time,
+           "Longest time that the bed is given to come to rest (s).");
+  prm.add_parameter("seed", seed, "Seed of the random positions, shifts and mirrorings.");
+
+  prm.add_parameter("layer pictures", layer_pictures,
+                    "Whether the particles are written at every weighing (<name>_layers.pvd).");
+  prm.add_parameter("spreader force sampling", force_sampling,
+                    "Steps between two readings of the force on the spreader.", Integer(1));
+  prm.leave_subsection();
+}
+
+void SpreadingParameters::check(const ParameterCheck &check) const
+{
+  const auto positive = [&](double value, const std::string &entry) {
+    check.require(value > 0., {section}, entry, "is " + format(value) + ".",
+                  "Give a positive value.");
+  };
+  positive(w1, "feedstock platform length W1");
+  positive(w2, "transfer plate length W2");
+  positive(w3, "measuring plate length W3");
+  positive(w4, "exit plate length W4");
+  positive(length_factor, "length factor");
+  positive(depth, "depth");
+  positive(gap, "gap");
+  positive(layer_thickness, "layer thickness delta_l");
+  positive(velocity, "spreading velocity v_s");
+  positive(stroke, "feedstock stroke delta_f");
+  positive(first_stroke, "first feedstock stroke");
+  positive(plate_velocity, "measuring plate velocity");
+  positive(platform_velocity, "feedstock platform velocity");
+  positive(settled_speed, "settled speed");
+  positive(settling_time, "settling time");
+  positive(spreader == "half round" ? spreader_radius : spreader_thickness,
+           spreader == "half round" ? "spreader radius R_s" : "spreader thickness");
+  check.require(n_layers > 0, {section}, "number of layers", "is 0.",
+                "Give at least 1 layer, 21 for the paper's case.");
+  check.require(clearance > 0., {section}, "spreader clearance delta_s",
+                "is " + format(clearance) +
+                    " m: the spreader would stand inside the transfer "
+                    "plate.",
+                "Give a positive clearance, 100e-6 in the paper.");
+  check.require(
+      spreader_height == 0. || spreader != "half round" || spreader_height >= spreader_radius,
+      {section}, "spreader height", "is " + format(spreader_height) + " m, less than the radius.",
+      "Give at least the radius, or 0 for a height made to measure.");
+}
+
+} // namespace eunoe::spreading

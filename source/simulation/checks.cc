@@ -1,0 +1,56 @@
+#include <eunoe/simulation/simulation.h>
+
+#include <algorithm>
+
+namespace eunoe {
+
+double largest_diameter(const Parameters &parameters)
+{
+  double largest = 0.;
+  for (const ParticleType &type : parameters.physics.types)
+    largest = std::max(largest, type.sizes.make()->largest());
+  if (parameters.process_name == "none" && parameters.insertion.method == "list")
+    for (const double diameter : parameters.insertion.list_diameters)
+      largest = std::max(largest, diameter);
+  return largest;
+}
+
+void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
+                  Problems &problems)
+{
+  const std::string cells = "subsection 'mesh':";
+  if (domain.smallest_cell_width() < reach)
+    problems.add(
+        cells,
+        "the cells are " + format(domain.smallest_cell_width()) + " m wide, less than the " +
+            format(reach) +
+            " m that particles can reach (largest diameter, skin and range of cohesion), so "
+            "more than one layer of ghost cells would be needed.",
+        "Use fewer or larger cells (8 to 10 particles a cell are best), or lower the "
+        "'neighborhood threshold'.");
+  for (unsigned int d = 0; d < 3; ++d)
+    if (domain.periods().is_periodic(d) && domain.periods().length[d] < 2. * reach)
+      problems.add("subsection 'DEM boundary conditions':",
+                   "the period of " + format(domain.periods().length[d]) + " m in direction " +
+                       std::to_string(d) + " is less than twice the " + format(reach) +
+                       " m that particles can reach, so that two particles could touch on both "
+                       "sides.",
+                   "Make the domain longer in that direction.");
+  const InsertionParameters &insertion = parameters.insertion;
+  const bool inserts = std::any_of(parameters.physics.types.begin(), parameters.physics.types.end(),
+                                   [](const ParticleType &type) { return type.number > 0; });
+  if (parameters.process_name == "none" && insertion.method == "volume" && inserts)
+    for (unsigned int d = 0; d < 3; ++d)
+      if (insertion.box_lower[d] < domain.lower()[d] - 1e-12 ||
+          insertion.box_upper[d] > domain.upper()[d] + 1e-12)
+      {
+        problems.add("subsection 'insertion info' / entry 'insertion box points coordinates':",
+                     "the box reaches out of the mesh in direction " + std::to_string(d) +
+                         ", which spans " + format(domain.lower()[d]) + " to " +
+                         format(domain.upper()[d]) + " m.",
+                     "Move the box inside, or enlarge the mesh.");
+        break;
+      }
+}
+
+} // namespace eunoe

@@ -1,0 +1,55 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/control_parameters.h>
+
+#include <cmath>
+
+namespace eunoe {
+
+namespace {
+const std::string section = "simulation control";
+} // namespace
+
+void ControlParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section);
+  declare::positive(prm, "time step", time_step, "Time step (s).");
+  declare::choice(prm, "end control", end_control, "time|iteration",
+                  "Whether 'time end' or 'iteration end' ends the run. A process may end it "
+                  "earlier, when all its work is done.");
+  declare::positive(prm, "time end", time_end, "Simulated time at which the run ends (s).");
+  prm.add_parameter("iteration end", iteration_end, "Number of steps of the run.");
+  prm.add_parameter("output path", output_path, "Folder of all results; created if missing.");
+  prm.add_parameter("output name", output_name,
+                    "Beginning of the names of the .pvd and .vtu files.");
+  declare::choice(prm, "output control", output_control, "iteration|time",
+                  "Whether 'output frequency' or 'output time' rules the files for pictures.");
+  prm.add_parameter("output frequency", output_frequency,
+                    "Steps between files for pictures; 0: none.");
+  declare::positive(prm, "output time", output_time,
+                    "Simulated time between files for pictures (s).");
+  prm.add_parameter("log frequency", log_frequency,
+                    "Steps between lines of a log that is no terminal; 0: none.");
+  prm.leave_subsection();
+}
+
+void ControlParameters::check(const ParameterCheck &check) const
+{
+  check.require(time_step > 0., {section}, "time step", "is " + format(time_step) + " s.",
+                "Give a positive time step, about 15 % of the Rayleigh time.");
+  check.require(output_control != "time" || output_time > 0., {section}, "output time",
+                "is " + format(output_time) + " s.", "Give a positive interval.");
+  check.require(end_control != "iteration" || iteration_end > 0, {section}, "iteration end",
+                "is 0 while 'end control' is 'iteration'.", "Give the number of steps.");
+  check.require(output_name.find('/') == std::string::npos && !output_name.empty(), {section},
+                "output name", "is '" + output_name + "'.",
+                "Give a name without '/'; the folder belongs into 'output path'.");
+}
+
+unsigned long long ControlParameters::n_steps() const
+{
+  return end_control == "iteration"
+             ? iteration_end
+             : static_cast<unsigned long long>(std::ceil(time_end / time_step - 1e-9));
+}
+
+} // namespace eunoe

@@ -1,0 +1,99 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/domain.h>
+
+#include <set>
+
+namespace eunoe {
+
+namespace {
+
+const std::string mesh_section = "mesh";
+const std::string boundary_section = "DEM boundary conditions";
+
+std::string condition_section(std::size_t k)
+{
+  return "boundary condition " + std::to_string(k);
+}
+
+} // namespace
+
+void MeshParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(mesh_section);
+  declare::choice(prm, "type", type, "dealii|gmsh",
+                  "Origin of the background mesh: a generator of deal.II, or a Gmsh file of "
+                  "hexahedra.");
+  prm.add_parameter("file name", file, "gmsh: the file.");
+  prm.add_parameter("grid type", grid_type,
+                    "dealii: name of the generator, for example subdivided_hyper_rectangle.");
+  prm.add_parameter("grid arguments", grid_arguments,
+                    "dealii: arguments of the generator, separated by ':'.");
+  prm.add_parameter("initial refinement", refinement,
+                    "Number of times that every cell is cut into eight.",
+                    declare::Patterns::Integer(0, 12));
+  prm.add_parameter("scale", scale, "Factor on all coordinates.", declare::Patterns::Double(0.));
+  prm.leave_subsection();
+}
+
+void MeshParameters::check(const ParameterCheck &check) const
+{
+  check.require(type != "gmsh" || file != "none", {mesh_section}, "file name",
+                "is missing while the type is 'gmsh'.", "Name the mesh file.");
+  check.require(scale > 0., {mesh_section}, "scale", "is " + format(scale) + ".",
+                "Give a positive factor.");
+}
+
+void BoundaryParameters::declare(dealii::ParameterHandler &prm)
+{
+  using declare::Patterns::Integer;
+  prm.enter_subsection(boundary_section);
+  prm.declare_entry("number of boundary conditions", std::to_string(conditions.size()),
+                    Integer(0, 10),
+                    "Number of the subsections 'boundary condition 0', ... Boundaries without one "
+                    "are fixed walls.");
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    BoundaryCondition &c = conditions[k];
+    prm.enter_subsection(condition_section(k));
+    prm.add_parameter("boundary id", c.id, "The boundary (not for periodic ones).");
+    declare::choice(prm, "type", c.type, "fixed_wall|outlet|translational|rotational|periodic",
+                    "outlet: particles leave and are counted; translational and rotational: a wall "
+                    "whose surface moves in place.");
+    prm.add_parameter("speed x", c.speed.x, "translational: velocity of the surface (m/s).");
+    prm.add_parameter("speed y", c.speed.y, "translational: velocity of the surface (m/s).");
+    prm.add_parameter("speed z", c.speed.z, "translational: velocity of the surface (m/s).");
+    prm.add_parameter("rotational speed", c.rotational_speed, "rotational: speed (rad/s).");
+    declare::vector(prm, "rotational vector", c.rotation_axis,
+                    "rotational: direction of the axis.");
+    declare::vector(prm, "point on rotational vector", c.rotation_point,
+                    "rotational: a point of the axis (m).");
+    prm.add_parameter("periodic id 0", c.periodic_ids[0], "periodic: one boundary ...");
+    prm.add_parameter("periodic id 1", c.periodic_ids[1], "periodic: ... and its partner.");
+    prm.add_parameter("periodic direction", c.periodic_direction,
+                      "periodic: axis from one to the other, 0, 1 or 2.", Integer(0, 2));
+    prm.leave_subsection();
+  }
+  prm.leave_subsection();
+}
+
+void BoundaryParameters::check(const ParameterCheck &check) const
+{
+  std::set<unsigned int> used;
+  for (std::size_t k = 0; k < conditions.size(); ++k) {
+    const BoundaryCondition &c = conditions[k];
+    const ParameterCheck::Path path = {boundary_section, condition_section(k)};
+    const auto use = [&](unsigned int id, const char *entry) {
+      check.require(used.insert(id).second, path, entry,
+                    "names boundary " + std::to_string(id) + ", which has a condition already.",
+                    "Give each boundary one condition.");
+    };
+    if (c.type == "periodic") {
+      use(c.periodic_ids[0], "periodic id 0");
+      use(c.periodic_ids[1], "periodic id 1");
+    } else
+      use(c.id, "boundary id");
+    check.require(c.type != "rotational" || norm(c.rotation_axis) > 0., path, "rotational vector",
+                  "is zero.", "Give the direction of the axis.");
+  }
+}
+
+} // namespace eunoe

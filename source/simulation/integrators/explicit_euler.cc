@@ -1,0 +1,31 @@
+#include <eunoe/simulation/integrator.h>
+
+namespace eunoe {
+namespace {
+
+/// x += v dt with the old velocity, then v += a dt with the old acceleration; first order.
+class ExplicitEuler : public Integrator
+{
+public:
+  double begin_step(ParticleArrays &p, double dt) override
+  {
+    double largest = 0.;
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      p.position[k].add(dt * p.velocity[k].vec());
+      p.velocity[k].add(dt / p.velocity[k].w * p.force[k].vec());
+      p.spin[k].add(dt / p.spin[k].w * p.torque[k].vec());
+      largest = std::max(largest, norm_square(p.position[k].vec() - p.reference[k]));
+      p.force[k] = p.torque[k] = Quad();
+    }
+    return largest;
+  }
+
+  void complete(ParticleArrays &, double) override {}
+};
+
+const IntegratorRegistry::Registration registration(integrators(), "explicit_euler", [] {
+  return std::make_unique<ExplicitEuler>();
+});
+
+} // namespace
+} // namespace eunoe

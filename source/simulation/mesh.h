@@ -1,0 +1,37 @@
+#ifndef eunoe_source_simulation_mesh_h
+#define eunoe_source_simulation_mesh_h
+
+// The deal.II side of Domain, for source files only.
+
+#include <eunoe/simulation/domain.h>
+
+#include <deal.II/base/point.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/fe/mapping.h>
+
+#include <memory>
+
+namespace eunoe {
+
+struct Domain::Mesh
+{
+  explicit Mesh(MPI_Comm comm) : triangulation(comm) {}
+
+  dealii::parallel::distributed::Triangulation<3> triangulation;
+  /// Cartesian where all cells are boxes: it finds the cell of a particle that lies exactly on a
+  /// face, and does so twice as fast.
+  std::unique_ptr<dealii::Mapping<3>> mapping;
+};
+
+inline dealii::Point<3> to_point(const Vec3 &v)
+{
+  return {v.x, v.y, v.z};
+}
+inline Vec3 to_vec3(const dealii::Tensor<1, 3> &p)
+{
+  return {p[0], p[1], p[2]};
+}
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,183 @@
+#include <eunoe/core/compat.h>
+#include <eunoe/core/files.h>
+#include <eunoe/core/problems.h>
+#include <eunoe/simulation/output.h>
+
+#include <deal.II/base/data_out_base.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <tuple>
+
+namespace eunoe {
+
+namespace {
+
+using dealii::DataComponentInterpretation::DataComponentInterpretation;
+using dealii::DataOutBase::Patch;
+using Ranges =
+    std::vector<std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation>>;
+
+/// Particles as points with data, in the form in which deal.II writes them.
+class ParticlePatches : public dealii::DataOutInterface<0, 3>
+{
+public:
+  ParticlePatches(const ParticleArrays &p, const std::vector<Process::Field> &fields)
+  {
+    const auto add = [this](const std::string &name, unsigned int n) {
+      const auto first = static_cast<unsigned int>(names.size());
+      names.insert(names.end(), n, name);
+      if (n == 3)
+        ranges.emplace_back(first, first + 2, name,
+                            dealii::DataComponentInterpretation::component_is_part_of_vector);
+    };
+    for (const char *const name : {"ID", "type", "diameter", "mass"})
+      add(name, 1);
+    add("velocity", 3);
+    add("omega", 3);
+    unsigned int n_extra = 0;
+    for (const Process::Field &field : fields) {
+      add(field.name, field.n_components);
+      n_extra += field.n_components;
+    }
+
+    patches.resize(p.n_owned);
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      Patch<0, 3> &patch = patches[k];
+      const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
+      patch.vertices[0] = dealii::Point<3>(x.x, x.y, x.z);
+      patch.patch_index = static_cast<unsigned int>(k);
+      patch.data.reinit(static_cast<unsigned int>(names.size()), 1);
+      const double values[] = {static_cast<double>(p.id[k]),
+                               static_cast<double>(p.type[k]),
+                               2. * x.w,
+                               v.w,
+                               v.x,
+                               v.y,
+                               v.z,
+                               w.x,
+                               w.y,
+                               w.z};
+      unsigned int c = 0;
+      for (const double value : values)
+        patch.data(c++, 0) = static_cast<float>(value);
+      for (unsigned int e = 0; e < n_extra; ++e)
+        patch.data(c++, 0) = static_cast<float>(p.extra[e][k]);
+    }
+  }
+
+private:
+  const std::vector<Patch<0, 3>> &get_patches() const override { return patches; }
+  std::vector<std::string> get_dataset_names() const override { return names; }
+  Ranges get_nonscalar_data_ranges() const override { return ranges; }
+
+  std::vector<Patch<0, 3>> patches;
+  std::vector<std::string> names;
+  Ranges ranges;
+};
+
+/// The triangles of solids with the number of the solid as data.
+std::vector<Patch<2, 3>> solid_patches(const std::vector<Solid> &solids)
+{
+  std::vector<Patch<2, 3>> patches;
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    if (!solids[s].output)
+      continue;
+    const RigidState &state = solids[s].state;
+    const std::vector<Vec3> corners = solids[s].shape->triangles();
+    for (std::size_t c = 0; c < corners.size(); c += 3) {
+      Patch<2, 3> patch;
+      patch.reference_cell = dealii::ReferenceCells::Triangle;
+      patch.n_subdivisions = 1;
+      patch.patch_index = static_cast<unsigned int>(patches.size());
+      patch.data.reinit(1, 3);
+      for (unsigned int v = 0; v < 3; ++v) {
+        const Vec3 x = state.centre + state.rotation.apply(corners[c + v]);
+        patch.vertices[v] = dealii::Point<3>(x.x, x.y, x.z);
+        patch.data(0, v) = static_cast<float>(s);
+      }
+      patches.push_back(patch);
+    }
+  }
+  return patches;
+}
+
+bool is_first(MPI_Comm comm)
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  return rank == 0;
+}
+
+/// Tells all ranks whether the first one managed to write; throws on all of them if not.
+void agree_on_success(bool written, const std::string &path, MPI_Comm comm)
+{
+  int ok = written ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, comm);
+  if (ok == 0)
+    throw UserError(path + " cannot be written. Check the folder's permissions and the free "
+                           "space.");
+}
+
+} // namespace
+
+std::string PictureSeries::next_file(const double time)
+{
+  char number[16];
+  std::snprintf(number, sizeof number, "_%05zu.vtu", files.size());
+  files.emplace_back(time, name + number);
+  return files.back().second;
+}
+
+void PictureSeries::write_index() const
+{
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
+                     "byte_order=\"LittleEndian\">\n  <Collection>\n";
+  for (const auto &[time, file] : files) {
+    char line[64];
+    std::snprintf(line, sizeof line, "    <DataSet timestep=\"%.17g\" ", time);
+    text += line + ("part=\"0\" file=\"" + file + "\"/>\n");
+  }
+  text += "  </Collection>\n</VTKFile>\n";
+  write_file(folder + "/" + name + ".pvd", text);
+}
+
+void PictureSeries::write(const double time, const ParticleArrays &particles,
+                          const std::vector<Process::Field> &fields)
+{
+  const std::string path = folder + "/" + next_file(time);
+  ParticlePatches patches(particles, fields);
+  patches.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
+  bool written = true;
+  try {
+    patches.write_vtu_in_parallel(path, comm);
+    if (is_first(comm))
+      write_index();
+  } catch (const std::exception &) {
+    written = false;
+  }
+  agree_on_success(written, path, comm);
+}
+
+void PictureSeries::write(const double time, const std::vector<Solid> &solids)
+{
+  const std::string path = folder + "/" + next_file(time);
+  bool written = true;
+  if (is_first(comm))
+    try {
+      std::ofstream stream(path, std::ios::binary);
+      dealii::DataOutBase::write_vtu(
+          solid_patches(solids), {"solid"}, {},
+          compat::vtu_flags(time, static_cast<unsigned int>(files.size())), stream);
+      stream.close();
+      written = static_cast<bool>(stream);
+      write_index();
+    } catch (const std::exception &) {
+      written = false;
+    }
+  agree_on_success(written, path, comm);
+}
+
+} // namespace eunoe

@@ -1,0 +1,220 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/parameters.h>
+
+#include <boost/property_tree/json_parser.hpp>
+
+#include <set>
+#include <sstream>
+
+namespace eunoe {
+
+ProcessRegistry &process_kinds()
+{
+  static ProcessRegistry registry;
+  return registry;
+}
+
+namespace {
+
+using Path = std::vector<std::string>;
+
+/// The subsections that are numbered, and the entry that says how many there are.
+struct Repeated
+{
+  Path path;
+  std::string entry, prefix;
+  unsigned int largest;
+  unsigned int SectionCounts::*count;
+};
+
+const std::vector<Repeated> &repeated_sections()
+{
+  static const std::vector<Repeated> list = {
+      {{"lagrangian physical properties"},
+       "number of particle types",
+       "particle type",
+       5,
+       &SectionCounts::particle_types},
+      {{"DEM boundary conditions"},
+       "number of boundary conditions",
+       "boundary condition",
+       10,
+       &SectionCounts::boundary_conditions},
+      {{"floating walls"}, "number of floating walls", "wall", 50, &SectionCounts::floating_walls},
+      {{"solid objects", "solid surfaces"},
+       "number of solids",
+       "solid object",
+       50,
+       &SectionCounts::solids}};
+  return list;
+}
+
+SectionCounts count(const std::vector<InputEntry> &entries)
+{
+  SectionCounts counts;
+  for (const InputEntry &entry : entries)
+    for (const Repeated &r : repeated_sections())
+      if (entry.path == r.path && entry.name == r.entry) {
+        char *end;
+        const long n = std::strtol(entry.value.c_str(), &end, 10);
+        // What is no number is reported when it is set.
+        if (*end == '\0' && n >= 0 && n <= static_cast<long>(r.largest))
+          counts.*r.count = static_cast<unsigned int>(n);
+      }
+  counts.particle_types = std::max(1u, counts.particle_types);
+  return counts;
+}
+
+/// Names of the entries and subsections of one level, for suggestions.
+struct Level
+{
+  std::vector<std::string> entries, subsections;
+};
+
+Level look_at(dealii::ParameterHandler &prm, const Path &path)
+{
+  std::ostringstream json;
+  prm.print_parameters(json, dealii::ParameterHandler::JSON);
+  std::istringstream stream(json.str());
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_json(stream, tree);
+  const boost::property_tree::ptree *node = &tree;
+  for (const std::string &name : path)
+    for (const auto &child : *node)
+      if (child.first == name) {
+        node = &child.second;
+        break;
+      }
+  Level level;
+  for (const auto &[name, child] : *node)
+    (child.count("value") + child.count("alias") > 0 ? level.entries : level.subsections)
+        .push_back(name);
+  return level;
+}
+
+std::string suggestion(const std::string &word, const std::vector<std::string> &candidates)
+{
+  const std::string near = nearest_name(word, candidates);
+  return near.empty() ? "" : "Did you mean '" + near + "'?";
+}
+
+} // namespace
+
+Parameters::Parameters(const SectionCounts &counts)
+    : boundaries(counts.boundary_conditions), physics(counts.particle_types),
+      floating_walls(counts.floating_walls), solids(counts.solids)
+{
+  for (const std::string &name : process_kinds().list())
+    processes[name] = process_kinds().make(name);
+}
+
+std::vector<ParameterSection *> Parameters::sections()
+{
+  std::vector<ParameterSection *> all = {&control,        &mesh,      &boundaries,
+                                         &physics,        &insertion, &model,
+                                         &floating_walls, &solids,    &observables};
+  for (auto &[name, process] : processes)
+    all.push_back(process.get());
+  return all;
+}
+
+void Parameters::declare(dealii::ParameterHandler &prm)
+{
+  declare::choice(prm, "process", process_name, "none|" + process_kinds().names(),
+                  "Experiment to run: 'none' for a general case, or a process that makes its own "
+                  "mesh, solids and schedule from the section of the same name.");
+  for (ParameterSection *section : sections())
+    section->declare(prm);
+}
+
+std::string Parameters::as_input_file()
+{
+  dealii::ParameterHandler prm;
+  declare(prm);
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::Text);
+  return text.str();
+}
+
+void Parameters::set(const std::vector<InputEntry> &entries, Problems &problems)
+{
+  dealii::ParameterHandler prm;
+  declare(prm);
+  std::set<Path> reported;
+  for (const InputEntry &entry : entries) {
+    Path known;
+    bool exists = true;
+    for (const std::string &name : entry.path) {
+      Path next = known;
+      next.push_back(name);
+      if (!prm.subsection_path_exists(next)) {
+        exists = false;
+        if (!reported.insert(next).second)
+          break;
+        std::string mend = suggestion(name, look_at(prm, known).subsections);
+        for (const Repeated &r : repeated_sections())
+          if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
+            mend = "Raise '" + r.entry + "', or remove the subsection.";
+        problems.add(entry.where + ": " + describe(next, ""), "is unknown.", mend);
+        break;
+      }
+      known = next;
+    }
+    if (!exists)
+      continue;
+    for (const std::string &name : entry.path)
+      prm.enter_subsection(name);
+    const std::string place = entry.where + ": " + describe(entry.path, entry.name);
+    bool declared = true;
+    try {
+      prm.set(entry.name, entry.value);
+    } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
+      declared = false;
+    } catch (const std::exception &error) {
+      std::string pattern = error.what();
+      const std::string before = "does not match the given pattern:";
+      const std::size_t at = pattern.find(before);
+      pattern = at == std::string::npos ? "" : pattern.substr(at + before.size());
+      const std::size_t begin = pattern.find('<'), end = pattern.find('>');
+      pattern = begin == std::string::npos || end == std::string::npos
+                    ? ""
+                    : pattern.substr(begin + 1, end - begin - 1);
+      problems.add(place, "is '" + entry.value + "', which does not fit.",
+                   pattern.empty() ? "" : "Give " + pattern + ".");
+    }
+    for (std::size_t k = 0; k < entry.path.size(); ++k)
+      prm.leave_subsection();
+    if (!declared)
+      problems.add(place, "is unknown.", suggestion(entry.name, look_at(prm, entry.path).entries));
+  }
+}
+
+Parameters Parameters::read(const std::string &text, const std::string &file,
+                            const std::vector<std::string> &overrides, Problems &problems,
+                            const FileLoader &load)
+{
+  std::vector<InputEntry> entries = parse_input(text, file, problems, load);
+  for (const std::string &override_text : overrides) {
+    const InputEntry entry = parse_override(override_text, problems);
+    if (!entry.name.empty())
+      entries.push_back(entry);
+  }
+  Parameters parameters(count(entries));
+  parameters.set(entries, problems);
+
+  const ParameterCheck check(entries, file, problems);
+  Process *const process = parameters.process();
+  for (ParameterSection *section : parameters.sections()) {
+    // A process makes its own insertion; of the processes only the chosen one counts.
+    const bool unused = dynamic_cast<Process *>(section) != nullptr
+                            ? section != process
+                            : process != nullptr && section == &parameters.insertion;
+    if (!unused)
+      section->check(check);
+  }
+  if (process != nullptr)
+    process->check_with(parameters, check);
+  return parameters;
+}
+
+} // namespace eunoe

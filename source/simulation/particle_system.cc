@@ -1,0 +1,145 @@
+#include <eunoe/contact/model_parameters.h>
+#include <eunoe/core/problems.h>
+#include <eunoe/simulation/particle_system.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace eunoe {
+
+ParticleSystem::ParticleSystem(Domain &domain, const ContactModel &model,
+                               const unsigned int n_extra, const double skin,
+                               const double largest_diameter, Ledger &ledger, Timers &timers)
+    : domain(domain), model(model), skin(skin), ledger(ledger), timers(timers),
+      store(domain, n_extra), halo(domain.communicator()),
+      grid(domain.lower(), domain.upper(), domain.periods(),
+           largest_diameter + skin + model.range()),
+      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
+      extra_defaults(n_extra, 0.)
+{
+  pairs.clear(model.history_size());
+}
+
+void ParticleSystem::add_contact_forces(const std::vector<Solid> &solids, const double time,
+                                        const double dt, std::vector<SolidLoad> *loads)
+{
+  {
+    const Timers::Scope scope(timers, Section::pairs);
+    pair_forces.add(particles, pairs, dt);
+  }
+  const Timers::Scope scope(timers, Section::solids);
+  solid_contacts.add_forces(particles, solids, time, dt, loads);
+}
+
+ContactRows ParticleSystem::contact_rows() const
+{
+  ContactRows collected(model.history_size());
+  collected.collect(particles, pairs, solid_contacts);
+  return collected;
+}
+
+std::vector<std::size_t> ParticleSystem::find_leaving()
+{
+  std::vector<std::size_t> leaving;
+  const auto &outlets = domain.outlets();
+  for (std::size_t row = 0; row < particles.n_owned; ++row)
+    for (std::size_t o = 0; o < outlets.size(); ++o)
+      if (outlets[o].has_passed(particles.position[row].vec())) {
+        ledger.through_outlet[o].count(particles.velocity[row].w);
+        leaving.push_back(row);
+        break;
+      }
+  return leaving;
+}
+
+void ParticleSystem::search(const std::vector<Solid> &solids,
+                            const LoadBalancingParameters *balance)
+{
+  rows.collect(particles, pairs, solid_contacts);
+  store.write(particles);
+  store.remove(find_leaving());
+  rebuild(solids, balance);
+}
+
+ParticleId ParticleSystem::exchange(const Delivery &delivery,
+                                    const std::vector<std::size_t> &removed,
+                                    const std::vector<Solid> &solids)
+{
+  rows.collect(particles, pairs, solid_contacts);
+  store.write(particles);
+  std::vector<std::size_t> leaving = find_leaving();
+  std::vector<bool> has_left(particles.n_owned, false);
+  for (const std::size_t row : leaving)
+    has_left[row] = true;
+  for (const std::size_t row : removed)
+    if (!has_left[row]) {
+      ledger.taken_out.count(particles.velocity[row].w);
+      leaving.push_back(row);
+    }
+  store.remove(leaving);
+
+  int rank;
+  MPI_Comm_rank(domain.communicator(), &rank);
+  std::vector<Origin> origins(delivery.particles.size());
+  for (std::size_t k = 0; k < delivery.particles.size(); ++k) {
+    ledger.inserted.count(delivery.particles[k].mass);
+    if (!delivery.has_rows)
+      continue;
+    origins[k] = {rank, static_cast<std::int32_t>(rows.size())};
+    rows.start_row();
+    for (const ContactRows::Record &record : delivery.rows.records(k))
+      rows.add(record);
+  }
+  store.insert(delivery.particles, extra_defaults, origins);
+  rebuild(solids, nullptr);
+
+  ParticleId first_new = std::numeric_limits<ParticleId>::max();
+  for (const NewParticle &particle : delivery.particles)
+    first_new = std::min(first_new, particle.id);
+  MPI_Allreduce(MPI_IN_PLACE, &first_new, 1, MPI_UINT32_T, MPI_MIN, domain.communicator());
+  return first_new;
+}
+
+void ParticleSystem::add_forces_on_new(const ParticleId first_new,
+                                       const std::vector<std::unique_ptr<Load>> &loads,
+                                       const std::vector<Solid> &solids, const double time)
+{
+  ParticleArrays &p = particles;
+  const auto forces = p.force, torques = p.torque;
+  const PairList pairs_before = pairs;
+  const SolidContacts::Memory solids_before = solid_contacts.save();
+  std::fill(p.force.begin(), p.force.end(), Quad());
+  std::fill(p.torque.begin(), p.torque.end(), Quad());
+  for (const auto &load : loads)
+    load->add(p, time);
+  add_contact_forces(solids, time, 0., nullptr);
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (p.id[row] < first_new) {
+      p.force[row] = forces[row];
+      p.torque[row] = torques[row];
+    }
+  pairs = pairs_before;
+  solid_contacts.reset(solids_before);
+}
+
+void ParticleSystem::rebuild(const std::vector<Solid> &solids,
+                             const LoadBalancingParameters *balance)
+{
+  store.migrate();
+  if (balance != nullptr) {
+    store.repartition(*balance);
+    store.migrate();
+    ++balances;
+  }
+  std::vector<Origin> origins;
+  store.read(particles, grid, origins);
+  halo.build(particles, store, grid);
+
+  pairs.clear(model.history_size());
+  grid.find_pairs(particles, skin + model.range(), pairs);
+  solid_contacts.search(particles, solids, skin + model.range());
+  rows.fetch(origins, domain.communicator()).attach(particles, pairs, solid_contacts);
+  ++searches;
+}
+
+} // namespace eunoe

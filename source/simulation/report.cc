@@ -1,0 +1,169 @@
+// What a run says of itself: the overview at its start, its progress, and summary.json.
+
+#include <eunoe/core/files.h>
+#include <eunoe/core/version.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe {
+
+namespace {
+
+/// Mean and largest value over ranks.
+std::pair<double, double> mean_and_max(const double value, MPI_Comm comm)
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  double sum = value, largest = value;
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm);
+  return {sum / n_ranks, largest};
+}
+
+std::string percent(double share)
+{
+  char text[16];
+  std::snprintf(text, sizeof text, "%.1f %%", 100. * share);
+  return text;
+}
+
+} // namespace
+
+void Simulation::print_overview()
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  log.line("Eunoe " + std::string(version()) + " on " + std::to_string(n_ranks) +
+           (n_ranks == 1 ? " rank" : " ranks"));
+  const double dt = parameters.control.time_step;
+  for (std::size_t t = 0; t < parameters.physics.types.size(); ++t) {
+    const ParticleType &type = parameters.physics.types[t];
+    const auto sizes = type.sizes.make();
+    const double rayleigh =
+        PhysicalProperties::rayleigh_time(0.5 * sizes->smallest(), type.density, type.material);
+    log.line("Particle type " + std::to_string(t) + ": diameters " +
+             format(1e6 * sizes->smallest()) + " to " + format(1e6 * sizes->largest()) +
+             " um; the time step of " + format(dt) + " s is " + percent(dt / rayleigh) +
+             " of the Rayleigh time");
+    if (dt > 0.25 * rayleigh)
+      log.warning("the time step exceeds 25 % of the Rayleigh time of particle type " +
+                  std::to_string(t) + "; contacts may gain energy. At most " +
+                  format(0.25 * rayleigh) + " s is advised.");
+  }
+  log.line("Domain: " + std::to_string(domain.n_cells()) + " cells of at least " +
+           format(1e6 * domain.smallest_cell_width()) + " um, " + std::to_string(solids.size()) +
+           " solids and walls, " + std::to_string(domain.outlets().size()) + " outlets");
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0)
+    write_file(output_file("used.prm"), parameters.as_input_file());
+}
+
+void Simulation::report_progress(const bool at_end)
+{
+  const ControlParameters &control = parameters.control;
+  const double now = MPI_Wtime();
+  // On a terminal by the clock, asked for rarely; elsewhere by the step.
+  const bool due = at_end || (control.log_frequency > 0 && step % control.log_frequency == 0) ||
+                   (log.is_terminal() && step % 256 == 0 && now - last_report > 0.5);
+  if (!due || (at_end && last_reported_step == step))
+    return;
+  last_reported_step = step;
+  Log::Progress progress;
+  progress.step = step;
+  progress.time = present_time;
+  progress.particles = n_particles;
+  progress.share = static_cast<double>(step) / static_cast<double>(control.n_steps());
+  if (const Process *const process = parameters.process()) {
+    progress.share = at_end ? 1. : process->progress(*this);
+    progress.stage = process->stage();
+  }
+  progress.elapsed = now - start_of_run;
+  progress.speed = (particle_steps - reported_particle_steps) /
+                   std::max(1e-9, now - (last_report > 0. ? last_report : start_of_run)) * 1e-6;
+  last_report = now;
+  reported_particle_steps = particle_steps;
+  log.progress(progress);
+}
+
+void Simulation::write_summary()
+{
+  int rank, n_ranks;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &n_ranks);
+  nlohmann::ordered_json summary;
+  summary["version"] = version();
+  summary["git_revision"] = git_revision();
+  summary["deal_ii_version"] = deal_ii_version();
+  summary["particles"] = n_particles;
+  summary["steps"] = step;
+  summary["ranks"] = n_ranks;
+  summary["time_step"] = parameters.control.time_step;
+  summary["simulated_time"] = present_time;
+  summary["particle_steps"] = particle_steps;
+  summary["particle_steps_per_second"] = loop_seconds > 0. ? particle_steps / loop_seconds : 0.;
+  summary["loop_seconds"] = loop_seconds;
+  summary["wall_seconds"] = MPI_Wtime() - start_of_run;
+  summary["contact_searches"] = system.n_searches();
+  summary["load_balances"] = system.n_balances();
+
+  const Tally inserted = ledger.inserted.global(comm), taken = ledger.taken_out.global(comm);
+  summary["inserted_particles"] = inserted.number;
+  summary["inserted_mass"] = inserted.mass.value();
+  summary["taken_out_particles"] = taken.number;
+  summary["taken_out_mass"] = taken.mass.value();
+  ExactSum balance = inserted.mass;
+  balance -= taken.mass;
+  std::uint64_t left = 0;
+  for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o) {
+    const Tally out = ledger.through_outlet[o].global(comm);
+    const std::string name = "outlet_" + std::to_string(domain.outlets()[o].boundary_id);
+    summary[name + "_particles"] = out.number;
+    summary[name + "_mass"] = out.mass.value();
+    balance -= out.mass;
+    left += out.number;
+  }
+  Tally inside;
+  ExactSum kinetic, rotational;
+  const ParticleArrays &p = system.particles;
+  for (std::size_t k = 0; k < p.n_owned; ++k) {
+    inside.count(p.velocity[k].w);
+    kinetic += 0.5 * p.velocity[k].w * norm_square(p.velocity[k].vec());
+    rotational += 0.5 * p.spin[k].w * norm_square(p.spin[k].vec());
+  }
+  inside = inside.global(comm);
+  kinetic.reduce(comm);
+  rotational.reduce(comm);
+  summary["outlet_particles"] = left;
+  summary["inside_mass"] = inside.mass.value();
+  balance -= inside.mass;
+  summary["mass_balance_error"] = balance.value();
+  summary["kinetic_energy"] = kinetic.value();
+  summary["rotational_energy"] = rotational.value();
+
+  std::string shares;
+  double known = 0.;
+  for (unsigned int s = 0; s < Timers::n; ++s) {
+    const auto [mean, largest] = mean_and_max(timers[s], comm);
+    std::string key = "seconds_" + Timers::name(s);
+    std::replace(key.begin(), key.end(), ' ', '_');
+    summary[key] = mean;
+    summary[key + "_slowest_rank"] = largest;
+    known += mean;
+    if (loop_seconds > 0.)
+      shares += (shares.empty() ? "" : ", ") + Timers::name(s) + " " +
+                percent(mean / std::max(known, loop_seconds));
+  }
+  if (rank == 0)
+    write_file(output_file("summary.json"), summary.dump(2) + "\n");
+  log.line("Finished " + std::to_string(step) + " steps in " + format_duration(loop_seconds) +
+           ": " + format(loop_seconds > 0. ? particle_steps / loop_seconds * 1e-6 : 0.) +
+           " million particle-steps/s. Share of time: " + shares);
+  log.line("Results are in " + parameters.control.output_path);
+}
+
+} // namespace eunoe

@@ -1,0 +1,326 @@
+#include <eunoe/core/files.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe {
+
+ObservableRegistry &observables()
+{
+  static ObservableRegistry registry;
+  return registry;
+}
+
+namespace {
+
+unsigned int count_components(const std::vector<Process::Field> &fields)
+{
+  unsigned int n = 0;
+  for (const Process::Field &field : fields)
+    n += field.n_components;
+  return n;
+}
+
+/// Largest distance that a point of a solid has moved between two states (m).
+double displacement(const Solid &solid, const RigidState &before)
+{
+  const RigidState &now = solid.state;
+  if (!solid.motion->rotates())
+    return norm(now.centre - before.centre);
+  const Box box = solid.shape->bounding_box();
+  double largest = 0.;
+  for (unsigned int corner = 0; corner < 8; ++corner) {
+    const Vec3 x = {corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
+                    corner & 4 ? box.upper.z : box.lower.z};
+    largest = std::max(largest, norm(now.centre + now.rotation.apply(x) - before.centre -
+                                     before.rotation.apply(x)));
+  }
+  return largest;
+}
+
+/// Prepares the parameters that a process decides, before anything is built from them.
+Parameters &prepare(Parameters &parameters)
+{
+  if (Process *const process = parameters.process())
+    process->prepare(parameters);
+  return parameters;
+}
+
+} // namespace
+
+Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
+    : parameters(prepare(parameters_)), comm(comm), log(log), start_of_run(MPI_Wtime()),
+      domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
+      model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
+      ledger(domain.outlets()),
+      system(domain, model,
+             parameters.process() ? count_components(parameters.process()->fields()) : 0,
+             parameters.model.skin(largest_diameter(parameters)), largest_diameter(parameters),
+             ledger, timers),
+      integrator(integrators().make(parameters.model.integration_method)),
+      particle_pictures(parameters.control.output_path, parameters.control.output_name, comm),
+      solid_pictures(parameters.control.output_path, parameters.control.output_name + "_solids",
+                     comm),
+      allowed_displacement(parameters.model.displacement_share *
+                           parameters.model.skin(largest_diameter(parameters)))
+{
+  Problems problems;
+  check_domain(domain, parameters,
+               largest_diameter(parameters) + parameters.model.skin(largest_diameter(parameters)) +
+                   model.range(),
+               problems);
+  const int wall = parameters.physics.wall_material();
+  solids = domain.walls();
+  const auto append = [this](const std::vector<Solid> &more) {
+    solids.insert(solids.end(), more.begin(), more.end());
+  };
+  append(parameters.floating_walls.make(wall));
+  append(parameters.solids.make(wall, parameters.control.time_step, comm, problems));
+  if (!problems.empty())
+    throw UserError(problems);
+  if (Process *const process = parameters.process()) {
+    append(process->make_solids(parameters));
+    fields = process->fields();
+    std::vector<double> defaults;
+    for (const Process::Field &field : fields)
+      defaults.insert(defaults.end(), field.n_components, field.initial);
+    system.set_extra_defaults(defaults);
+  } else
+    insertion = insertion_methods().make(parameters.insertion.method, parameters.insertion,
+                                         parameters.physics);
+  solid_loads.resize(solids.size());
+  for (const std::string &name : eunoe::loads().list())
+    if (auto load = eunoe::loads().make(name, parameters.physics))
+      loads.push_back(std::move(load));
+}
+
+void Simulation::open_output()
+{
+  create_folder(parameters.control.output_path, comm);
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0)
+    // One of an earlier run would make this one look finished.
+    remove_file(output_file("summary.json"));
+  for (const std::string &name : eunoe::observables().list())
+    if (auto observable = eunoe::observables().make(name, parameters.observables, *this))
+      observable_list.push_back(std::move(observable));
+}
+
+Simulation::~Simulation() = default;
+
+int Simulation::find_solid(const std::string &name) const
+{
+  const auto it =
+      std::find_if(solids.begin(), solids.end(), [&](const Solid &s) { return s.name == name; });
+  return it == solids.end() ? -1 : static_cast<int>(it - solids.begin());
+}
+
+void Simulation::run(const std::function<void(Simulation &)> &look)
+{
+  print_overview();
+  start();
+  if (look)
+    look(*this);
+  timers = Timers();
+  const double start_of_loop = MPI_Wtime();
+  while (!finished()) {
+    advance();
+    do_what_is_due();
+    if (look)
+      look(*this);
+  }
+  loop_seconds = MPI_Wtime() - start_of_loop;
+  complete_step();
+  for (auto &observable : observable_list)
+    observable->finish(*this);
+  report_progress(true);
+  write_summary();
+}
+
+void Simulation::start()
+{
+  move_solids();
+  if (parameters.process() != nullptr)
+    parameters.process()->start(*this);
+  else
+    exchange({}, {});
+  do_what_is_due();
+}
+
+/// The time step.
+void Simulation::advance()
+{
+  const double dt = parameters.control.time_step;
+  ++step;
+  present_time = static_cast<double>(step) * dt;
+  move_solids();
+
+  double moved2;
+  {
+    const Timers::Scope scope(timers, Section::integration);
+    moved2 = integrator->begin_step(system.particles, dt);
+  }
+  if (search_is_due(moved2)) {
+    const Timers::Scope scope(timers, Section::search);
+    system.search(solids, balance_if_due());
+    for (std::size_t s = 0; s < solids.size(); ++s)
+      solids_at_search[s] = solids[s].state;
+    n_particles = system.n_global();
+  } else {
+    const Timers::Scope scope(timers, Section::ghosts);
+    system.update_ghosts();
+  }
+
+  compute_forces(dt);
+  integrator->end_step();
+  particle_steps += static_cast<double>(n_particles);
+}
+
+void Simulation::move_solids()
+{
+  for (Solid &solid : solids)
+    solid.state = solid.motion->at(present_time);
+}
+
+void Simulation::compute_forces(const double dt)
+{
+  {
+    const Timers::Scope scope(timers, Section::loads);
+    for (const auto &load : loads)
+      load->add(system.particles, present_time);
+  }
+  const Process *const process = parameters.process();
+  const bool wanted =
+      (process != nullptr && process->wants_solid_loads(step)) ||
+      std::any_of(observable_list.begin(), observable_list.end(),
+                  [this](const auto &observable) { return observable->wants_solid_loads(step); });
+  if (wanted)
+    solid_loads.assign(solids.size(), SolidLoad());
+  system.add_contact_forces(solids, present_time, dt, wanted ? &solid_loads : nullptr);
+}
+
+bool Simulation::search_is_due(const double moved2)
+{
+  const ModelParameters &p = parameters.model;
+  if (step % p.detection_frequency != 0)
+    return false;
+  if (p.detection_method == "constant")
+    return true;
+  double moved = std::sqrt(moved2);
+  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm);
+  double solid_moved = 0.;
+  for (std::size_t s = 0; s < solids.size(); ++s)
+    solid_moved = std::max(solid_moved, displacement(solids[s], solids_at_search[s]));
+  return !(moved + std::max(moved, solid_moved) <= allowed_displacement);
+}
+
+const LoadBalancingParameters *Simulation::balance_if_due()
+{
+  const LoadBalancingParameters &p = parameters.model.load_balancing;
+  bool due = false;
+  if (p.method == "once")
+    due = !balanced_once && step >= p.step;
+  else if (p.method == "frequent")
+    due = step >= last_balance + p.frequency;
+  else if (p.method == "dynamic" && step >= last_balance + p.check_frequency) {
+    last_balance = step;
+    due = system.imbalance(p) > p.threshold;
+  }
+  if (!due)
+    return nullptr;
+  balanced_once = true;
+  last_balance = step;
+  return &p;
+}
+
+const ParticleArrays &Simulation::complete_step()
+{
+  integrator->complete(system.particles, parameters.control.time_step);
+  return system.particles;
+}
+
+ParticleArrays &Simulation::changeable_particles()
+{
+  complete_step();
+  return system.particles;
+}
+
+void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_t> &removed)
+{
+  complete_step();
+  ParticleId first_new;
+  {
+    const Timers::Scope scope(timers, Section::search);
+    first_new = system.exchange(delivery, removed, solids);
+  }
+  solids_at_search.clear();
+  for (const Solid &solid : solids)
+    solids_at_search.push_back(solid.state);
+  n_particles = system.n_global();
+  system.add_forces_on_new(first_new, loads, solids, present_time);
+}
+
+void Simulation::insert_if_due()
+{
+  if (!insertion || insertion->finished())
+    return;
+  const unsigned int frequency = parameters.insertion.frequency;
+  if (step != 0 && (frequency == 0 || step % frequency != 0))
+    return;
+  Delivery delivery;
+  delivery.particles = insertion->next(next_id, comm);
+  exchange(delivery, {});
+}
+
+std::vector<SolidLoad> Simulation::global_solid_loads() const
+{
+  std::vector<SolidLoad> sums = solid_loads;
+  for (SolidLoad &load : sums)
+    for (unsigned int d = 0; d < 3; ++d) {
+      load.force[d].reduce(comm);
+      load.torque[d].reduce(comm);
+    }
+  return sums;
+}
+
+void Simulation::write_pictures(PictureSeries &series)
+{
+  complete_step();
+  const Timers::Scope scope(timers, Section::output);
+  series.write(present_time, system.particles, fields);
+}
+
+/// What happens between two steps, at the present time.
+void Simulation::do_what_is_due()
+{
+  insert_if_due();
+  if (parameters.process() != nullptr) {
+    const Timers::Scope scope(timers, Section::process);
+    parameters.process()->step(*this);
+  }
+  for (auto &observable : observable_list)
+    observable->step(*this);
+
+  const ControlParameters &control = parameters.control;
+  const bool output_due =
+      control.output_control == "time"
+          ? present_time >= next_output - 0.5 * control.time_step
+          : control.output_frequency > 0 && step % control.output_frequency == 0;
+  if (output_due) {
+    next_output += control.output_time;
+    write_pictures(particle_pictures);
+    const Timers::Scope scope(timers, Section::output);
+    solid_pictures.write(present_time, solids);
+  }
+  report_progress(false);
+}
+
+bool Simulation::finished() const
+{
+  return step >= parameters.control.n_steps() ||
+         (parameters.process() != nullptr && parameters.process()->finished());
+}
+
+} // namespace eunoe

@@ -1,0 +1,66 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/solids/half_space.h>
+#include <eunoe/solids/solid_parameters.h>
+
+namespace eunoe {
+
+namespace {
+
+const std::string section = "floating walls";
+
+std::string wall_section(std::size_t k)
+{
+  return "wall " + std::to_string(k);
+}
+
+} // namespace
+
+void FloatingWallParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section);
+  prm.declare_entry("number of floating walls", std::to_string(walls.size()),
+                    declare::Patterns::Integer(0, 50),
+                    "Number of the subsections 'wall 0', 'wall 1', ...: infinite planes.");
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    prm.enter_subsection(wall_section(k));
+    declare::vector(prm, "point on wall", walls[k].point, "A point of the plane (m).");
+    declare::vector(prm, "normal vector", walls[k].normal,
+                    "Direction from the plane towards the particles, of any length.");
+    prm.add_parameter("start time", walls[k].start, "The wall acts from here (s) ...");
+    prm.add_parameter("end time", walls[k].end, "... to here (s).");
+    prm.leave_subsection();
+  }
+  prm.leave_subsection();
+}
+
+void FloatingWallParameters::check(const ParameterCheck &check) const
+{
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const ParameterCheck::Path path = {section, wall_section(k)};
+    check.require(norm(walls[k].normal) > 0., path, "normal vector", "is zero.",
+                  "Give the direction towards the particles.");
+    check.require(walls[k].start < walls[k].end, path, "end time",
+                  "is " + format(walls[k].end) + " s, not after the start time of " +
+                      format(walls[k].start) + " s.",
+                  "Give a later time.");
+  }
+}
+
+std::vector<Solid> FloatingWallParameters::make(const int material) const
+{
+  std::vector<Solid> solids;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    Solid solid;
+    solid.name = "floating wall " + std::to_string(k);
+    solid.shape = std::make_shared<HalfSpace>(walls[k].point, walls[k].normal);
+    solid.motion = std::make_shared<AtRest>();
+    solid.material = material;
+    solid.start = walls[k].start;
+    solid.end = walls[k].end;
+    solid.output = false;
+    solids.push_back(solid);
+  }
+  return solids;
+}
+
+} // namespace eunoe

@@ -1,0 +1,34 @@
+#include <eunoe/solids/shapes.h>
+
+namespace eunoe {
+
+TriangleMesh shapes::half_round_bar(const Vec3 &tip, const double length, const double radius,
+                                    const double height, const unsigned int n_facets)
+{
+  const Vec3 depth = {0., 0., length};
+  const auto rim = [&](unsigned int k) {
+    const double angle = M_PI * (1. + static_cast<double>(k) / n_facets);
+    return tip + Vec3{radius * std::cos(angle), radius * (1. + std::sin(angle)), 0.};
+  };
+  TriangleMesh mesh;
+  for (unsigned int k = 0; k < n_facets; ++k)
+    mesh.add_quad(rim(k), rim(k + 1), rim(k + 1) + depth, rim(k) + depth);
+  if (height > radius) {
+    const Vec3 side = {0., height - radius, 0.};
+    for (const Vec3 &edge : {rim(0), rim(n_facets)})
+      mesh.add_quad(edge, edge + side, edge + side + depth, edge + depth);
+  }
+  return mesh;
+}
+
+namespace {
+/// Arguments: start of the lowest line : length in z : radius : height : number of facets.
+const ShapeRegistry::Registration registration(
+    named_shapes(), "half_round_bar", [](ShapeArguments &a) {
+      const Vec3 tip = a.vector();
+      const double length = a.number(), radius = a.number(), height = a.number();
+      return shapes::half_round_bar(tip, length, radius, height, a.count());
+    });
+} // namespace
+
+} // namespace eunoe

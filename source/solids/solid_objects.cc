@@ -1,0 +1,142 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/solids/expression_motion.h>
+#include <eunoe/solids/shapes.h>
+#include <eunoe/solids/solid_parameters.h>
+
+namespace eunoe {
+
+namespace {
+
+const ParameterCheck::Path section = {"solid objects", "solid surfaces"};
+
+std::string object_section(std::size_t k)
+{
+  return "solid object " + std::to_string(k);
+}
+
+ParameterCheck::Path path_of(std::size_t k, const std::string &subsection = "")
+{
+  ParameterCheck::Path path = section;
+  path.push_back(object_section(k));
+  if (!subsection.empty())
+    path.push_back(subsection);
+  return path;
+}
+
+void declare_function(dealii::ParameterHandler &prm, const std::string &name,
+                      std::string &expression, std::string &constants, const std::string &what)
+{
+  prm.enter_subsection(name);
+  prm.add_parameter("Function expression", expression,
+                    what + ": three expressions in x, y, z (the centre of rotation) and t, "
+                           "separated by ';'.");
+  prm.add_parameter("Function constants", constants, "Constants of the expressions, 'a=1, b=2'.");
+  prm.leave_subsection();
+}
+
+TriangleMesh make_mesh(const SolidObject &object, MPI_Comm comm)
+{
+  TriangleMesh mesh;
+  if (object.type == "gmsh")
+    mesh = read_gmsh(object.file, comm);
+  else {
+    ShapeArguments arguments(object.arguments);
+    mesh = named_shapes().make(object.shape, arguments);
+    arguments.finish();
+  }
+  for (Vec3 &vertex : mesh.vertices)
+    vertex = object.scale * vertex - object.centre;
+  const std::string defect = mesh.defect();
+  if (!defect.empty())
+    throw std::invalid_argument("the surface cannot be used: " + defect);
+  return mesh;
+}
+
+} // namespace
+
+void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section[0]);
+  prm.enter_subsection(section[1]);
+  prm.declare_entry("number of solids", std::to_string(objects.size()),
+                    declare::Patterns::Integer(0, 50),
+                    "Number of the subsections 'solid object 0', 'solid object 1', ...");
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    SolidObject &object = objects[k];
+    prm.enter_subsection(object_section(k));
+    prm.enter_subsection("mesh");
+    declare::choice(prm, "type", object.type, "gmsh|shape",
+                    "Origin of the surface: a Gmsh file of triangles, or a shape made in code.");
+    prm.add_parameter("file name", object.file, "gmsh: the file.");
+    declare::choice(prm, "grid type", object.shape, named_shapes().names(),
+                    "shape: which one (see 'grid arguments').");
+    prm.add_parameter("grid arguments", object.arguments,
+                      "shape: its arguments (m). plane: corner : edge : edge. box: lower : upper. "
+                      "cylinder_shell: centre of one end : axis : radius : facets. half_round_bar: "
+                      "start of the lowest line : length in z : radius : height : facets. "
+                      "flat_blade: start of the front lower edge : length in z : thickness : "
+                      "height.");
+    prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
+    prm.add_parameter("scale", object.scale, "Factor on all coordinates.",
+                      declare::Patterns::Double(0.));
+    prm.leave_subsection();
+    declare_function(prm, "translational velocity", object.velocity, object.velocity_constants,
+                     "Velocity of the centre of rotation (m/s)");
+    declare_function(prm, "angular velocity", object.angular_velocity,
+                     object.angular_velocity_constants,
+                     "Angular velocity about the centre of rotation (rad/s)");
+    declare::vector(prm, "center of rotation", object.centre,
+                    "Centre of rotation at the start, which moves with the solid (m).");
+    prm.add_parameter("output solid object", object.output, "Whether the solid is drawn.");
+    prm.leave_subsection();
+  }
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+void SolidObjectParameters::check(const ParameterCheck &check) const
+{
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    const SolidObject &object = objects[k];
+    const auto path = path_of(k, "mesh");
+    check.require(object.type != "gmsh" || object.file != "none", path, "file name",
+                  "is missing while the type is 'gmsh'.", "Name the file, or set type = shape.");
+    check.require(object.simplex, path, "simplex", "is false.",
+                  "Surfaces of solids are made of triangles: set it to true.");
+    check.require(object.scale > 0., path, "scale", "is " + format(object.scale) + ".",
+                  "Give a positive factor.");
+  }
+}
+
+std::vector<Solid> SolidObjectParameters::make(const int material, const double time_step,
+                                               MPI_Comm comm, Problems &problems) const
+{
+  std::vector<Solid> solids;
+  for (std::size_t k = 0; k < objects.size(); ++k) {
+    const SolidObject &object = objects[k];
+    Solid solid;
+    solid.name = object_section(k);
+    solid.material = material;
+    solid.output = object.output;
+    try {
+      solid.shape = std::make_shared<TriangulatedSurface>(make_mesh(object, comm));
+    } catch (const std::exception &error) {
+      problems.add(describe(path_of(k, "mesh"), "") + ":", error.what(), "");
+      continue;
+    }
+    try {
+      solid.motion = std::make_shared<ExpressionMotion>(
+          object.centre, object.velocity, object.velocity_constants, object.angular_velocity,
+          object.angular_velocity_constants, time_step);
+    } catch (const std::exception &error) {
+      problems.add(describe(path_of(k), "") + ":",
+                   std::string(error.what()) + ", in the velocity of the solid.",
+                   "Write three expressions in x, y, z and t, separated by ';'.");
+      continue;
+    }
+    solids.push_back(solid);
+  }
+  return solids;
+}
+
+} // namespace eunoe

@@ -1,0 +1,388 @@
+#include <eunoe/solids/triangulated_surface.h>
+
+#include <boost/geometry/geometries/box.hpp>
+#include <boost/geometry/geometries/point.hpp>
+#include <boost/geometry/index/rtree.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace eunoe {
+namespace {
+
+/// An edge of just the smooth angle, as between the 24 facets of a cylinder, is smooth whatever its
+/// round-off.
+const double smooth_cosine = std::cos(TriangulatedSurface::smooth_angle) - 1e-9;
+
+namespace bg = boost::geometry;
+using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
+using BoostBox = bg::model::box<BoostPoint>;
+
+BoostBox boost_box(const Vec3 &lower, const Vec3 &upper)
+{
+  return {BoostPoint(lower.x, lower.y, lower.z), BoostPoint(upper.x, upper.y, upper.z)};
+}
+
+Vec3 minimum(const Vec3 &a, const Vec3 &b)
+{
+  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
+}
+
+Vec3 maximum(const Vec3 &a, const Vec3 &b)
+{
+  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
+}
+
+Box enclose(const std::vector<Vec3> &points)
+{
+  Box box{points.front(), points.front()};
+  for (const Vec3 &p : points) {
+    box.lower = minimum(box.lower, p);
+    box.upper = maximum(box.upper, p);
+  }
+  return box;
+}
+
+using Edge = std::pair<std::int32_t, std::int32_t>;
+
+Edge edge_of(const std::array<std::int32_t, 3> &triangle, unsigned int e)
+{
+  return std::minmax(triangle[e], triangle[(e + 1) % 3]);
+}
+
+} // namespace
+
+void TriangleMesh::add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d)
+{
+  const auto first = static_cast<std::int32_t>(vertices.size());
+  vertices.insert(vertices.end(), {a, b, c, d});
+  triangles.push_back({first, first + 1, first + 2});
+  triangles.push_back({first, first + 2, first + 3});
+}
+
+void TriangleMesh::merge_vertices(const double tolerance)
+{
+  std::vector<std::int32_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return vertices[a].x != vertices[b].x ? vertices[a].x < vertices[b].x : a < b;
+  });
+  std::vector<std::int32_t> target(vertices.size(), -1);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (target[order[k]] >= 0)
+      continue;
+    target[order[k]] = order[k];
+    for (std::size_t l = k + 1;
+         l < order.size() && vertices[order[l]].x - vertices[order[k]].x <= tolerance; ++l)
+      if (target[order[l]] < 0 && norm(vertices[order[l]] - vertices[order[k]]) <= tolerance)
+        target[order[l]] = order[k];
+  }
+  for (auto &triangle : triangles)
+    for (std::int32_t &vertex : triangle)
+      vertex = target[vertex];
+}
+
+std::string TriangleMesh::defect() const
+{
+  if (triangles.empty())
+    return "it has no triangles";
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (const std::int32_t vertex : triangles[t]) {
+      if (vertex < 0 || vertex >= static_cast<std::int32_t>(vertices.size()))
+        return "triangle " + std::to_string(t) + " names a corner that does not exist";
+      if (!std::isfinite(norm_square(vertices[vertex])))
+        return "triangle " + std::to_string(t) + " has a corner that is not a number";
+    }
+  const double extent = norm(enclose(vertices).upper - enclose(vertices).lower);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Vec3 &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]],
+               &c = vertices[triangles[t][2]];
+    const double area = 0.5 * norm(cross(b - a, c - a));
+    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
+    if (area <= 1e-12 * longest * longest || longest <= 1e-12 * extent)
+      return "triangle " + std::to_string(t) + " is degenerate: its corners lie on one line";
+  }
+  return "";
+}
+
+struct TriangulatedSurface::Tree
+{
+  explicit Tree(const std::vector<std::pair<BoostBox, std::int32_t>> &boxes) : rtree(boxes) {}
+
+  bg::index::rtree<std::pair<BoostBox, std::int32_t>, bg::index::quadratic<16>> rtree;
+};
+
+/// The place on a triangle that is nearest to a sphere's centre.
+struct TriangulatedSurface::Touch
+{
+  std::int32_t facet;
+  Vec3 offset;                ///< from the centre to the place
+  double distance;            ///< length of the offset
+  unsigned int n_corners = 0; ///< 0 inside the triangle, 2 on an edge, 1 on a corner
+  std::array<std::int32_t, 2> corner = {{-1, -1}};
+};
+
+TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
+{
+  box = enclose(mesh.vertices);
+  const double tolerance = 1e-10 * norm(box.upper - box.lower);
+  mesh.merge_vertices(tolerance);
+
+  std::map<Edge, std::vector<std::int32_t>> around_edge;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    Facet facet;
+    facet.vertex = mesh.triangles[t];
+    for (unsigned int c = 0; c < 3; ++c) {
+      facet.corner[c] = mesh.vertices[facet.vertex[c]];
+      around_edge[edge_of(facet.vertex, c)].push_back(static_cast<std::int32_t>(t));
+    }
+    const Vec3 normal = cross(facet.corner[1] - facet.corner[0], facet.corner[2] - facet.corner[0]);
+    facet.normal = normal / norm(normal);
+    facet.offset = dot(facet.normal, facet.corner[0]);
+    facet.plane = facet.smooth = -1;
+    facets.push_back(facet);
+  }
+
+  // Unites neighbours: `joins(seed, facet, edge)` decides whether a facet belongs to the seed's
+  // group, `enter(seed, facet)` takes it in.
+  const auto flood = [&](std::int32_t Facet::*group, const auto &joins, const auto &enter) {
+    for (std::size_t seed = 0; seed < facets.size(); ++seed) {
+      if (facets[seed].*group >= 0)
+        continue;
+      facets[seed].*group = static_cast<std::int32_t>(seed);
+      std::vector<std::int32_t> front = {static_cast<std::int32_t>(seed)};
+      while (!front.empty()) {
+        const std::int32_t here = front.back();
+        front.pop_back();
+        for (unsigned int e = 0; e < 3; ++e)
+          for (const std::int32_t next : around_edge.at(edge_of(facets[here].vertex, e)))
+            if (facets[next].*group < 0 && joins(seed, here, next)) {
+              facets[next].*group = static_cast<std::int32_t>(seed);
+              enter(seed, next);
+              front.push_back(next);
+            }
+      }
+    }
+  };
+  flood(
+      &Facet::plane,
+      [&](std::size_t seed, std::int32_t, std::int32_t next) {
+        return std::all_of(
+            facets[next].corner.begin(), facets[next].corner.end(), [&](const Vec3 &x) {
+              return std::abs(dot(facets[seed].normal, x) - facets[seed].offset) <= tolerance;
+            });
+      },
+      [&](std::size_t seed, std::int32_t next) {
+        facets[next].normal = facets[seed].normal;
+        facets[next].offset = facets[seed].offset;
+      });
+  flood(
+      &Facet::smooth,
+      [&](std::size_t, std::int32_t here, std::int32_t next) {
+        return std::abs(dot(facets[here].normal, facets[next].normal)) >= smooth_cosine;
+      },
+      [](std::size_t, std::int32_t) {});
+
+  flat_vertex.assign(mesh.vertices.size(), true);
+  std::vector<std::int32_t> plane_of_vertex(mesh.vertices.size(), -1);
+  for (const Facet &facet : facets)
+    for (unsigned int c = 0; c < 3; ++c) {
+      std::int32_t &plane = plane_of_vertex[facet.vertex[c]];
+      if ((plane >= 0 && plane != facet.plane) ||
+          around_edge.at(edge_of(facet.vertex, c)).size() != 2 ||
+          around_edge.at(edge_of(facet.vertex, (c + 2) % 3)).size() != 2)
+        flat_vertex[facet.vertex[c]] = false;
+      plane = facet.plane;
+    }
+
+  std::vector<std::pair<BoostBox, std::int32_t>> boxes;
+  for (std::size_t t = 0; t < facets.size(); ++t) {
+    const auto &corner = facets[t].corner;
+    boxes.emplace_back(boost_box(minimum(minimum(corner[0], corner[1]), corner[2]),
+                                 maximum(maximum(corner[0], corner[1]), corner[2])),
+                       static_cast<std::int32_t>(t));
+  }
+  tree = std::make_unique<const Tree>(boxes);
+}
+
+TriangulatedSurface::~TriangulatedSurface() = default;
+
+std::vector<Vec3> TriangulatedSurface::triangles() const
+{
+  std::vector<Vec3> corners;
+  for (const Facet &facet : facets)
+    corners.insert(corners.end(), facet.corner.begin(), facet.corner.end());
+  return corners;
+}
+
+void TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
+                                      std::vector<std::int32_t> &found) const
+{
+  if (!box.contains(centre, reach))
+    return;
+  const std::size_t first = found.size();
+  const Vec3 margin = {reach, reach, reach};
+  const auto query = bg::index::intersects(boost_box(centre - margin, centre + margin));
+  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it)
+    if (closest(centre, it->second).distance < reach)
+      found.push_back(it->second);
+  std::sort(found.begin() + first, found.end());
+}
+
+/// Distance of a point to a triangle by Voronoi regions (Ericson, Real-Time Collision Detection,
+/// 2005, section 5.1.5).
+TriangulatedSurface::Touch TriangulatedSurface::closest(const Vec3 &centre,
+                                                        const std::int32_t number) const
+{
+  const Facet &facet = facets[number];
+  const Vec3 &a = facet.corner[0], &b = facet.corner[1], &c = facet.corner[2];
+  Touch touch;
+  touch.facet = number;
+  const auto at_corner = [&](unsigned int k) {
+    touch.n_corners = 1;
+    touch.corner[0] = facet.vertex[k];
+    touch.offset = facet.corner[k] - centre;
+    touch.distance = norm(touch.offset);
+    return touch;
+  };
+  const auto on_edge = [&](unsigned int k, unsigned int l, double share) {
+    touch.n_corners = 2;
+    touch.corner = {{facet.vertex[k], facet.vertex[l]}};
+    touch.offset = facet.corner[k] + share * (facet.corner[l] - facet.corner[k]) - centre;
+    touch.distance = norm(touch.offset);
+    return touch;
+  };
+
+  const Vec3 ab = b - a, ac = c - a, ap = centre - a, bp = centre - b, cp = centre - c;
+  const double d1 = dot(ab, ap), d2 = dot(ac, ap);
+  if (d1 <= 0. && d2 <= 0.)
+    return at_corner(0);
+  const double d3 = dot(ab, bp), d4 = dot(ac, bp);
+  if (d3 >= 0. && d4 <= d3)
+    return at_corner(1);
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0. && d1 >= 0. && d3 <= 0.)
+    return on_edge(0, 1, d1 / (d1 - d3));
+  const double d5 = dot(ab, cp), d6 = dot(ac, cp);
+  if (d6 >= 0. && d5 <= d6)
+    return at_corner(2);
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0. && d2 >= 0. && d6 <= 0.)
+    return on_edge(0, 2, d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0. && d4 - d3 >= 0. && d5 - d6 >= 0.)
+    return on_edge(1, 2, (d4 - d3) / ((d4 - d3) + (d5 - d6)));
+
+  const double height = dot(facet.normal, centre) - facet.offset;
+  touch.offset = -height * facet.normal;
+  touch.distance = std::abs(height);
+  return touch;
+}
+
+unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double radius,
+                                                const double reach, const std::int32_t *begin,
+                                                const std::int32_t *end,
+                                                SurfaceContact *contacts) const
+{
+  thread_local std::vector<Touch> touches;
+  touches.clear();
+  for (const std::int32_t *facet = begin; facet != end; ++facet) {
+    const Touch touch = closest(centre, *facet);
+    if (touch.distance < reach)
+      touches.push_back(touch);
+  }
+  if (touches.empty())
+    return 0;
+
+  // An edge or corner counts if no triangle that shares it comes nearer: then the distance to
+  // the whole surface has a minimum there.
+  const double tolerance = 1e-10 * radius;
+  // Places that the tolerance lets pass as equally near lie sqrt(2 tolerance distance) apart.
+  const double same_place = 1e-4 * radius;
+  const auto shares = [&](std::int32_t facet, std::int32_t corner) {
+    const auto &vertex = facets[facet].vertex;
+    return vertex[0] == corner || vertex[1] == corner || vertex[2] == corner;
+  };
+  const auto is_minimum = [&](const Touch &touch) {
+    return touch.n_corners == 0 ||
+           std::none_of(touches.begin(), touches.end(), [&](const Touch &other) {
+             return other.distance < touch.distance - tolerance &&
+                    shares(other.facet, touch.corner[0]) &&
+                    (touch.n_corners == 1 || shares(other.facet, touch.corner[1]));
+           });
+  };
+  // Inside a plane an edge or corner is no place of its own: it gives what the plane gives.
+  const auto in_plane = [&](const Touch &touch) {
+    if (touch.n_corners == 0)
+      return true;
+    if (touch.n_corners == 1)
+      return static_cast<bool>(flat_vertex[touch.corner[0]]);
+    unsigned int neighbours = 0;
+    for (const Touch &other : touches)
+      if (other.facet != touch.facet && shares(other.facet, touch.corner[0]) &&
+          shares(other.facet, touch.corner[1]))
+      {
+        if (facets[other.facet].plane != facets[touch.facet].plane)
+          return false;
+        ++neighbours;
+      }
+    return neighbours == 1;
+  };
+
+  struct Accepted
+  {
+    std::int32_t plane, smooth; ///< plane is -1 for an edge or corner
+    Vec3 offset, direction;     ///< direction: sum of normals weighted by depth
+    double distance;
+    bool blended;
+  };
+  std::array<Accepted, max_contacts> accepted;
+  unsigned int n = 0;
+  std::sort(touches.begin(), touches.end(), [](const Touch &a, const Touch &b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.facet < b.facet;
+  });
+  for (Touch touch : touches) {
+    if (!is_minimum(touch))
+      continue;
+    const Facet &facet = facets[touch.facet];
+    const bool plane = in_plane(touch);
+    if (plane) {
+      const double height = dot(facet.normal, centre) - facet.offset;
+      touch.offset = -height * facet.normal;
+      touch.distance = std::abs(height);
+    }
+    // A centre that lies exactly in the surface has no side; the facet's normal decides.
+    const Vec3 normal = touch.distance == 0. ? -facet.normal
+                        : plane
+                            ? (dot(touch.offset, facet.normal) > 0. ? facet.normal : -facet.normal)
+                            : touch.offset / touch.distance;
+    bool is_new = true;
+    for (unsigned int k = 0; k < n && is_new; ++k) {
+      Accepted &other = accepted[k];
+      const bool same =
+          (plane && other.plane == facet.plane) || norm(touch.offset - other.offset) < same_place;
+      const bool curved = other.smooth == facet.smooth &&
+                          dot(normal, other.direction) >= smooth_cosine * norm(other.direction);
+      if (curved && !same) {
+        other.direction += (reach - touch.distance) * normal;
+        other.blended = true;
+      }
+      is_new = !same && !curved;
+    }
+    if (is_new && n < max_contacts) {
+      accepted[n] = {plane ? facet.plane : -1,          facet.smooth,   touch.offset,
+                     (reach - touch.distance) * normal, touch.distance, false};
+      contacts[n++].normal = normal;
+    }
+  }
+  for (unsigned int k = 0; k < n; ++k) {
+    contacts[k].distance = accepted[k].distance;
+    if (accepted[k].blended)
+      contacts[k].normal = accepted[k].direction / norm(accepted[k].direction);
+  }
+  return n;
+}
+
+} // namespace eunoe

@@ -1,0 +1,48 @@
+// What a contact remembers can be turned into that of its mirror image: a mirrored contact with a
+// mirrored memory answers with the mirrored force and torque.
+
+#include "../one_contact.h"
+
+using namespace test;
+
+namespace {
+
+/// A displacement or force in the mirror; spins and torques are reversed on top of that.
+Vec3 mirrored(Vec3 v, unsigned int axis)
+{
+  v[axis] = -v[axis];
+  return v;
+}
+
+} // namespace
+
+int main()
+{
+  for (const std::string rolling : {"none", "constant", "epsd"})
+    for (const std::string tangential : {"mindlin_limit_overlap", "mindlin_limit_force"})
+      for (unsigned int axis = 0; axis < 3; ++axis) {
+        Laws laws({Material()}, 1, {"hertz", {"dmt"}, tangential, rolling});
+        std::vector<Contact> contacts = different_contacts(1e-6);
+        for (Contact &c : contacts)
+          c.overlap = std::abs(c.overlap);
+        laws.apply(contacts, 1e-7);
+        std::vector<Contact> images = contacts;
+        bool remembers = false;
+        for (Contact &c : images) {
+          for (const double h : c.history)
+            remembers = remembers || h != 0.;
+          c.normal = mirrored(c.normal, axis);
+          c.slip = mirrored(c.slip, axis);
+          c.roll = -mirrored(c.roll, axis);
+          laws.model.mirror(c.history.data(), axis);
+        }
+        const std::vector<Response> originals = laws.apply(contacts, 1e-7);
+        const std::vector<Response> reflections = laws.apply(images, 1e-7);
+        bool alike = remembers;
+        for (std::size_t k = 0; k < contacts.size(); ++k)
+          alike = alike && reflections[k].shear == mirrored(originals[k].shear, axis) &&
+                  reflections[k].torque == -mirrored(originals[k].torque, axis);
+        check(tangential + " and " + rolling + " in a mirror across axis " + std::to_string(axis),
+              alike);
+      }
+}

@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# The command line of eunoe-particles: options, exit codes, and that a run which refuses to start
+# writes nothing. Usage: command_line.sh path/to/eunoe-particles folder
+set -u
+program=$1
+mkdir -p "$2" && cd "$2" || exit 1
+rm -rf results broken.prm fine.prm
+failures=0
+
+expect() { # name, expected exit code, expected text, command ...
+  local name=$1 code=$2 text=$3 out actual
+  shift 3
+  out=$(timeout 60 "$@" 2>&1)
+  actual=$?
+  if [ "$actual" -ne "$code" ] || [[ "$out" != *"$text"* ]] || [[ "$out" == *"Stacktrace"* ]]; then
+    printf '%s: exit code %s instead of %s, output:\n%s\n' "$name" "$actual" "$code" "$out"
+    failures=$((failures + 1))
+  fi
+}
+
+cat >fine.prm <<'PRM'
+subsection simulation control
+  set time step = 1e-5
+  set time end = 1e-4
+  set output path = results
+end
+PRM
+printf 'subsection mesh\n  set scael = 1\nend\n' >broken.prm
+
+expect help 0 "Usage: eunoe-particles" "$program" --help
+expect version 0 "deal.II" "$program" --version
+expect "parameters" 0 "set neighborhood threshold" "$program" --print-parameters
+expect "no input" 2 "An input file is missing" "$program"
+expect "missing file" 2 "nowhere.prm cannot be read" "$program" nowhere.prm
+expect "unknown option" 2 "Command line:" "$program" --fast
+expect "broken case" 2 "Did you mean 'scale'?" "$program" broken.prm
+expect "broken override" 2 "entry 'time stop' is unknown" \
+  "$program" fine.prm --set "simulation control/time stop = 1"
+expect "check" 0 "The case is in order" "$program" fine.prm --check
+if [ -e results ]; then
+  echo "a run that only checks or refuses has written something"
+  failures=$((failures + 1))
+fi
+launch=(mpirun -np 2)
+if [ "$(id -u)" -eq 0 ]; then
+  launch+=(--allow-run-as-root)
+fi
+export OMPI_MCA_rmaps_base_oversubscribe=1
+expect "broken case on two ranks" 2 "Did you mean 'scale'?" "${launch[@]}" "$program" broken.prm
+expect "run" 0 "Results are in results" "$program" fine.prm --set "subsection mesh/scale = 2"
+expect "values as used" 0 "= 1e-05" grep -rh "set time step" results/used.prm
+expect "used.prm can be run" 0 "The case is in order" "$program" results/used.prm --check
+expect "run on two ranks" 0 "Results are in results" "${launch[@]}" "$program" fine.prm
+touch file
+expect "unwritable folder" 2 "cannot be written to" \
+  "$program" fine.prm --set "simulation control/output path = file/results"
+exit $failures

@@ -1,0 +1,106 @@
+// The ways of insertion: grids keep particles apart and inside their box, do not depend on the
+// number of ranks, lists and files give what they say, and a written state can be read back.
+
+#include <eunoe/core/files.h>
+
+#include "../tests.h"
+
+using namespace test;
+
+namespace {
+
+std::string case_with(const std::string &insertion)
+{
+  return box_input(1e-6, 1e-6,
+                   "subsection lagrangian physical properties\n subsection particle type 0\n"
+                   "  set size distribution type = normal\n  set average diameter = 1e-3\n"
+                   "  set standard deviation = 1e-4\n  set number of particles = 400\n end\nend\n"
+                   "subsection insertion info\n" +
+                       insertion + "\nend\n");
+}
+
+void test_volume()
+{
+  Case grid(
+      case_with(" set insertion box points coordinates = -5e-3, -5e-3, -5e-3 : 5e-3, 9e-3, 9e-3\n"
+                " set insertion distance threshold = 1.2\n"
+                " set insertion maximum offset = 0.2"));
+  grid.run();
+  const auto all = particle_table(*grid);
+  check("number", all.size() == 400 && all.front()[c_id] == 1.);
+  double smallest_gap = 1., sum = 0.;
+  bool inside = true;
+  for (const auto &a : all) {
+    const double r = a[c_radius];
+    inside = inside && a[c_x] - r >= -5e-3 && a[c_x] + r <= 5e-3 && a[c_z] + r <= 9e-3;
+    sum += a[c_x] + 2. * a[c_y] + 3. * a[c_z] + 4. * r;
+    for (const auto &b : all)
+      if (a[c_id] < b[c_id])
+        smallest_gap =
+            std::min(smallest_gap, norm(Vec3{a[c_x] - b[c_x], a[c_y] - b[c_y], a[c_z] - b[c_z]}) -
+                                       r - b[c_radius]);
+  }
+  check("inside the box", inside);
+  check("apart from each other", smallest_gap >= 0.);
+  // The same sum must come out on one rank and on two: draws belong to particles.
+  char text[64];
+  std::snprintf(text, sizeof text, "fingerprint %.9f", sum);
+  print(text);
+}
+
+void test_list_and_file()
+{
+  Case list(case_with(" set insertion method = list\n set list x = 1e-3, -2e-3\n"
+                      " set list y = 0, 1e-3\n set list z = 5e-3, 0\n"
+                      " set list velocity y = 0.5, -1\n set list omega z = 3, 4\n"
+                      " set list diameters = 1e-3, 5e-4") +
+            "subsection post-processing\n subsection final state\n  set calculation = true\n"
+            "  set filename = state\n end\nend\n");
+  list.run();
+  const auto written = particle_table(*list);
+  check("list: position", written[1][c_x] == -2e-3 && written[0][c_z] == 5e-3);
+  check("list: diameter and spin", written[1][c_radius] == 2.5e-4 && written[1][c_wz] == 4.);
+
+  Case file(
+      case_with(" set insertion method = file\n set list of input files = results/state.csv"));
+  file.run([&](Simulation &simulation) {
+    if (simulation.step_number() == 0)
+      check("file: the state that was written", particle_table(simulation) == written);
+  });
+}
+
+void test_errors()
+{
+  const auto refused = [](const std::string &insertion) -> std::string {
+    try {
+      Case test_case(case_with(insertion));
+      test_case.run();
+    } catch (const UserError &error) {
+      return error.what();
+    }
+    return "";
+  };
+  check("a box outside the mesh is refused",
+        refused(" set insertion box points coordinates = 0, 0, 0 : 5, 5, 5")
+                .find("reaches out of the mesh") != std::string::npos);
+  check("a particle outside the mesh is refused",
+        refused(" set insertion method = list\n set list x = 1\n set list y = 0\n set list z = 0")
+                .find("lie outside the mesh") != std::string::npos);
+  check("too little room is refused",
+        refused(" set insertion box points coordinates = 0, 0, 0 : 5e-3, 5e-3, 5e-3\n"
+                " set insertion distance threshold = 1.2\n set insertion maximum offset = 0.2")
+                .find("room for") != std::string::npos);
+  check("a missing file is refused",
+        refused(" set insertion method = file\n set list of input files = nowhere.csv")
+                .find("nowhere.csv cannot be read") != std::string::npos);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_volume();
+  test_list_and_file();
+  test_errors();
+}

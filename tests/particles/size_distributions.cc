@@ -1,0 +1,119 @@
+// Diameters drawn from every distribution have the shares, means and cut-offs that were asked for.
+
+#include <eunoe/core/random.h>
+
+#include "../tests.h"
+
+#include <map>
+
+using namespace test;
+
+namespace {
+
+constexpr unsigned int n = 200000;
+
+std::vector<double> draw(const SizeDistributionParameters &parameters)
+{
+  const auto distribution = parameters.make();
+  std::vector<double> diameters;
+  for (unsigned int id = 0; id < n; ++id)
+    diameters.push_back(distribution->diameter(uniform(parameters.seed, Draw::size, id)));
+  return diameters;
+}
+
+double mean_power(const std::vector<double> &values, double power)
+{
+  double sum = 0.;
+  for (const double value : values)
+    sum += std::pow(value, power);
+  return sum / values.size();
+}
+
+/// The paper's classes: shares of the volume.
+void test_classes()
+{
+  SizeDistributionParameters p;
+  p.type = "custom";
+  p.basis = "volume";
+  p.diameters = {52.6220e-6, 57.7666e-6, 63.4141e-6, 69.6138e-6,
+                 76.4196e-6, 83.8907e-6, 92.0923e-6, 101.0960e-6};
+  p.fractions = {0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927, 0.050544};
+  const auto diameters = draw(p);
+  std::map<double, double> volume;
+  double total = 0.;
+  for (const double d : diameters) {
+    volume[d] += d * d * d;
+    total += d * d * d;
+  }
+  bool all = volume.size() == p.diameters.size();
+  for (std::size_t c = 0; c < p.diameters.size(); ++c) {
+    const double share = volume[p.diameters[c]] / total;
+    // Four standard errors of a count of that many particles, as a share of the volume.
+    const double count = volume[p.diameters[c]] / std::pow(p.diameters[c], 3);
+    all = all && std::abs(share - p.fractions[c]) < 4. * p.fractions[c] / std::sqrt(count) + 1e-5;
+  }
+  check("volume shares of the classes", all);
+  check_relative("mean cube", mean_power(diameters, 3.), p.make()->mean_cube(), 5e-3);
+
+  p.basis = "number";
+  double first = 0.;
+  for (const double d : draw(p))
+    first += d == p.diameters[0] ? 1. : 0.;
+  check_close("number shares of the classes", first / n, p.fractions[0], 4. * 0.36 / std::sqrt(n));
+}
+
+void test_normal()
+{
+  SizeDistributionParameters p;
+  p.type = "normal";
+  p.average_diameter = 70e-6;
+  p.standard_deviation = 10e-6;
+  const auto diameters = draw(p);
+  const double mean = mean_power(diameters, 1.);
+  // Variance of a normal distribution cut at 2.5 deviations: 1 - 5 phi(2.5) / (2 Phi(2.5) - 1).
+  const double phi = std::exp(-0.5 * 2.5 * 2.5) / std::sqrt(2. * M_PI);
+  const double variance = 1. - 5. * phi / std::erf(2.5 / std::sqrt(2.));
+  check_close("normal: mean", 1e6 * mean, 70., 5. * 10. / std::sqrt(n));
+  check_relative("normal: variance", mean_power(diameters, 2.) - mean * mean, variance * 1e-10,
+                 0.02);
+  check_close("normal: smallest", 1e6 * p.make()->smallest(), 45., 1e-9);
+  check_close("normal: largest", 1e6 * p.make()->largest(), 95., 1e-9);
+  check_relative("normal: mean cube", mean_power(diameters, 3.), p.make()->mean_cube(), 5e-3);
+}
+
+/// By volume, a lognormal distribution is again lognormal, with its logarithm shifted by three
+/// variances.
+void test_lognormal()
+{
+  SizeDistributionParameters p;
+  p.type = "lognormal";
+  p.average_diameter = 70e-6;
+  p.standard_deviation = 14e-6;
+  p.smallest = 10e-6;
+  p.largest = 400e-6;
+  const double sigma2 = std::log(1. + 0.2 * 0.2);
+  const auto log_mean = [](const std::vector<double> &diameters) {
+    double sum = 0.;
+    for (const double d : diameters)
+      sum += std::log(d);
+    return sum / diameters.size();
+  };
+  const double mu = std::log(70e-6) - 0.5 * sigma2;
+  const double error = 5. * std::sqrt(sigma2 / n);
+  check_close("lognormal: mean of the logarithm", log_mean(draw(p)), mu, error);
+  check_relative("lognormal: mean", mean_power(draw(p), 1.), 70e-6, 3e-3);
+  p.basis = "volume";
+  check_close("lognormal by volume", log_mean(draw(p)), mu - 3. * sigma2, error);
+}
+
+} // namespace
+
+int main()
+{
+  test_classes();
+  test_normal();
+  test_lognormal();
+  SizeDistributionParameters p;
+  p.average_diameter = 1e-3;
+  check("uniform", draw(p).front() == 1e-3 && draw(p).back() == 1e-3);
+}

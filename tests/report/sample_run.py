@@ -1,0 +1,147 @@
+"""Makes the output folder of a small spreading run, as the program writes it."""
+
+from __future__ import annotations
+
+import base64
+import json
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+FIELDS = {"ID": 1, "diameter": 1, "mass": 1, "velocity": 3, "layer": 1, "tracked": 1,
+          "displacement": 3, "on_plate": 1}
+
+PARAMETERS = """
+# Listing of Parameters
+set process = powder spreading
+
+subsection lagrangian physical properties
+  # Acceleration of gravity (m/s2).
+  set g = 0, -9.81, 0
+  subsection particle type 0
+    set density particles = 4000
+  end
+end
+
+subsection mesh
+  set grid arguments = 9, 9, 1 : 0, -0.001, 0 : 0.0042, 0.002, 0.0004 : true
+end
+
+subsection powder spreading
+  set depth                        = 0.0004
+  set exit plate length W4         = 0.0005
+  set feedstock                    = replenished
+  set feedstock bed depth          = 0
+  set feedstock margin             = 0.0002
+  set feedstock platform length W1 = 0.0015
+  set feedstock platform velocity  = 0.03
+  set feedstock stroke delta_f     = 0.0003
+  set first feedstock stroke       = 0.0005
+  set gap                          = 0.0001
+  set layer thickness delta_l      = 0.0001
+  set length factor                = 1
+  set lip height                   = 0.0001
+  set measuring plate length W3    = 0.0015
+  set number of layers             = 3
+  set rest before weighing         = 0
+  set spreader                     = half round
+  set spreader clearance delta_s   = 0.0001
+  set spreader height              = 0
+  set spreader radius R_s          = 0.0004
+  set spreader thickness           = 0.002
+  set spreading velocity v_s       = 0.1
+  set transfer plate length W2     = 0.0005
+end
+
+subsection simulation control
+  set output name = spreading
+end
+"""
+
+LAYERS = """\
+layer,time,mass,particles,LRD,CRD,mass_removed,mass_to_gap,mass_to_collector,\
+spreader_force_mean,spreader_force_max,wall_seconds
+0,0.1,4e-08,60,,,0,1e-08,4e-07,1e-05,1e-04,30
+1,0.2,1.6e-07,240,0.5,,2e-08,1e-08,1e-07,2e-06,2e-05,15
+2,0.3,2.92e-07,440,0.55,0.55,2e-08,2e-08,1e-07,1e-06,3e-05,16
+"""
+
+SUMMARY = {"version": "0.1.0", "git_revision": "abc1234", "particles": 9, "steps": 1000, "ranks": 2,
+           "time_step": 2.8e-7, "simulated_time": 0.3, "particle_steps": 1e6,
+           "particle_steps_per_second": 1e7, "loop_seconds": 60., "wall_seconds": 61.,
+           "inside_mass": 1e-9, "inserted_particles": 20, "inserted_mass": 1e-8,
+           "outlet_1_particles": 5, "outlet_1_mass": 3e-9, "mass_balance_error": 0.,
+           "seconds_output": 1., "seconds_output_slowest_rank": 2.}
+
+
+def encoded(values: np.ndarray, block_size: int = 64) -> str:
+    """Base64 of zlib blocks behind their counts, as VTK has it."""
+    data = values.astype("<f4").tobytes()
+    blocks = [data[k:k + block_size] for k in range(0, len(data), block_size)]
+    packed = [zlib.compress(block) for block in blocks]
+    counts = [len(blocks), block_size, len(data) % block_size, *map(len, packed)]
+    return (base64.b64encode(struct.pack(f"<{len(counts)}I", *counts)).decode()
+            + base64.b64encode(b"".join(packed)).decode())
+
+
+def piece(points: np.ndarray, fields: dict[str, np.ndarray]) -> str:
+    """The share of a rank."""
+    data = "".join(
+        f'<DataArray type="Float32" Name="{name}" NumberOfComponents="{FIELDS[name]}" '
+        f'format="binary">\n{encoded(values)}\n</DataArray>\n' for name, values in fields.items())
+    return (f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(points)}" >\n<Points>\n'
+            '<DataArray type="Float32" NumberOfComponents="3" format="binary">\n'
+            f"{encoded(points)}\n</DataArray>\n</Points>\n<PointData>\n{data}</PointData>\n"
+            "</Piece>\n")
+
+
+EMPTY_PIECE = ('<Piece NumberOfPoints="0" NumberOfCells="0" >\n<Cells>\n<DataArray type="UInt8" '
+               'Name="types"></DataArray>\n</Cells>\n<PointData>\n<DataArray type="Float32" '
+               'Name="mass"></DataArray>\n</PointData>\n</Piece>\n')
+
+
+def vtu(*pieces: str) -> str:
+    time = ('<FieldData>\n<DataArray type="Float32" Name="TIME" NumberOfTuples="1" '
+            'format="ascii">0.2</DataArray>\n</FieldData>\n')
+    return ('<?xml version="1.0" ?>\n<!-- \n# vtk DataFile Version 3.0\n-->\n'
+            '<VTKFile type="UnstructuredGrid" version="0.1" compressor="vtkZLibDataCompressor" '
+            f'byte_order="LittleEndian">\n<UnstructuredGrid>\n{time}{time.join(pieces)}'
+            "</UnstructuredGrid>\n</VTKFile>\n")
+
+
+def pvd(entries: list[tuple[float, str]]) -> str:
+    lines = "".join(f'<DataSet timestep="{time}" part="0" file="{name}"/>\n'
+                    for time, name in entries)
+    return f'<VTKFile type="Collection">\n<Collection>\n{lines}</Collection>\n</VTKFile>\n'
+
+
+def bed(layer: int, n: int = 12) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """A row of particles on the plate after a layer, of which the first half was there before."""
+    rows = np.arange(n)
+    old = rows < n // 2 if layer > 0 else np.zeros(n, bool)
+    points = np.column_stack((np.linspace(0.0022, 0.0035, n), np.full(n, 3e-5 - layer * 1e-4),
+                              np.linspace(0., 4e-4, n)))
+    displacement = np.zeros((n, 3))
+    displacement[old] = [3e-6, 4e-6, 1e-3]  # what counts is the x-y plane
+    return points, {"ID": rows, "diameter": np.full(n, 6e-5), "mass": np.full(n, 5e-10),
+                    "velocity": np.ones((n, 3)), "layer": np.where(old, 0, layer),
+                    "tracked": 1. * old, "displacement": displacement, "on_plate": np.ones(n)}
+
+
+def write_run(folder: Path, layers: int = 3, pictures: bool = True, summary: bool = True) -> None:
+    """The folder of a run that has weighed so many layers."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "used.prm").write_text(PARAMETERS)
+    rows = LAYERS.splitlines(keepends=True)[:1 + layers]
+    (folder / "layers.csv").write_text("".join(rows))
+    if summary:
+        (folder / "summary.json").write_text(json.dumps(SUMMARY))
+    if not pictures:
+        return
+    entries = []
+    for layer in range(layers):
+        entries.append((0.1 * (layer + 1), f"spreading_layers_{layer:05d}.vtu"))
+        (folder / entries[-1][1]).write_text(vtu(piece(*bed(layer))))
+    (folder / "spreading_layers.pvd").write_text(pvd(entries))

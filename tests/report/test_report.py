@@ -1,0 +1,242 @@
+"""Tests of contrib/postprocessing/report.py; they need numpy and matplotlib."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import io
+import json
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
+    print("skipped: numpy or matplotlib is missing")
+    sys.exit(0)
+
+import numpy as np
+
+HERE = Path(__file__).resolve().parent
+POSTPROCESSING = HERE.parents[1] / "contrib" / "postprocessing"
+sys.path[:0] = [str(POSTPROCESSING), str(HERE)]
+
+import report
+import sample_run
+from eunoe_report.apparatus import Apparatus
+from eunoe_report.layer_results import counting_noise, moved_over_plate
+from eunoe_report.measured import read_measured
+from eunoe_report.prm_file import parse_prm
+from eunoe_report.quantities import number
+from eunoe_report.run_folder import ReportError, read_layers
+from eunoe_report.vtk_files import VtkError, read_pvd, read_vtu
+
+
+class InFolder(unittest.TestCase):
+    """A test with a folder of its own."""
+
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "run"
+        self.folder.mkdir()
+
+    def file(self, name: str, text: str) -> Path:
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+
+class VtkFiles(InFolder):
+    def setUp(self) -> None:
+        super().setUp()
+        self.points = np.arange(30.).reshape(10, 3)
+        self.fields = {"mass": np.arange(10.) + 100., "velocity": np.arange(30.).reshape(10, 3)}
+
+    def piece(self, rows: slice) -> str:
+        return sample_run.piece(self.points[rows],
+                                {name: values[rows] for name, values in self.fields.items()})
+
+    def test_pieces_of_several_ranks_are_joined(self) -> None:
+        # 64 bytes a block: the points take two blocks, the masses one.
+        text = sample_run.vtu(self.piece(slice(0, 4)), sample_run.EMPTY_PIECE,
+                              self.piece(slice(4, 10)))
+        found = read_vtu(self.file("a.vtu", text), ("mass", "velocity", "unknown"))
+        self.assertEqual(set(found), {"points", "mass", "velocity"})
+        np.testing.assert_array_equal(found["points"], self.points)
+        for name, values in self.fields.items():
+            np.testing.assert_array_equal(found[name], values)
+
+    def test_only_wanted_fields_are_read(self) -> None:
+        path = self.file("a.vtu", sample_run.vtu(self.piece(slice(0, 10))))
+        self.assertEqual(set(read_vtu(path, ("mass",))), {"points", "mass"})
+
+    def test_file_without_particles(self) -> None:
+        path = self.file("a.vtu", sample_run.vtu(sample_run.EMPTY_PIECE))
+        self.assertEqual(read_vtu(path, ("mass",))["points"].shape, (0, 3))
+
+    def test_ascii_and_uncompressed_arrays(self) -> None:
+        raw = sample_run.base64.b64encode(
+            sample_run.struct.pack("<I3f", 12, 7., 8., 9.)).decode()
+        text = ('<VTKFile byte_order="LittleEndian"><UnstructuredGrid>'
+                '<Piece NumberOfPoints="3"><Points><DataArray type="Float64" '
+                'NumberOfComponents="3" format="ascii">0 1 2 3 4 5 6 7 8</DataArray></Points>'
+                '<PointData><DataArray type="Float32" Name="mass" format="binary">'
+                f'{raw}</DataArray></PointData></Piece></UnstructuredGrid></VTKFile>')
+        found = read_vtu(self.file("a.vtu", text), ("mass",))
+        np.testing.assert_array_equal(found["points"], np.arange(9.).reshape(3, 3))
+        np.testing.assert_array_equal(found["mass"], [7., 8., 9.])
+
+    def test_file_that_is_not_complete(self) -> None:
+        text = sample_run.vtu(self.piece(slice(0, 10)))
+        for part in (text[:len(text) // 2], text.replace("eJ", "eA", 1), ""):
+            with self.assertRaises(VtkError):
+                read_vtu(self.file("a.vtu", part), ("mass",))
+
+    def test_index(self) -> None:
+        path = self.file("a.pvd", sample_run.pvd([(0.1, "a_0.vtu"), (0.25, "a_1.vtu")]))
+        self.assertEqual([(entry.time, entry.file.name) for entry in read_pvd(path)],
+                         [(0.1, "a_0.vtu"), (0.25, "a_1.vtu")])
+        self.assertEqual(read_pvd(self.folder / "none.pvd"), [])
+
+
+class Tables(InFolder):
+    def test_layers(self) -> None:
+        layers = read_layers(self.file("layers.csv", sample_run.LAYERS))
+        self.assertEqual(len(layers), 3)
+        self.assertTrue(np.isnan(layers.lrd[0]) and np.isnan(layers.crd[1]))
+        np.testing.assert_array_equal(layers.lrd[1:], [0.5, 0.55])
+        np.testing.assert_allclose(layers.arrived, [4e-8, 1.4e-7, 1.52e-7])
+
+    def test_row_that_is_not_complete_is_dropped(self) -> None:
+        layers = read_layers(self.file("layers.csv", sample_run.LAYERS + "3,0.4,4e-"))
+        self.assertEqual(layers.last, 2)
+
+    def test_tables_without_layers(self) -> None:
+        header = sample_run.LAYERS.splitlines()[0]
+        for text in ("", header + "\n", "layer,time\n0,1\n", header + "\n" + 12 * "x," + "x\n"):
+            with self.assertRaises(ReportError):
+                read_layers(self.file("layers.csv", text))
+
+    def test_measured_densities(self) -> None:
+        measured = read_measured()
+        np.testing.assert_array_equal(measured.layer, np.arange(1, 21))
+        np.testing.assert_allclose(measured.repeats.mean(axis=1), measured.mean, atol=2e-6)
+        np.testing.assert_allclose(measured.repeats.std(axis=1, ddof=1), measured.std, atol=2e-6)
+        self.assertEqual(measured.layer[measured.mean.argmax()], 18)
+
+    def test_counting_noise(self) -> None:
+        layers = read_layers(self.file("layers.csv", sample_run.LAYERS))
+        noise = counting_noise(layers, full_layer_mass=2.4e-7, grain=5e-10)
+        self.assertTrue(np.isnan(noise.lrd[0]) and np.isnan(noise.crd[1]))
+        np.testing.assert_allclose(noise.lrd[1], np.sqrt((1.4e-7 + 2e-8) * 5e-10) / 2.4e-7)
+        np.testing.assert_allclose(noise.crd[2], noise.lrd[2])
+
+    def test_numbers(self) -> None:
+        self.assertEqual([number(value) for value in (0., 0.12345, -1.5, 1234567., 2.816e-7)],
+                         ["0", "0.123", "\u22121.5", "1\u202f230\u202f000",
+                          "2.82\u00a0×\u00a010⁻⁷"])
+
+
+class Geometry(unittest.TestCase):
+    def setUp(self) -> None:
+        self.apparatus = Apparatus.of(parse_prm(sample_run.PARAMETERS))
+
+    def test_places(self) -> None:
+        a = self.apparatus
+        np.testing.assert_allclose([a.x_gap, a.x_plate, a.x_plate_end, a.x_exit, a.x_end],
+                                   [2.0e-3, 2.1e-3, 3.6e-3, 3.7e-3, 4.2e-3])
+        np.testing.assert_allclose(a.full_layer_mass, 4000. * 1.5e-3 * 4e-4 * 1e-4)
+        self.assertAlmostEqual(a.spreader_tip(), 4.0e-3)
+        self.assertAlmostEqual(a.spreader_outline(a.spreader_tip())[:, 1].min(), 1e-4)
+
+    def test_platform_has_made_its_stroke_at_the_weighing(self) -> None:
+        for layer in range(3):
+            self.assertAlmostEqual(self.apparatus.platform_height(layer, [0.1, 0.2, 0.3]), -2e-4)
+
+    def test_displacement_counts_in_the_plane_of_the_passes(self) -> None:
+        _, fields = sample_run.bed(1)
+        moved = moved_over_plate(fields)[fields["tracked"] > 0]
+        np.testing.assert_allclose(moved, 5e-6)
+
+
+class Report(InFolder):
+    def make(self, *options: str) -> tuple[int, str, str]:
+        """Exit code, output and errors of the script for the folder of the test."""
+        output, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            code = report.main([str(self.folder), *options])
+        return code, output.getvalue(), errors.getvalue()
+
+    def page(self) -> str:
+        """The page, after the checks that hold for every report."""
+        code, output, errors = self.make()
+        self.assertEqual((code, errors), (0, ""))
+        self.assertEqual(output, f"Report: {self.folder / 'report.html'}\n")
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        links = re.findall(r"""(?i)(?:\b(?:src|href|srcset)\s*=|url\()\s*["']?([^"')\s]*)""", page)
+        self.assertEqual([link[:80] for link in links if not link.startswith(("#", "data:"))], [])
+        self.assertEqual(re.findall(r"(?i)@import|<script|<link", page), [])
+        ids = re.findall(r'\bid="([^"]+)"', page)
+        self.assertEqual(len(ids), len(set(ids)))
+        return page
+
+    def assert_says(self, text: str) -> None:
+        """That the page has a text; a failure does not print the page."""
+        self.assertTrue(text in self.page(), f"The page lacks '{text}'.")
+
+    def test_whole_run(self) -> None:
+        sample_run.write_run(self.folder)
+        page = self.page()
+        self.assertEqual(page.count("<figure>"), 5)
+        for text in ("52.5", "in layers 1 to 2", "highest in layer 2", "full-size apparatus",
+                     "abc1234", "Went to the collector", "0\u00a0% are static",
+                     "set process = powder spreading"):
+            self.assertTrue(text in page, f"The page lacks '{text}'.")
+        self.assertFalse('class="notice"' in page)
+
+    def test_run_of_one_layer(self) -> None:
+        sample_run.write_run(self.folder, layers=1)
+        self.assert_says("takes two weighings")
+
+    def test_run_without_pictures_that_has_not_finished(self) -> None:
+        sample_run.write_run(self.folder, layers=2, pictures=False, summary=False)
+        self.assert_says("The run has not finished (there is no summary.json): 2 of 3 layers")
+        self.assert_says("no pictures of the particles")
+
+    def test_run_with_a_broken_picture(self) -> None:
+        sample_run.write_run(self.folder)
+        self.file("spreading_layers_00002.vtu", "<VTKFile>")
+        self.assert_says("spreading_layers_00002.vtu cannot be read")
+
+    def test_run_without_parameters(self) -> None:
+        sample_run.write_run(self.folder)
+        (self.folder / "used.prm").unlink()
+        self.assert_says("used.prm is missing")
+
+    def test_run_that_was_no_spreading(self) -> None:
+        self.file("summary.json", json.dumps(sample_run.SUMMARY))
+        self.file("heap_00000.vtu", sample_run.vtu(sample_run.piece(*sample_run.bed(0))))
+        self.file("heap.pvd", sample_run.pvd([(0.5, "heap_00000.vtu")]))
+        self.assert_says("The last picture")
+        self.assert_says("abc1234")
+
+    def test_other_place_of_the_page(self) -> None:
+        sample_run.write_run(self.folder, layers=1, pictures=False)
+        target = self.folder / "other.html"
+        self.assertEqual(self.make("--out", str(target))[0], 0)
+        self.assertTrue(target.is_file())
+
+    def test_folders_without_a_run(self) -> None:
+        for prepare in (lambda: None, lambda: self.file("used.prm", sample_run.PARAMETERS),
+                        lambda: self.file("layers.csv", sample_run.LAYERS.splitlines()[0])):
+            prepare()
+            code, output, errors = self.make()
+            self.assertEqual((code, output), (2, ""))
+            self.assertRegex(errors, r"^[^\n]*layers\.csv[^\n]*\.\n$")
+            self.assertFalse((self.folder / "report.html").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

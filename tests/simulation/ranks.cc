@@ -1,0 +1,158 @@
+// A run gives the same bits on any number of ranks, with and without load balancing: a cohesive
+// powder rains into a periodic box, is stirred by a turning paddle, slides on a moving floor and
+// leaves over an outlet, while more is inserted. Every rank runs the case alone first, then all
+// run it together.
+
+#include "../tests.h"
+
+using namespace test;
+
+namespace {
+
+std::string input(const std::string &balancing)
+{
+  return R"(
+    subsection simulation control
+      set time step = 4e-6
+      set time end = 0.024
+      set log frequency = 0
+      set output path = results
+    end
+    subsection mesh
+      set grid type = subdivided_hyper_rectangle
+      set grid arguments = 5, 4, 2 : 0, 0, 0 : 10e-3, 8e-3, 4e-3 : true
+      set initial refinement = 0
+    end
+    subsection DEM boundary conditions
+      set number of boundary conditions = 3
+      subsection boundary condition 0
+        set type = periodic
+        set periodic id 0 = 4
+        set periodic id 1 = 5
+        set periodic direction = 2
+      end
+      subsection boundary condition 1
+        set type = outlet
+        set boundary id = 1
+      end
+      subsection boundary condition 2
+        set type = translational
+        set boundary id = 2
+        set speed x = 0.3
+      end
+    end
+    subsection lagrangian physical properties
+      set g = 0, -9.81, 0
+      set number of particle types = 2
+      subsection particle type 0
+        set size distribution type = normal
+        set average diameter = 0.7e-3
+        set standard deviation = 0.1e-3
+        set number of particles = 180
+        set density particles = 2000
+        set restitution coefficient particles = 0.5
+        set friction coefficient particles = 0.4
+        set surface energy particles = 0.01
+      end
+      subsection particle type 1
+        set average diameter = 0.5e-3
+        set number of particles = 90
+        set restitution coefficient particles = 0.9
+        set friction coefficient particles = 0.2
+        set surface energy particles = 0.005
+      end
+      set friction coefficient wall = 0.5
+      set restitution coefficient wall = 0.3
+      set surface energy wall = 0.01
+    end
+    subsection insertion info
+      set inserted number of particles at each time step = 90
+      set insertion frequency = 1500
+      set insertion box points coordinates = 0, 4e-3, 0 : 10e-3, 8e-3, 4e-3
+      set insertion distance threshold = 1.1
+      set insertion maximum offset = 0.1
+      set initial velocity = 0, -0.5, 0.2
+    end
+    subsection model parameters
+      set particle particle contact force method = DMT
+      set particle wall contact force method = DMT
+      set rolling resistance torque method = epsd
+      set f coefficient = 0.1
+      subsection contact detection
+        set neighborhood threshold = 1.15
+      end
+      subsection load balancing
+)" + balancing +
+         R"(
+      end
+    end
+    subsection solid objects
+      subsection solid surfaces
+        set number of solids = 1
+        subsection solid object 0
+          subsection mesh
+            set type = shape
+            set grid type = box
+            set grid arguments = 4e-3, 1e-3, -2e-3 : 5e-3, 3e-3, 6e-3
+          end
+          set center of rotation = 4.5e-3, 2e-3, 0
+          subsection angular velocity
+            set Function expression = 0; 0; 40
+          end
+        end
+      end
+    end
+)";
+}
+
+struct Result
+{
+  std::vector<std::vector<double>> particles;
+  std::vector<double> load;
+  ExactSum lost;
+  unsigned long long balances;
+};
+
+Result run(const std::string &balancing, MPI_Comm comm)
+{
+  Case test_case(input(balancing) + "subsection post-processing\n subsection solid forces\n"
+                                    "  set calculation = true\n  set output frequency = 6000\n"
+                                    " end\nend\n",
+                 comm);
+  test_case.run();
+  Result result;
+  result.particles = particle_table(*test_case);
+  for (const ExactSum &component : test_case->global_solid_loads().back().force)
+    result.load.push_back(component.value());
+  result.lost = test_case->get_ledger().through_outlet[0].global(comm).mass;
+  result.balances = test_case->get_system().n_balances();
+  return result;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  // Ranks that run alone share the folder of the results but not its files' names.
+  Result alone;
+  if (is_first_rank())
+    alone = run("set load balance method = none", MPI_COMM_SELF);
+  alone.particles = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, alone.particles, 0);
+  for (const char *const balancing :
+       {"set load balance method = none",
+        "set load balance method = frequent\n set frequency = 100",
+        "set load balance method = dynamic\n set threshold = 0.1\n set dynamic check frequency = "
+        "50"})
+  {
+    const Result together = run(balancing, MPI_COMM_WORLD);
+    if (!is_first_rank())
+      continue;
+    check("all particles are there",
+          together.particles.size() == alone.particles.size() && together.particles.size() > 150);
+    check("the same bits", together.particles == alone.particles);
+    check("the same force on the paddle",
+          together.load == alone.load && std::abs(alone.load[1]) > 0.);
+    check("the same mass lost", together.lost == alone.lost && alone.lost.value() > 0.);
+  }
+}

@@ -1,0 +1,67 @@
+// Rolling resistance in a head-on impact. It brakes the spin of one body against the other in the
+// plane of the contact: opposite spins lose mu_r R_e times the normal impulse, equal spins nothing.
+
+#include "../spheres.h"
+
+using namespace test;
+
+namespace {
+
+const double radius = 0.5e-3, rolling_friction = 0.02, speed = 0.5;
+
+/// Two spheres, or one on the floor, after an elastic impact without friction.
+std::vector<Sphere> collide(const std::string &rolling, const Vec3 &normal, const Vec3 &spin_0,
+                            const Vec3 &spin_1, bool floor)
+{
+  Scene s;
+  s.rolling = rolling;
+  s.floor = floor;
+  s.particle.rolling_friction = s.wall.rolling_friction = rolling_friction;
+  s.spheres = {{-radius * normal, speed * normal, spin_0, 2. * radius}};
+  if (!floor)
+    s.spheres.push_back({radius * normal, -speed * normal, spin_1, 2. * radius});
+  const double share = floor ? 1. : 0.5;
+  const double duration =
+      Impact(s.particle, s.wall, share * s.mass(s.spheres[0]), share * radius, speed / share)
+          .duration();
+  s.time_step = duration / 5000.;
+  s.time_end = 1.5 * duration;
+  return run(s);
+}
+
+void check_pair(const std::string &name, const Vec3 &normal, const Vec3 &turn)
+{
+  const double w = 1000.;
+  // m_e = m/2, R_e = R/2 and a relative speed of twice the speed of each.
+  const double lost = rolling_friction * 0.5 * radius * 2. * speed / (0.4 * radius * radius);
+  std::vector<Sphere> after = collide("constant", normal, w * turn, -w * turn, false);
+  check_relative(name + "opposite spins, first", dot(after[0].w, turn), w - lost, 1e-4);
+  check_relative(name + "opposite spins, second", dot(after[1].w, turn), -w + lost, 1e-4);
+  for (const std::string rolling : {"constant", "epsd"}) {
+    after = collide(rolling, normal, w * turn, w * turn, false);
+    check(name + "equal spins, " + rolling, after[0].w == w * turn && after[1].w == w * turn);
+  }
+}
+
+void check_floor()
+{
+  const double w = 2000.;
+  const double lost = rolling_friction * radius * 2. * speed / (0.4 * radius * radius);
+  const Vec3 down = {0., 0., -1.}, turn = {0.6, -0.8, 0.};
+  check_relative("floor: roll", dot(collide("constant", down, w * turn, {}, true)[0].w, turn),
+                 w - lost, 1e-4);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const Vec3 axes[] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}};
+  for (unsigned int n = 0; n < 3; ++n)
+    for (unsigned int t = 0; t < 3; ++t)
+      if (t != n)
+        check_pair(std::string("pair along ") + "xyz"[n] + ", spin about " + "xyz"[t] + ": ",
+                   axes[n], axes[t]);
+  check_floor();
+}

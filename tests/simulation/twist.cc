@@ -1,0 +1,45 @@
+// Twist, relative spin about the normal, is not rolling: neither rolling resistance nor friction
+// brakes it. In the plane of the contact there is then no direction but that of rounding errors, in
+// which the constant torque must not act for long.
+
+#include "../spheres.h"
+
+using namespace test;
+
+namespace {
+
+/// Share of its spin that a sphere loses in an elastic impact while it spins about the normal.
+double lost_twist(const std::string &rolling, const Vec3 &normal, bool floor)
+{
+  const double radius = 0.5e-3, speed = 0.5, w = 1000.;
+  Scene s;
+  s.rolling = rolling;
+  s.floor = floor;
+  s.particle.friction = s.particle.rolling_friction = 0.5;
+  s.wall = s.particle;
+  s.spheres = {{-radius * normal, speed * normal, w * normal, 2. * radius}};
+  if (!floor)
+    s.spheres.push_back({radius * normal, -speed * normal, -w * normal, 2. * radius});
+  const double share = floor ? 1. : 0.5;
+  const double duration =
+      Impact(s.particle, s.wall, share * s.mass(s.spheres[0]), share * radius, speed / share)
+          .duration();
+  s.time_step = duration / 5000.;
+  s.time_end = 1.5 * duration;
+  return norm(run(s)[0].w - w * normal) / w;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  for (const std::string rolling : {"none", "constant", "epsd"}) {
+    const Vec3 oblique = {0.48, 0.64, 0.6};
+    check_close(rolling + ", along x", lost_twist(rolling, {1., 0., 0.}, false), 0., 1e-6);
+    check_close(rolling + ", along y", lost_twist(rolling, {0., 1., 0.}, false), 0., 1e-6);
+    check_close(rolling + ", along z", lost_twist(rolling, {0., 0., 1.}, false), 0., 1e-6);
+    check_close(rolling + ", oblique", lost_twist(rolling, oblique, false), 0., 1e-6);
+    check_close(rolling + ", on the floor", lost_twist(rolling, {0., 0., -1.}, true), 0., 1e-6);
+  }
+}

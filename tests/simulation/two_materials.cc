@@ -1,0 +1,92 @@
+// Two types of particles and walls, all of different materials: every contact takes the constants
+// of its own pair. A sphere of each type meets the floor, and they meet each other.
+
+#include "../spheres.h"
+
+using namespace test;
+
+namespace {
+
+/// A body that is met from above: a sphere, or the floor.
+Sphere lower_body(const std::vector<Sphere> &spheres, int index)
+{
+  Sphere floor;
+  floor.diameter = 0.;
+  return index < 0 ? floor : spheres[index];
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Scene scene;
+  scene.floor = true;
+  scene.half_width = 20e-3;
+  scene.density = 1500.;
+  Material other = scene.particle;
+  scene.particle.restitution = 0.9;
+  other.restitution = 0.3;
+  other.young_modulus = 1e8;
+  other.poisson_ratio = 0.1;
+  scene.wall.restitution = 0.5;
+  scene.wall.young_modulus = 3e7;
+  scene.wall.poisson_ratio = 0.45;
+  const double other_density = 4000., radius = 0.5e-3, other_radius = 0.3e-3;
+  scene.more = "subsection lagrangian physical properties\n" +
+               Scene::entry("number of particle types", "2") + "subsection particle type 1\n" +
+               Scene::entry("diameter", 2. * other_radius) +
+               Scene::entry("density particles", other_density) +
+               Scene::material(other, "particles") + "end\nend\n";
+
+  NewParticle guest;
+  guest.type = 1;
+  guest.radius = other_radius;
+  guest.mass = sphere_mass(other_radius, other_density);
+  const double m0 = sphere_mass(radius, scene.density), m1 = guest.mass;
+  const double speed = 0.5;
+
+  // Sphere 0 is the host of type 0, sphere 1 the guest of type 1, -1 the floor; who is neither
+  // upper nor lower is far away.
+  const auto collide = [&](const std::string &name, int upper, int lower, const Impact &reference) {
+    std::vector<Sphere> start(2);
+    start[0].diameter = 2. * radius;
+    start[1].diameter = 2. * other_radius;
+    start[0].x.z = 5e-3;
+    start[1].x.z = 15e-3;
+    const Sphere below = lower_body(start, lower);
+    const double touching = start[upper].radius() + below.radius();
+    start[upper].x.z = below.x.z + touching;
+    start[upper].v.z = -speed;
+
+    Scene s = scene;
+    s.spheres = {start[0]};
+    s.time_step = reference.duration() / 10000.;
+    s.time_end = 4. * reference.duration();
+    double deepest = 0.;
+    const std::vector<Sphere> end = run(s, [&](Simulation &simulation) {
+      if (simulation.step_number() == 0) {
+        Delivery delivery;
+        delivery.particles = {guest};
+        delivery.particles[0].id = simulation.next_id++;
+        delivery.particles[0].position = start[1].x;
+        delivery.particles[0].velocity = start[1].v;
+        simulation.exchange(delivery, {});
+      }
+      const std::vector<Sphere> now = spheres_of(simulation);
+      deepest = std::max(deepest, touching - now[upper].x.z + lower_body(now, lower).x.z);
+    });
+    const double rebound = end[upper].v.z - lower_body(end, lower).v.z;
+    const double d = reference.damping;
+    check_relative(name + ": restitution", rebound / speed,
+                   std::exp(-M_PI * d / std::sqrt(1. - d * d)), 1e-3);
+    check_relative(name + ": overlap", deepest, reference.overlap(), 1e-3);
+    if (lower >= 0)
+      check_relative(name + ": momentum", m0 * end[0].v.z + m1 * end[1].v.z, -m1 * speed, 1e-12);
+  };
+  collide("type 0 and floor", 0, -1, Impact(scene.particle, scene.wall, m0, radius, speed));
+  collide("type 1 and floor", 1, -1, Impact(other, scene.wall, m1, other_radius, speed));
+  collide("type 1 and type 0", 1, 0,
+          Impact(scene.particle, other, m0 * m1 / (m0 + m1),
+                 radius * other_radius / (radius + other_radius), speed));
+}

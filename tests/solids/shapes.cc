@@ -1,0 +1,124 @@
+// Surfaces made in code have the area, the extent and the open edges of what they are named after,
+// by formulas; arguments that make no sense are answered by a sentence.
+
+#include "surfaces.h"
+
+using namespace test;
+
+namespace {
+
+double area(const TriangleMesh &mesh)
+{
+  double sum = 0.;
+  for (const auto &t : mesh.triangles)
+    sum += 0.5 * norm(cross(mesh.vertices[t[1]] - mesh.vertices[t[0]],
+                            mesh.vertices[t[2]] - mesh.vertices[t[0]]));
+  return sum;
+}
+
+/// Length of the edges that belong to one triangle only; -1 if some belong to more than two.
+double open_length(TriangleMesh mesh)
+{
+  mesh.merge_vertices(1e-12);
+  std::map<std::pair<int, int>, int> count;
+  for (const auto &t : mesh.triangles)
+    for (unsigned int e = 0; e < 3; ++e)
+      ++count[std::minmax(t[e], t[(e + 1) % 3])];
+  double sum = 0.;
+  for (const auto &[edge, n] : count) {
+    if (n > 2)
+      return -1.;
+    if (n == 1)
+      sum += norm(mesh.vertices[edge.first] - mesh.vertices[edge.second]);
+  }
+  return sum;
+}
+
+/// Compares a named shape with what it should be.
+void examine(const std::string &name, const std::string &text, double expected_area,
+             double expected_open_length, const Box &expected_box)
+{
+  ShapeArguments arguments(text);
+  const TriangleMesh mesh = named_shapes().make(name, arguments);
+  arguments.finish();
+  check("defect of " + name, mesh.defect().empty(), mesh.defect());
+  check_relative("area of " + name, area(mesh), expected_area, 1e-13);
+  check_close("length of the open edges of " + name, open_length(mesh), expected_open_length,
+              1e-13);
+  const Box box = TriangulatedSurface(mesh).bounding_box();
+  check_close("extent of " + name,
+              norm(box.lower - expected_box.lower) + norm(box.upper - expected_box.upper), 0.,
+              1e-15);
+}
+
+/// What is said about arguments that make no sense.
+void examine_error(const std::string &name, const std::string &text, const std::string &sentence)
+{
+  std::string answer = "nothing";
+  try {
+    ShapeArguments arguments(text);
+    named_shapes().make(name, arguments);
+    arguments.finish();
+  } catch (const std::invalid_argument &error) {
+    answer = error.what();
+  }
+  check("'" + text + "' for " + name, answer == sentence, answer);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+
+  examine("plane", "1e-3, 0, 2e-3 : 3e-3, 0, 4e-3 : 0, 2e-3, 0", 5e-3 * 2e-3, 2. * (5e-3 + 2e-3),
+          {{1e-3, 0., 2e-3}, {4e-3, 2e-3, 6e-3}});
+  examine("box", "-1e-3, 0, 1e-3 : 1e-3, 3e-3, 6e-3", 2. * (6e-6 + 10e-6 + 15e-6), 0.,
+          {{-1e-3, 0., 1e-3}, {1e-3, 3e-3, 6e-3}});
+
+  // A multiple of four facets has corners on all four sides.
+  const double R = 2e-3, facet = 2. * R * std::sin(M_PI / 24.);
+  examine("cylinder_shell", "1e-3, 2e-3, 3e-3 : 0, 0, 5e-3 : 2e-3 : 24", 24 * facet * 5e-3,
+          2. * 24 * facet, {{-1e-3, 0., 3e-3}, {3e-3, 4e-3, 8e-3}});
+  const TriangleMesh tilted = shapes::cylinder_shell({1., 2., 3.}, {3., 0., 4.}, 2., 24);
+  double off_axis = 0.;
+  const Vec3 along = {0.6, 0., 0.8};
+  for (const Vec3 &x : tilted.vertices) {
+    const Vec3 d = x - Vec3{1., 2., 3.};
+    off_axis = std::max(off_axis, std::abs(norm(d - dot(d, along) * along) - 2.));
+  }
+  check_close("corners of a tilted cylinder off its radius", off_axis, 0., 1e-14);
+  check_relative("area of a tilted cylinder", area(tilted),
+                 24 * 2. * 2. * std::sin(M_PI / 24.) * 5., 1e-13);
+
+  const double half_facet = 2. * 0.4e-3 * std::sin(M_PI / 2. / 32.), sides = 2. * (1e-3 - 0.4e-3);
+  examine("half_round_bar", "1e-3, 0.1e-3, 0 : 2e-3 : 0.4e-3 : 1e-3 : 32",
+          (32 * half_facet + sides) * 2e-3, 2. * (32 * half_facet + sides) + 2. * 2e-3,
+          {{0.6e-3, 0.1e-3, 0.}, {1.4e-3, 1.1e-3, 2e-3}});
+  examine("half_round_bar", "0, 0, 0 : 2e-3 : 0.4e-3 : 0.4e-3 : 32", 32 * half_facet * 2e-3,
+          2. * 32 * half_facet + 2. * 2e-3, {{-0.4e-3, 0., 0.}, {0.4e-3, 0.4e-3, 2e-3}});
+  examine("flat_blade", "1e-3, 0.1e-3, 0 : 2e-3 : 0.3e-3 : 1e-3", (0.3e-3 + 2. * 1e-3) * 2e-3,
+          2. * (0.3e-3 + 2. * 1e-3) + 2. * 2e-3, {{0.7e-3, 0.1e-3, 0.}, {1e-3, 1.1e-3, 2e-3}});
+
+  examine_error("plane", "0,0,0 : 1,0,x : 0,0,1", "'x' is not a number");
+  examine_error("plane", "0,0,0 : 1,0, : 0,0,1", "'' is not a number");
+  examine_error("plane", "0,0,0 : 1,0 : 0,0,1", "argument 2 has 2 values instead of 3");
+  examine_error("plane", "0,0,0 : 1,0,0", "there are too few arguments");
+  examine_error("box", "0,0,0 : 1,1,1 : 2", "there are too many arguments");
+  for (const std::string count : {"0", "-3", "2.5", "1e9"})
+    examine_error("cylinder_shell", "0,0,0 : 0,0,1 : 1 : " + count,
+                  "argument 4 is no positive whole number");
+
+  std::string message;
+  try {
+    Case test_case(box_input(
+        1e-5, 1e-4, insertion_input({{}}) + shape_input("flat_blade", "0,0,0 : 1e-3 : 1e-4")));
+  } catch (const UserError &error) {
+    message = error.what();
+  }
+  check("the message names the solid",
+        message == "subsection 'solid objects' / subsection 'solid "
+                   "surfaces' / subsection 'solid object 0' / "
+                   "subsection 'mesh': there are too few arguments",
+        message);
+}

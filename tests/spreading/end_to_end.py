@@ -1,0 +1,110 @@
+"""A small spreading run from its input file to its results, checked against itself: the mass on the
+plate is what the pictures say, the densities follow from it, the plate falls by one layer after
+another, and nothing is lost unaccounted.
+
+Usage: end_to_end.py path/to/eunoe-particles case.prm folder ranks
+Exit code 77 if numpy is missing, for a test that is skipped.
+"""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    sys.exit(77)
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib" / "postprocessing"))
+from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
+
+LAYER_THICKNESS, DENSITY, DEPTH = 100e-6, 4386., 0.25e-3
+PLATE_LENGTH, GAP = 73e-3 * 0.01, 0.1e-3
+PLATE_START = (69e-3 + 56e-3) * 0.01 + GAP
+FIELDS = ["mass", "layer", "tracked", "displacement", "on_plate"]
+FULL_LAYER = DENSITY * PLATE_LENGTH * DEPTH * LAYER_THICKNESS
+
+
+def run(program: str, case: str, folder: Path, ranks: int) -> None:
+    command = [program, case, "--set", f"simulation control/output path = {folder}"]
+    if ranks > 1:
+        root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+        command = ["mpirun", "--oversubscribe", "-np", str(ranks), *root, *command]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+
+
+def close(name: str, value: float, reference: float, relative: float) -> None:
+    assert math.isclose(value, reference, rel_tol=relative, abs_tol=1e-30), \
+        f"{name}: {value} instead of {reference}"
+
+
+def check_layers(rows: list[dict[str, str]], folder: Path) -> None:
+    masses = [float(row["mass"]) for row in rows]
+    pictures = read_pvd(folder / "spreading_layers.pvd")
+    solids = read_pvd(folder / "spreading_layers_solids.pvd")
+    assert [int(row["layer"]) for row in rows] == [0, 1, 2]
+    assert len(pictures) == len(solids) == len(rows)
+    heights = []
+    for k, (row, picture) in enumerate(zip(rows, pictures)):
+        close("time of the picture", picture.time, float(row["time"]), 1e-15)
+        particles = read_vtu(picture.file, FIELDS)
+        x = particles["points"][:, 0].astype(float)
+        on_plate = particles["on_plate"] == 1
+        over = (x >= PLATE_START) & (x < PLATE_START + PLATE_LENGTH)
+        # Positions in the pictures are single precision: those at the very edge may differ.
+        assert np.count_nonzero(on_plate & ~over) <= 1
+        assert int(row["particles"]) == np.count_nonzero(on_plate)
+        close(f"mass of layer {k}", float(particles["mass"][on_plate].sum(dtype=float)),
+              masses[k], 1e-6)
+        layer = particles["layer"][on_plate]
+        assert layer.min() >= 0 and layer.max() == k
+        if k == 0:
+            assert row["LRD"] == "" and row["CRD"] == ""
+            continue
+        close(f"LRD of layer {k}", float(row["LRD"]), (masses[k] - masses[k - 1]) / FULL_LAYER, 1e-9)
+        if k >= 2:
+            close(f"CRD of layer {k}", float(row["CRD"]),
+                  (masses[k] - masses[1]) / (FULL_LAYER * (k - 1)), 1e-9)
+        assert 0.2 < float(row["LRD"]) < 1., "a density that no powder has"
+        kept = on_plate & (particles["tracked"] == 1)
+        close("mass removed", float(row["mass_removed"]),
+              masses[k - 1] - float(particles["mass"][kept].sum(dtype=float)), 1e-4)
+        moved = np.linalg.norm(particles["displacement"][kept], axis=1)
+        assert moved.max() < PLATE_LENGTH + DEPTH, "a displacement larger than the plate"
+    for picture in solids:
+        surfaces = read_vtu(picture.file, [])
+        # The measuring plate alone has its corners at this place.
+        corners = np.isclose(surfaces["points"][:, 0], PLATE_START, rtol=1e-6)
+        heights.append(float(surfaces["points"][corners, 1].max()))
+    for k, height in enumerate(heights):
+        # The weighing falls within the first step of the plate's next stroke.
+        assert abs(height + k * LAYER_THICKNESS) < 1e-4 * LAYER_THICKNESS, f"plate at {height} m"
+
+
+def check_summary(summary: dict, rows: list[dict[str, str]]) -> None:
+    assert summary["mass_balance_error"] == 0., "mass is lost unaccounted"
+    assert summary["inserted_particles"] == (summary["particles"] + summary["taken_out_particles"]
+                                             + summary["outlet_particles"])
+    close("powder in the gap", sum(float(row["mass_to_gap"]) for row in rows),
+          summary["outlet_2_mass"], 0.05)
+    close("powder in the collector", sum(float(row["mass_to_collector"]) for row in rows),
+          summary["outlet_1_mass"], 0.05)
+
+
+def main() -> int:
+    program, case, folder, ranks = sys.argv[1:]
+    run(program, case, Path(folder), int(ranks))
+    with open(Path(folder) / "layers.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    check_layers(rows, Path(folder))
+    check_summary(json.loads((Path(folder) / "summary.json").read_text()), rows)
+    print("ok")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
