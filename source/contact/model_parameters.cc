@@ -85,10 +85,10 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   prm.enter_subsection("contact detection");
   declare::choice(prm, "contact detection method", detection_method, "constant|dynamic",
                   "Search for pairs every so many steps, or when a particle has moved too far.");
-  prm.add_parameter("frequency", detection_frequency,
-                    "Steps between searches (constant) or between looks at the displacement "
-                    "(dynamic).",
-                    declare::Patterns::Integer(1));
+  declare::count(prm, "frequency", detection_frequency,
+                 "Steps between searches (constant) or between looks at the displacement "
+                 "(dynamic).",
+                 1);
   prm.add_parameter("dynamic contact search size coefficient", displacement_share,
                     "Share of the safe displacement after which the search is repeated.",
                     declare::Patterns::Double(1e-3, 1.));
@@ -102,19 +102,18 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "load balance method", load_balancing.method, "none|once|frequent|dynamic",
                   "When the cells are shared out anew over the ranks. It happens at the next "
                   "contact search and never changes a result.");
-  prm.add_parameter("step", load_balancing.step, "once: the step.");
-  prm.add_parameter("frequency", load_balancing.frequency, "frequent: steps between balances.",
-                    declare::Patterns::Integer(1));
+  declare::count(prm, "step", load_balancing.step, "once: the step.");
+  declare::count(prm, "frequency", load_balancing.frequency, "frequent: steps between balances.",
+                 1);
   prm.add_parameter("threshold", load_balancing.threshold,
                     "dynamic: balance if the largest load less the smallest exceeds this share of "
                     "the mean.",
                     declare::Patterns::Double(0.));
-  prm.add_parameter("dynamic check frequency", load_balancing.check_frequency,
-                    "dynamic: steps between looks at the loads.", declare::Patterns::Integer(1));
-  prm.add_parameter("particle weight", load_balancing.particle_weight,
-                    "Cost of a particle, beside that of a cell.");
-  prm.add_parameter("cell weight", load_balancing.cell_weight, "Cost of a cell.",
-                    declare::Patterns::Integer(1));
+  declare::count(prm, "dynamic check frequency", load_balancing.check_frequency,
+                 "dynamic: steps between looks at the loads.", 1);
+  declare::count(prm, "particle weight", load_balancing.particle_weight,
+                 "Cost of a particle, beside that of a cell.");
+  declare::count(prm, "cell weight", load_balancing.cell_weight, "Cost of a cell.", 1);
   prm.leave_subsection();
   prm.leave_subsection();
 }

@@ -81,7 +81,8 @@ public:
 
   void parse(const std::string &text, const std::string &file)
   {
-    const std::size_t depth_before = path.size();
+    const std::size_t outer_depth = open_at_start;
+    open_at_start = path.size();
     std::istringstream stream(text);
     std::string line;
     unsigned int number = 0;
@@ -98,12 +99,13 @@ public:
       if (!statement.empty())
         understand(statement, file, where);
     }
-    if (path.size() > depth_before) {
+    if (path.size() > open_at_start) {
       problems.add(file + ":",
                    "the " + describe(path, "") + " is still open at the end of the file.",
                    "Add the missing 'end'.");
-      path.resize(depth_before);
+      path.resize(open_at_start);
     }
+    open_at_start = outer_depth;
   }
 
   std::vector<InputEntry> entries;
@@ -121,7 +123,7 @@ private:
     if (word == "subsection" && !rest.empty())
       path.push_back(rest);
     else if (word == "end" && rest.empty()) {
-      if (path.empty())
+      if (path.size() == open_at_start)
         problems.add(where + ":", "there is an 'end' without a 'subsection' before it.",
                      "Remove it.");
       else
@@ -164,6 +166,7 @@ private:
   Problems &problems;
   const FileLoader &load;
   std::vector<std::string> path;
+  std::size_t open_at_start = 0; ///< number of open subsections at the start of this file
   unsigned int depth = 0;
 };
 

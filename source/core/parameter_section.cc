@@ -14,15 +14,17 @@ const InputEntry *ParameterCheck::find(const Path &path, const std::string &entr
   return it == entries.rend() ? nullptr : &*it;
 }
 
-bool ParameterCheck::is_set(const Path &path, const std::string &entry) const
+bool ParameterCheck::is_changed(const Path &path, const std::string &entry) const
 {
-  return find(path, entry) != nullptr;
+  const InputEntry *const set = find(path, entry);
+  return set != nullptr && !set->is_default;
 }
 
-bool ParameterCheck::has_entries(const std::string &subsection) const
+bool ParameterCheck::has_changes(const std::string &subsection) const
 {
   return std::any_of(entries.begin(), entries.end(), [&](const InputEntry &entry) {
-    return !entry.path.empty() && entry.path.front() == subsection;
+    return !entry.path.empty() && entry.path.front() == subsection &&
+           is_changed(entry.path, entry.name);
   });
 }
 

@@ -18,15 +18,14 @@ void ObservableParameters::declare(dealii::ParameterHandler &prm)
   prm.add_parameter("filename", solid_forces_file,
                     "Beginning of the names of the files, one a solid, with the columns time, f_x, "
                     "f_y, f_z, T_x, T_y, T_z (N, N m; torque about the centre of rotation).");
-  prm.add_parameter("output frequency", solid_forces_frequency, "Steps between two rows.",
-                    Integer(1));
+  declare::count(prm, "output frequency", solid_forces_frequency, "Steps between two rows.", 1);
   prm.leave_subsection();
 
   prm.enter_subsection("energies");
   prm.add_parameter("calculation", energies,
                     "Whether momentum and energies of the particles are recorded.");
   prm.add_parameter("filename", energies_file, "Name of the file without its ending.");
-  prm.add_parameter("output frequency", energies_frequency, "Steps between two rows.", Integer(1));
+  declare::count(prm, "output frequency", energies_frequency, "Steps between two rows.", 1);
   prm.leave_subsection();
 
   prm.enter_subsection("final state");

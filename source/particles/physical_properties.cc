@@ -62,6 +62,14 @@ double PhysicalProperties::rayleigh_time(const double radius, const double densi
   return M_PI * radius * std::sqrt(density / shear_modulus) / (0.1631 * nu + 0.8766);
 }
 
+double PhysicalProperties::largest_diameter() const
+{
+  double largest = 0.;
+  for (const ParticleType &type : types)
+    largest = std::max(largest, type.sizes.make()->largest());
+  return largest;
+}
+
 void PhysicalProperties::declare(dealii::ParameterHandler &prm)
 {
   prm.enter_subsection(section);
@@ -73,8 +81,8 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     ParticleType &type = types[t];
     prm.enter_subsection(type_section(t));
     type.sizes.declare(prm);
-    prm.add_parameter("number of particles", type.number,
-                      "Number of particles of this type to insert.");
+    declare::count(prm, "number of particles", type.number,
+                   "Number of particles of this type to insert.");
     prm.declare_alias("number of particles", "number");
     declare::positive(prm, "density particles", type.density, "Density (kg/m3).");
     declare_material(prm, type.material, "particles");

@@ -4,17 +4,6 @@
 
 namespace eunoe {
 
-double largest_diameter(const Parameters &parameters)
-{
-  double largest = 0.;
-  for (const ParticleType &type : parameters.physics.types)
-    largest = std::max(largest, type.sizes.make()->largest());
-  if (parameters.process_name == "none" && parameters.insertion.method == "list")
-    for (const double diameter : parameters.insertion.list_diameters)
-      largest = std::max(largest, diameter);
-  return largest;
-}
-
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
                   Problems &problems)
 {

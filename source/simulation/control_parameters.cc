@@ -17,18 +17,18 @@ void ControlParameters::declare(dealii::ParameterHandler &prm)
                   "Whether 'time end' or 'iteration end' ends the run. A process may end it "
                   "earlier, when all its work is done.");
   declare::positive(prm, "time end", time_end, "Simulated time at which the run ends (s).");
-  prm.add_parameter("iteration end", iteration_end, "Number of steps of the run.");
+  declare::count(prm, "iteration end", iteration_end, "Number of steps of the run.");
   prm.add_parameter("output path", output_path, "Folder of all results; created if missing.");
   prm.add_parameter("output name", output_name,
                     "Beginning of the names of the .pvd and .vtu files.");
   declare::choice(prm, "output control", output_control, "iteration|time",
                   "Whether 'output frequency' or 'output time' rules the files for pictures.");
-  prm.add_parameter("output frequency", output_frequency,
-                    "Steps between files for pictures; 0: none.");
+  declare::count(prm, "output frequency", output_frequency,
+                 "Steps between files for pictures; 0: none.");
   declare::positive(prm, "output time", output_time,
                     "Simulated time between files for pictures (s).");
-  prm.add_parameter("log frequency", log_frequency,
-                    "Steps between lines of a log that is no terminal; 0: none.");
+  declare::count(prm, "log frequency", log_frequency,
+                 "Steps between lines of a log that is no terminal; 0: none.");
   prm.leave_subsection();
 }
 

@@ -54,7 +54,7 @@ void BoundaryParameters::declare(dealii::ParameterHandler &prm)
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     BoundaryCondition &c = conditions[k];
     prm.enter_subsection(condition_section(k));
-    prm.add_parameter("boundary id", c.id, "The boundary (not for periodic ones).");
+    declare::count(prm, "boundary id", c.id, "The boundary (not for periodic ones).");
     declare::choice(prm, "type", c.type, "fixed_wall|outlet|translational|rotational|periodic",
                     "outlet: particles leave and are counted; translational and rotational: a wall "
                     "whose surface moves in place.");
@@ -66,8 +66,8 @@ void BoundaryParameters::declare(dealii::ParameterHandler &prm)
                     "rotational: direction of the axis.");
     declare::vector(prm, "point on rotational vector", c.rotation_point,
                     "rotational: a point of the axis (m).");
-    prm.add_parameter("periodic id 0", c.periodic_ids[0], "periodic: one boundary ...");
-    prm.add_parameter("periodic id 1", c.periodic_ids[1], "periodic: ... and its partner.");
+    declare::count(prm, "periodic id 0", c.periodic_ids[0], "periodic: one boundary ...");
+    declare::count(prm, "periodic id 1", c.periodic_ids[1], "periodic: ... and its partner.");
     prm.add_parameter("periodic direction", c.periodic_direction,
                       "periodic: axis from one to the other, 0, 1 or 2.", Integer(0, 2));
     prm.leave_subsection();

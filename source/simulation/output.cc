@@ -5,6 +5,7 @@
 
 #include <deal.II/base/data_out_base.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -163,6 +164,8 @@ void PictureSeries::write(const double time, const ParticleArrays &particles,
 
 void PictureSeries::write(const double time, const std::vector<Solid> &solids)
 {
+  if (std::none_of(solids.begin(), solids.end(), [](const Solid &s) { return s.output; }))
+    return;
   const std::string path = folder + "/" + next_file(time);
   bool written = true;
   if (is_first(comm))

@@ -127,21 +127,13 @@ void Parameters::declare(dealii::ParameterHandler &prm)
     section->declare(prm);
 }
 
-std::string Parameters::as_input_file()
-{
-  dealii::ParameterHandler prm;
-  declare(prm);
-  std::ostringstream text;
-  prm.print_parameters(text, dealii::ParameterHandler::Text);
-  return text.str();
-}
-
-void Parameters::set(const std::vector<InputEntry> &entries, Problems &problems)
+void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
 {
   dealii::ParameterHandler prm;
   declare(prm);
   std::set<Path> reported;
-  for (const InputEntry &entry : entries) {
+  std::map<std::pair<Path, std::string>, std::string> defaults;
+  for (InputEntry &entry : entries) {
     Path known;
     bool exists = true;
     for (const std::string &name : entry.path) {
@@ -167,15 +159,17 @@ void Parameters::set(const std::vector<InputEntry> &entries, Problems &problems)
     const std::string place = entry.where + ": " + describe(entry.path, entry.name);
     bool declared = true;
     try {
+      const std::string before = prm.get(entry.name);
+      const auto original = defaults.emplace(std::pair(entry.path, entry.name), before).first;
       prm.set(entry.name, entry.value);
+      entry.is_default = prm.get(entry.name) == original->second;
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
       declared = false;
     } catch (const std::exception &error) {
+      // The sentence of deal.II ends with the pattern in angle brackets.
       std::string pattern = error.what();
-      const std::string before = "does not match the given pattern:";
-      const std::size_t at = pattern.find(before);
-      pattern = at == std::string::npos ? "" : pattern.substr(at + before.size());
-      const std::size_t begin = pattern.find('<'), end = pattern.find('>');
+      const std::size_t begin = pattern.find('<', pattern.rfind("given pattern"));
+      const std::size_t end = pattern.find('>', begin);
       pattern = begin == std::string::npos || end == std::string::npos
                     ? ""
                     : pattern.substr(begin + 1, end - begin - 1);
@@ -187,6 +181,9 @@ void Parameters::set(const std::vector<InputEntry> &entries, Problems &problems)
     if (!declared)
       problems.add(place, "is unknown.", suggestion(entry.name, look_at(prm, entry.path).entries));
   }
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::Text);
+  complete_input = text.str();
 }
 
 Parameters Parameters::read(const std::string &text, const std::string &file,

@@ -47,29 +47,37 @@ Parameters &prepare(Parameters &parameters)
   return parameters;
 }
 
+/// Null for a process, which makes its own.
+std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm comm)
+{
+  if (parameters.process_name != "none")
+    return nullptr;
+  return insertion_methods().make(parameters.insertion.method, parameters.insertion,
+                                  parameters.physics, comm);
+}
+
 } // namespace
 
 Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
     : parameters(prepare(parameters_)), comm(comm), log(log), start_of_run(MPI_Wtime()),
+      insertion(make_insertion(parameters, comm)),
+      largest_diameter(insertion ? insertion->largest_diameter()
+                                 : parameters.physics.largest_diameter()),
+      skin(parameters.model.skin(largest_diameter)),
       domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
       ledger(domain.outlets()),
       system(domain, model,
-             parameters.process() ? count_components(parameters.process()->fields()) : 0,
-             parameters.model.skin(largest_diameter(parameters)), largest_diameter(parameters),
-             ledger, timers),
+             parameters.process() ? count_components(parameters.process()->fields()) : 0, skin,
+             largest_diameter, ledger, timers),
       integrator(integrators().make(parameters.model.integration_method)),
       particle_pictures(parameters.control.output_path, parameters.control.output_name, comm),
       solid_pictures(parameters.control.output_path, parameters.control.output_name + "_solids",
                      comm),
-      allowed_displacement(parameters.model.displacement_share *
-                           parameters.model.skin(largest_diameter(parameters)))
+      allowed_displacement(parameters.model.displacement_share * skin)
 {
   Problems problems;
-  check_domain(domain, parameters,
-               largest_diameter(parameters) + parameters.model.skin(largest_diameter(parameters)) +
-                   model.range(),
-               problems);
+  check_domain(domain, parameters, largest_diameter + skin + model.range(), problems);
   const int wall = parameters.physics.wall_material();
   solids = domain.walls();
   const auto append = [this](const std::vector<Solid> &more) {
@@ -86,13 +94,25 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
     for (const Process::Field &field : fields)
       defaults.insert(defaults.end(), field.n_components, field.initial);
     system.set_extra_defaults(defaults);
-  } else
-    insertion = insertion_methods().make(parameters.insertion.method, parameters.insertion,
-                                         parameters.physics);
+  }
   solid_loads.resize(solids.size());
   for (const std::string &name : eunoe::loads().list())
     if (auto load = eunoe::loads().make(name, parameters.physics))
       loads.push_back(std::move(load));
+}
+
+RunEstimate Simulation::estimate() const
+{
+  if (!insertion)
+    return parameters.process()->estimate(parameters);
+  RunEstimate estimate;
+  const unsigned long long n_steps = parameters.control.n_steps();
+  const unsigned int frequency = parameters.insertion.frequency;
+  estimate.steps = static_cast<double>(n_steps);
+  estimate.most_particles =
+      static_cast<double>(insertion->supply(frequency == 0 ? 1 : 1 + n_steps / frequency));
+  estimate.particles = estimate.most_particles;
+  return estimate;
 }
 
 void Simulation::open_output()
@@ -270,7 +290,7 @@ void Simulation::insert_if_due()
   if (step != 0 && (frequency == 0 || step % frequency != 0))
     return;
   Delivery delivery;
-  delivery.particles = insertion->next(next_id, comm);
+  delivery.particles = insertion->next(next_id);
   exchange(delivery, {});
 }
 

@@ -38,8 +38,9 @@ public:
   /// @param axis normal to the mirror: 0, 1 or 2
   virtual void mirror(double * /*history*/, unsigned int /*axis*/) const {}
 
-  /// Largest gap across which the law acts between a particle of material @p a and material @p b
-  /// (m); the contact search reaches that far.
+  /// Largest gap across which the law acts between two materials (m); the contact search reaches
+  /// that far.
+  /// @param kind of the pair of materials, see Materials::kind
   virtual double range(int /*kind*/) const { return 0.; }
 
   /// Applies the law to a whole block. @p history is the first component that belongs to the law;

@@ -61,6 +61,14 @@ inline void positive(dealii::ParameterHandler &prm, const std::string &entry, do
   prm.add_parameter(entry, value, documentation, Patterns::Double(0.));
 }
 
+/// A whole number that is not below @p smallest.
+template <typename Number>
+void count(dealii::ParameterHandler &prm, const std::string &entry, Number &value,
+           const std::string &documentation, const int smallest = 0)
+{
+  prm.add_parameter(entry, value, documentation, Patterns::Integer(smallest));
+}
+
 } // namespace eunoe::declare
 
 #endif

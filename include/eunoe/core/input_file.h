@@ -14,7 +14,8 @@ struct InputEntry
 {
   std::vector<std::string> path; ///< names of the subsections around it
   std::string name, value;
-  std::string where; ///< "case.prm:12" or "--set"
+  std::string where;       ///< "case.prm:12" or "--set"
+  bool is_default = false; ///< whether the value is what it would be without this line
 };
 
 /// Name of an entry for messages: "subsection 'a' / subsection 'b' / entry 'c'".

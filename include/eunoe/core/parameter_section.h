@@ -33,11 +33,11 @@ public:
   void advise(bool ok, const Path &path, const std::string &entry, const std::string &what,
               const std::string &mend) const;
 
-  /// Whether the user set the entry.
-  bool is_set(const Path &path, const std::string &entry) const;
+  /// Whether the user set an entry to something else than its default.
+  bool is_changed(const Path &path, const std::string &entry) const;
 
-  /// Whether the user set any entry in a subsection of the top level.
-  bool has_entries(const std::string &subsection) const;
+  /// Whether the user changed any entry in a subsection of the top level.
+  bool has_changes(const std::string &subsection) const;
 
 private:
   std::string place(const Path &path, const std::string &entry) const;

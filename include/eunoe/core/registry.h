@@ -9,8 +9,7 @@
 
 namespace eunoe {
 
-/// Plug-ins of one kind by name. A plug-in's file holds one static `Registration`; nothing else in
-/// the code names it, so adding one touches no other file.
+/// Plug-ins of one kind by name. A plug-in's file holds one static `Registration`.
 template <typename Product, typename... Arguments>
 class Registry
 {

@@ -30,23 +30,30 @@ struct InsertionParameters : public ParameterSection
   void check(const ParameterCheck &check) const override;
 };
 
-/// Supplies the particles of one event after another.
+/// Supplies the particles of one event after another. Whatever is wrong with its input is found
+/// when it is made.
 class Insertion
 {
 public:
   virtual ~Insertion() = default;
 
+  /// Largest diameter that it can supply (m).
+  virtual double largest_diameter() const = 0;
+
+  /// Number of particles that @p n_events events supply together.
+  virtual std::size_t supply(std::size_t n_events) const = 0;
+
   /// This rank's share of the particles of the next event; the shares of all ranks together are
-  /// the same for any number of ranks. Collective.
+  /// the same for any number of ranks.
   /// @param next_id first free id, raised by the number of particles of all ranks
-  virtual std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) = 0;
+  virtual std::vector<NewParticle> next(ParticleId &next_id) = 0;
 
   /// Whether all particles have been supplied.
   virtual bool finished() const = 0;
 };
 
-using InsertionRegistry =
-    Registry<std::unique_ptr<Insertion>, const InsertionParameters &, const PhysicalProperties &>;
+using InsertionRegistry = Registry<std::unique_ptr<Insertion>, const InsertionParameters &,
+                                   const PhysicalProperties &, MPI_Comm>;
 InsertionRegistry &insertion_methods();
 
 /// Rank's part [first, second) of a range of @p n items.

@@ -28,6 +28,8 @@ struct PhysicalProperties : public ParameterSection
 
   /// Materials of the particle types, then the common one of walls and solids.
   Materials materials() const;
+  /// Largest diameter that the types' size distributions give (m).
+  double largest_diameter() const;
   int wall_material() const { return static_cast<int>(types.size()); }
 
   /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).

@@ -36,11 +36,14 @@ public:
                          const std::vector<std::string> &overrides, Problems &problems,
                          const FileLoader &load = {});
 
-  /// A complete, documented input file with the present values.
-  std::string as_input_file();
+  /// A complete, documented input file that gives the same parameters as those that were read.
+  const std::string &as_input_file() const { return complete_input; }
 
   /// The chosen process, null for a general case.
-  Process *process() { return process_name == "none" ? nullptr : processes.at(process_name).get(); }
+  Process *process() const
+  {
+    return process_name == "none" ? nullptr : processes.at(process_name).get();
+  }
 
   ControlParameters control;
   MeshParameters mesh;
@@ -57,7 +60,9 @@ public:
 private:
   void declare(dealii::ParameterHandler &prm);
   std::vector<ParameterSection *> sections();
-  void set(const std::vector<InputEntry> &entries, Problems &problems);
+  void set(std::vector<InputEntry> &entries, Problems &problems);
+
+  std::string complete_input;
 };
 
 } // namespace eunoe

@@ -23,6 +23,9 @@ public:
   Simulation(Parameters &parameters, MPI_Comm comm, Log &log);
   ~Simulation();
 
+  /// What the run will cost, as far as it can be known.
+  RunEstimate estimate() const;
+
   /// Creates the output folder and the tables of the observables. Throws like the constructor.
   void open_output();
 
@@ -88,6 +91,9 @@ private:
   MPI_Comm comm;
   Log &log;
   const double start_of_run;
+  std::unique_ptr<Insertion> insertion; ///< null for a process, which makes its own
+  const double largest_diameter;
+  const double skin;
   Domain domain;
   const ContactModel model;
   Ledger ledger;
@@ -97,7 +103,6 @@ private:
   std::vector<RigidState> solids_at_search;
   std::vector<std::unique_ptr<Load>> loads;
   std::unique_ptr<Integrator> integrator;
-  std::unique_ptr<Insertion> insertion;
   std::vector<std::unique_ptr<Observable>> observable_list;
   std::vector<SolidLoad> solid_loads;
   std::vector<Process::Field> fields;
@@ -114,9 +119,6 @@ private:
   std::uint64_t n_particles = 0;
   double particle_steps = 0., loop_seconds = 0., last_report = 0., reported_particle_steps = 0.;
 };
-
-/// Largest diameter of all particles that the parameters can produce (m).
-double largest_diameter(const Parameters &parameters);
 
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
 /// @param reach of the contact search (m)

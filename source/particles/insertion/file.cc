@@ -1,75 +1,111 @@
 #include <eunoe/core/files.h>
 #include <eunoe/particles/insertion.h>
 
+#include <algorithm>
+
 namespace eunoe {
 namespace {
+
+const char *const columns[] = {"p_x", "p_y", "p_z", "v_x", "v_y",
+                               "v_z", "w_x", "w_y", "w_z", "diameters"};
+
+/// Columns that a file may leave out; they are zero then.
+bool may_lack(const std::string &column)
+{
+  return column[0] == 'v' || column[0] == 'w';
+}
 
 /// Particles from files in Lethe's format, all of type 0, one file an event.
 class File : public Insertion
 {
 public:
-  File(const InsertionParameters &parameters, const PhysicalProperties &physics)
-      : files(parameters.files), repeats(parameters.frequency > 0), type(physics.types[0])
+  File(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : repeats(parameters.frequency > 0), density(physics.types[0].density)
   {
+    for (const std::string &file : parameters.files)
+      read(file, comm);
+  }
+
+  double largest_diameter() const override { return largest; }
+
+  std::size_t supply(const std::size_t n_events) const override
+  {
+    std::size_t n = 0;
+    for (std::size_t event = 0; event < (repeats ? n_events : 1); ++event)
+      n += files[event % files.size()].n;
+    return n;
   }
 
   bool finished() const override { return !repeats && n_events > 0; }
 
-  std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) override
+  std::vector<NewParticle> next(ParticleId &next_id) override
   {
-    const std::string &file = files[n_events++ % files.size()];
-    const Table table = parse_table(read_file(file, comm), file);
-    const auto column = [&](const char *name, bool required) {
-      const int c = table.column(name);
-      if (c < 0 && required)
-        throw UserError(file + ":1: the header has no column '" + name +
-                        "'. It is 'p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters'.");
-      return c;
-    };
-    const int d = column("diameters", true);
-    const int x[3] = {column("p_x", true), column("p_y", true), column("p_z", true)};
-    const int v[3] = {column("v_x", false), column("v_y", false), column("v_z", false)};
-    const int w[3] = {column("w_x", false), column("w_y", false), column("w_z", false)};
-    const auto vector = [](const std::vector<double> &row, const int(&c)[3]) {
-      const auto value = [&](int k) { return k < 0 ? 0. : row[k]; };
-      return Vec3{value(c[0]), value(c[1]), value(c[2])};
-    };
-
-    const auto [begin, end] = share_of(table.rows.size(), comm);
-    std::vector<NewParticle> particles;
-    for (std::size_t k = 0; k < table.rows.size(); ++k) {
-      const auto &row = table.rows[k];
-      if (!(row[d] > 0.) || !std::isfinite(row[d]))
-        throw UserError(file + ": particle " + std::to_string(k) + " has a diameter of " +
-                        format(row[d]) + " m. Give a positive diameter.");
-      if (k < begin || k >= end)
-        continue;
-      NewParticle particle;
-      particle.id = next_id + static_cast<ParticleId>(k);
-      particle.radius = 0.5 * row[d];
-      particle.mass = sphere_mass(particle.radius, type.density);
-      particle.position = vector(row, x);
-      particle.velocity = vector(row, v);
-      particle.spin = vector(row, w);
-      particles.push_back(particle);
-    }
-    next_id += static_cast<ParticleId>(table.rows.size());
+    const Contents &file = files[n_events++ % files.size()];
+    std::vector<NewParticle> particles = file.share;
+    for (NewParticle &particle : particles)
+      particle.id += next_id;
+    next_id += static_cast<ParticleId>(file.n);
     return particles;
   }
 
 private:
-  const std::vector<std::string> files;
+  /// A file: number of its particles, and this rank's share of them with ids from 0.
+  struct Contents
+  {
+    std::size_t n;
+    std::vector<NewParticle> share;
+  };
+
+  void read(const std::string &file, MPI_Comm comm)
+  {
+    const Table table = parse_table(read_file(file, comm), file);
+    std::vector<int> place;
+    for (const std::string name : columns) {
+      place.push_back(table.column(name));
+      if (place.back() < 0 && !may_lack(name))
+        throw UserError(file + ":1: the header has no column '" + name +
+                        "'. It is 'p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters'.");
+    }
+    const auto [begin, end] = share_of(table.rows.size(), comm);
+    Contents contents = {table.rows.size(), {}};
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+      double value[10];
+      for (unsigned int c = 0; c < 10; ++c) {
+        value[c] = place[c] < 0 ? 0. : table.rows[k][place[c]];
+        if (!std::isfinite(value[c]))
+          throw UserError(file + ": particle " + std::to_string(k) + " has " + format(value[c]) +
+                          " as its '" + columns[c] + "'. Give a number.");
+      }
+      if (!(value[9] > 0.))
+        throw UserError(file + ": particle " + std::to_string(k) + " has a diameter of " +
+                        format(value[9]) + " m. Give a positive diameter.");
+      largest = std::max(largest, value[9]);
+      if (k < begin || k >= end)
+        continue;
+      NewParticle particle;
+      particle.id = static_cast<ParticleId>(k);
+      particle.radius = 0.5 * value[9];
+      particle.mass = sphere_mass(particle.radius, density);
+      particle.position = {value[0], value[1], value[2]};
+      particle.velocity = {value[3], value[4], value[5]};
+      particle.spin = {value[6], value[7], value[8]};
+      contents.share.push_back(particle);
+    }
+    files.push_back(std::move(contents));
+  }
+
   const bool repeats;
-  const ParticleType type;
+  const double density;
+  std::vector<Contents> files;
+  double largest = 0.;
   std::size_t n_events = 0;
 };
 
-const InsertionRegistry::Registration registration(insertion_methods(), "file",
-                                                   [](const InsertionParameters &parameters,
-                                                      const PhysicalProperties &physics) {
-                                                     return std::make_unique<File>(parameters,
-                                                                                   physics);
-                                                   });
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "file",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<File>(parameters, physics, comm);
+    });
 
 } // namespace
 } // namespace eunoe

@@ -32,10 +32,10 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "insertion method", method, insertion_methods().names(),
                   "Where the particles come from: a random grid in a box (volume), the lists of "
                   "this section (list), or files (file).");
-  prm.add_parameter("inserted number of particles at each time step", per_event,
-                    "volume: number of particles of an event.");
-  prm.add_parameter("insertion frequency", frequency,
-                    "Steps between events, the first of which is at the start; 0: a single event.");
+  declare::count(prm, "inserted number of particles at each time step", per_event,
+                 "volume: number of particles of an event.");
+  declare::count(prm, "insertion frequency", frequency,
+                 "Steps between events, the first of which is at the start; 0: a single event.");
   prm.add_parameter("list of input files", files,
                     "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
                     "w_x; w_y; w_z; diameters'; after the last the first is used again.");
@@ -60,7 +60,7 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
   prm.add_parameter("insertion maximum offset", maximum_offset,
                     "volume: largest random shift of a particle over the largest diameter.",
                     Double(0.));
-  prm.add_parameter("insertion prn seed", seed, "volume: seed of the random shifts.");
+  declare::count(prm, "insertion prn seed", seed, "volume: seed of the random shifts.");
   declare::vector(prm, "initial velocity", velocity, "volume: velocity of the particles (m/s).");
   declare::vector(prm, "initial angular velocity", spin,
                   "volume: angular velocity of the particles (rad/s).");

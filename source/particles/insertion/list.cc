@@ -1,6 +1,8 @@
 #include <eunoe/core/random.h>
 #include <eunoe/particles/insertion.h>
 
+#include <algorithm>
+
 namespace eunoe {
 namespace {
 
@@ -8,14 +10,24 @@ namespace {
 class List : public Insertion
 {
 public:
-  List(const InsertionParameters &parameters, const PhysicalProperties &physics)
-      : p(parameters), type(physics.types[0]), sizes(type.sizes.make())
+  List(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : p(parameters), type(physics.types[0]), sizes(type.sizes.make()), comm(comm)
   {
   }
 
+  double largest_diameter() const override
+  {
+    double largest = p.list_diameters.empty() ? sizes->largest() : 0.;
+    for (const double diameter : p.list_diameters)
+      largest = std::max(largest, diameter > 0. ? diameter : sizes->largest());
+    return largest;
+  }
+
+  std::size_t supply(std::size_t) const override { return p.list_x.size(); }
+
   bool finished() const override { return done; }
 
-  std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) override
+  std::vector<NewParticle> next(ParticleId &next_id) override
   {
     const auto value = [](const std::vector<double> &list, std::size_t k) {
       return list.empty() ? 0. : list[k];
@@ -45,15 +57,15 @@ private:
   const InsertionParameters p;
   const ParticleType type;
   const std::unique_ptr<SizeDistribution> sizes;
+  MPI_Comm comm;
   bool done = false;
 };
 
-const InsertionRegistry::Registration registration(insertion_methods(), "list",
-                                                   [](const InsertionParameters &parameters,
-                                                      const PhysicalProperties &physics) {
-                                                     return std::make_unique<List>(parameters,
-                                                                                   physics);
-                                                   });
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "list",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<List>(parameters, physics, comm);
+    });
 
 } // namespace
 } // namespace eunoe

@@ -2,6 +2,7 @@
 #include <eunoe/particles/insertion.h>
 
 #include <algorithm>
+#include <numeric>
 
 namespace eunoe {
 
@@ -32,10 +33,9 @@ namespace {
 class Volume : public Insertion
 {
 public:
-  Volume(const InsertionParameters &parameters, const PhysicalProperties &physics)
-      : parameters(parameters), types(physics.types)
+  Volume(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : parameters(parameters), types(physics.types), comm(comm)
   {
-    double largest = 0.;
     for (const ParticleType &type : types) {
       sizes.push_back(type.sizes.make());
       largest = std::max(largest, sizes.back()->largest());
@@ -46,37 +46,47 @@ public:
     grid.pitch = parameters.distance_threshold * largest;
     grid.offset = parameters.maximum_offset * largest;
     grid.order = parameters.directions;
+
+    const std::size_t room = grid.capacity(), wanted = n_remaining();
+    const std::string box =
+        "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
+        "room for " +
+        std::to_string(room) + " particles, but ";
+    if (wanted > 0 && room == 0)
+      throw UserError(box + "there are particles to insert. Enlarge the box.");
+    if (parameters.frequency == 0 && room < of_next_event())
+      throw UserError(box + std::to_string(of_next_event()) +
+                      " are to be inserted at once. Enlarge the box, or set an 'insertion "
+                      "frequency' for several events.");
+    if (parameters.frequency == 0 && of_next_event() < wanted)
+      throw UserError(
+          "subsection 'insertion info' / entry 'inserted number of particles at each time step' "
+          "is " +
+          std::to_string(parameters.per_event) + ", but all " + std::to_string(wanted) +
+          " particles come in a single event, as the 'insertion frequency' is 0. Set it to 0 for "
+          "all at once, or set an 'insertion frequency'.");
   }
 
-  bool finished() const override
+  double largest_diameter() const override { return largest; }
+
+  std::size_t supply(const std::size_t n_events) const override
   {
-    return std::all_of(remaining.begin(), remaining.end(), [](std::size_t n) { return n == 0; });
+    return std::min(n_remaining(), n_events * std::min(of_next_event(), grid.capacity()));
   }
 
-  std::vector<NewParticle> next(ParticleId &next_id, MPI_Comm comm) override
+  bool finished() const override { return n_remaining() == 0; }
+
+  std::vector<NewParticle> next(ParticleId &next_id) override
   {
-    const std::size_t room = grid.capacity();
-    if (room == 0)
-      throw UserError(
-          "subsection 'insertion info' / entry 'insertion box points coordinates' gives "
-          "a box without room for a single particle. Enlarge the box.");
-    std::size_t type = 0;
-    while (type < remaining.size() && remaining[type] == 0)
-      ++type;
-    if (type == remaining.size())
-      return {};
-    const std::size_t wanted = parameters.per_event > 0 ? parameters.per_event : remaining[type];
-    const std::size_t n = std::min({wanted, remaining[type], room});
-    if (parameters.frequency == 0 && n < std::min(wanted, remaining[type]))
-      throw UserError(
-          "subsection 'insertion info' / entry 'insertion box points coordinates' gives "
-          "a box with room for " +
-          std::to_string(room) + " particles, but " + std::to_string(remaining[type]) +
-          " are to be inserted at once. Enlarge the box, or set an 'insertion "
-          "frequency' for several events.");
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
     const auto [begin, end] = share_of(n, comm);
     std::vector<NewParticle> particles;
-    for (std::size_t k = begin; k < end; ++k) {
+    std::size_t type = 0, last_of_type = remaining[0];
+    for (std::size_t k = 0; k < end; ++k) {
+      while (k == last_of_type)
+        last_of_type += remaining[++type];
+      if (k < begin)
+        continue;
       NewParticle p;
       p.id = next_id + static_cast<ParticleId>(k);
       p.type = static_cast<int>(type);
@@ -88,24 +98,40 @@ public:
       particles.push_back(p);
     }
     next_id += static_cast<ParticleId>(n);
-    remaining[type] -= n;
+    std::size_t taken = n;
+    for (std::size_t &left : remaining) {
+      const std::size_t now = std::min(left, taken);
+      left -= now;
+      taken -= now;
+    }
     return particles;
   }
 
 private:
+  std::size_t n_remaining() const
+  {
+    return std::accumulate(remaining.begin(), remaining.end(), std::size_t(0));
+  }
+  std::size_t of_next_event() const
+  {
+    return parameters.per_event > 0 ? std::min<std::size_t>(parameters.per_event, n_remaining())
+                                    : n_remaining();
+  }
+
   const InsertionParameters parameters;
   const std::vector<ParticleType> types;
+  MPI_Comm comm;
+  double largest = 0.;
   std::vector<std::unique_ptr<SizeDistribution>> sizes;
-  std::vector<std::size_t> remaining;
+  std::vector<std::size_t> remaining; ///< of each type
   VolumeGrid grid;
 };
 
-const InsertionRegistry::Registration registration(insertion_methods(), "volume",
-                                                   [](const InsertionParameters &parameters,
-                                                      const PhysicalProperties &physics) {
-                                                     return std::make_unique<Volume>(parameters,
-                                                                                     physics);
-                                                   });
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "volume",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<Volume>(parameters, physics, comm);
+    });
 
 } // namespace
 } // namespace eunoe

@@ -39,7 +39,7 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
                     declare::Patterns::List(declare::Patterns::Double(0.), 1));
   declare::choice(prm, "distribution weighting basis", basis, "number|volume",
                   "Whether the distribution counts particles or volume.");
-  prm.add_parameter("distribution prn seed", seed, "Seed of the random draws of the diameters.");
+  declare::count(prm, "distribution prn seed", seed, "Seed of the random draws of the diameters.");
 }
 
 void SizeDistributionParameters::check(const ParameterCheck &check,

@@ -74,12 +74,12 @@ void SpreadingParameters::declare(dealii::ParameterHandler &prm)
       "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
   positive(prm, "settling time", settling_time,
            "Longest time that the bed is given to come to rest (s).");
-  prm.add_parameter("seed", seed, "Seed of the random positions, shifts and mirrorings.");
+  declare::count(prm, "seed", seed, "Seed of the random positions, shifts and mirrorings.");
 
   prm.add_parameter("layer pictures", layer_pictures,
                     "Whether the particles are written at every weighing (<name>_layers.pvd).");
-  prm.add_parameter("spreader force sampling", force_sampling,
-                    "Steps between two readings of the force on the spreader.", Integer(1));
+  declare::count(prm, "spreader force sampling", force_sampling,
+                 "Steps between two readings of the force on the spreader.", 1);
   prm.leave_subsection();
 }
 

@@ -83,7 +83,7 @@ const ProcessRegistry::Registration registration(process_kinds(), "powder spread
 void PowderSpreading::check_with(const Parameters &parameters, const ParameterCheck &check) const
 {
   const std::string section = "powder spreading";
-  const double largest = largest_diameter(parameters);
+  const double largest = parameters.physics.largest_diameter();
   check.require(parameters.physics.types.size() == 1, {"lagrangian physical properties"},
                 "number of particle types",
                 "is " + std::to_string(parameters.physics.types.size()) + ".",
@@ -103,13 +103,17 @@ void PowderSpreading::check_with(const Parameters &parameters, const ParameterCh
                 "is " + format(p.depth) + " m, less than two of the largest particles.",
                 "Give a larger depth, 2e-3 in the paper.");
   for (const char *const other : {"mesh", "DEM boundary conditions", "insertion info"})
-    check.require(!check.has_entries(other), {other}, "", "is set, but the process makes its own.",
+    check.require(!check.has_changes(other), {other}, "", "is set, but the process makes its own.",
                   "Remove the subsection.");
+  for (const char *const end : {"end control", "time end", "iteration end"})
+    check.require(!check.is_changed({"simulation control"}, end), {"simulation control"}, end,
+                  "is set, but the process ends when its last layer is weighed.",
+                  "Remove the entry; 'number of layers' rules the length of the run.");
 }
 
 void PowderSpreading::prepare(Parameters &parameters)
 {
-  const double largest = largest_diameter(parameters);
+  const double largest = parameters.physics.largest_diameter();
   apparatus = std::make_unique<Apparatus>(p, largest);
   const Apparatus &a = *apparatus;
 

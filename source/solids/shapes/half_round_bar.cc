@@ -1,3 +1,4 @@
+#include <eunoe/core/parameter_section.h>
 #include <eunoe/solids/shapes.h>
 
 namespace eunoe {
@@ -27,6 +28,9 @@ const ShapeRegistry::Registration registration(
     named_shapes(), "half_round_bar", [](ShapeArguments &a) {
       const Vec3 tip = a.vector();
       const double length = a.number(), radius = a.number(), height = a.number();
+      if (height < radius)
+        throw std::invalid_argument("half_round_bar: the height of " + format(height) +
+                                    " m is less than the radius of " + format(radius) + " m");
       return shapes::half_round_bar(tip, length, radius, height, a.count());
     });
 } // namespace
