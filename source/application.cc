@@ -80,9 +80,9 @@ int run(const CommandLine &line, MPI_Comm comm)
   if (!line.error.empty() ||
       (line.file.empty() && !line.help && !line.version && !line.print_parameters))
   {
-    errors.line(line.error.empty() ? "An input file is missing."
-                                   : "Command line: " + line.error + ".");
-    errors.line("Try eunoe-particles --help.");
+    errors.error(line.error.empty() ? "An input file is missing."
+                                    : "Command line: " + line.error + ".");
+    errors.error("Try eunoe-particles --help.");
     return exit_bad_input;
   }
   if (line.help) {
@@ -119,7 +119,7 @@ int run(const CommandLine &line, MPI_Comm comm)
     }
     simulation->open_output();
   } catch (const UserError &error) {
-    errors.line(error.what());
+    errors.error(error.what());
     return exit_bad_input;
   }
   simulation->run();
@@ -134,7 +134,7 @@ int run_particles(int argc, char **argv, MPI_Comm comm)
     return run(parse_command_line(argc, argv), comm);
   } catch (const UserError &error) {
     // Thrown on every rank alike, so all can leave in good order.
-    Log(comm).line(error.what());
+    Log(comm).error(error.what());
     return exit_failure;
   } catch (const std::exception &error) {
     // Only this rank knows, and the others wait for it.

@@ -62,6 +62,15 @@ void Log::warning(const std::string &text)
   line("Warning: " + text);
 }
 
+void Log::error(const std::string &text)
+{
+  if (!active)
+    return;
+  clear_bar();
+  std::fflush(stdout);
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
 void Log::progress(const Progress &p)
 {
   if (!active)

@@ -3,6 +3,7 @@
 
 #include <boost/property_tree/json_parser.hpp>
 
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -98,6 +99,54 @@ std::string suggestion(const std::string &word, const std::vector<std::string> &
   return near.empty() ? "" : "Did you mean '" + near + "'?";
 }
 
+/// In words, what a description of a pattern such as "[Integer range 0...10 (inclusive)]" asks for;
+/// empty for one that is unknown here.
+std::string in_words(const std::string &pattern)
+{
+  std::smatch part;
+  if (pattern == "[Bool]")
+    return "true or false";
+  if (std::regex_match(pattern, part, std::regex(R"(\[Selection (.*?) ?\])"))) {
+    const std::string words = std::regex_replace(part[1].str(), std::regex(R"(\|)"), "', '");
+    return (words.find("', '") == std::string::npos ? "'" : "one of '") + words + "'";
+  }
+  if (std::regex_match(pattern, part,
+                       std::regex(R"(\[List of <(.*)> of length (\d+)\.\.\.(\d+).*\])")))
+  {
+    const std::string items = in_words(part[1]);
+    if (items.empty())
+      return "";
+    const std::string number = part[2] == part[3] ? part[2].str() + " values" : "a list of values";
+    return number + ", each " + items;
+  }
+  const std::regex range(
+      R"(\[(Double|Integer)(?: range)?(?: (\S+?)\.\.\.(\S+?) \(inclusive\))?\])");
+  if (std::regex_match(pattern, part, range)) {
+    std::string words = part[1] == "Double" ? "a number" : "a whole number";
+    const auto is_bound = [](const std::string &text) {
+      return !text.empty() && text.find("DOUBLE") == std::string::npos &&
+             std::abs(std::strtod(text.c_str(), nullptr)) < 2147483647.;
+    };
+    if (is_bound(part[2]))
+      words += " of at least " + part[2].str();
+    if (is_bound(part[3]))
+      words += (is_bound(part[2]) ? " and at most " : " of at most ") + part[3].str();
+    return words;
+  }
+  return "";
+}
+
+/// In words, what an entry wants whose value deal.II refused with @p message.
+std::string wanted_by(std::string message)
+{
+  message = std::regex_replace(message, std::regex(R"(\s+)"), " ");
+  const std::size_t begin = message.find('<', message.rfind("given pattern"));
+  const std::size_t end = message.find("]>.", begin);
+  if (begin == std::string::npos || end == std::string::npos)
+    return "";
+  return in_words(message.substr(begin + 1, end - begin));
+}
+
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
@@ -166,15 +215,9 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
       declared = false;
     } catch (const std::exception &error) {
-      // The sentence of deal.II ends with the pattern in angle brackets.
-      std::string pattern = error.what();
-      const std::size_t begin = pattern.find('<', pattern.rfind("given pattern"));
-      const std::size_t end = pattern.find('>', begin);
-      pattern = begin == std::string::npos || end == std::string::npos
-                    ? ""
-                    : pattern.substr(begin + 1, end - begin - 1);
+      const std::string wanted = wanted_by(error.what());
       problems.add(place, "is '" + entry.value + "', which does not fit.",
-                   pattern.empty() ? "" : "Give " + pattern + ".");
+                   wanted.empty() ? "" : "Give " + wanted + ".");
     }
     for (std::size_t k = 0; k < entry.path.size(); ++k)
       prm.leave_subsection();

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # The command line of eunoe-particles: options, exit codes, and that a run which refuses to start
-# writes nothing. Usage: command_line.sh path/to/eunoe-particles folder
+# writes nothing. Usage: command_line.sh path/to/eunoe-particles folder path/to/prm
 set -u
 program=$1
+cases=$(cd "$3" && pwd)
 mkdir -p "$2" && cd "$2" || exit 1
 rm -rf results broken.prm fine.prm
 failures=0
@@ -48,8 +49,10 @@ fi
 export OMPI_MCA_rmaps_base_oversubscribe=1
 expect "broken case on two ranks" 2 "Did you mean 'scale'?" "${launch[@]}" "$program" broken.prm
 expect "run" 0 "Results are in results" "$program" fine.prm --set "subsection mesh/scale = 2"
-expect "values as used" 0 "= 1e-05" grep -rh "set time step" results/used.prm
+expect "values as used" 0 "= 1e-5" grep -rh "set time step" results/used.prm
 expect "used.prm can be run" 0 "The case is in order" "$program" results/used.prm --check
+"$program" "$cases/spreading/quickstart.prm" --print-parameters >all.prm
+expect "parameters of a process as input" 0 "The case is in order" "$program" all.prm --check
 expect "run on two ranks" 0 "Results are in results" "${launch[@]}" "$program" fine.prm
 touch file
 expect "unwritable folder" 2 "cannot be written to" \

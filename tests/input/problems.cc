@@ -30,13 +30,26 @@ void test_syntax()
          "control'?");
   expect("wrong type", "subsection simulation control\n  set time step = fast\nend\n",
          "case.prm:2: subsection 'simulation control' / entry 'time step' is 'fast', which does "
-         "not fit.");
+         "not fit. Give a number of at least 0.");
+  expect(
+      "negative count", "subsection simulation control\n  set output frequency = -1\nend\n",
+      "entry 'output frequency' is '-1', which does not fit. Give a whole number of at least 0.");
   expect("no such choice", "subsection model parameters\n  set integration method = magic\nend\n",
-         "entry 'integration method' is 'magic', which does not fit.");
+         "entry 'integration method' is 'magic', which does not fit. Give one of "
+         "'velocity_verlet', 'explicit_euler'.");
+  expect("too few numbers", "subsection lagrangian physical properties\n set g = 0, -9.81\nend\n",
+         "entry 'g' is '0, -9.81', which does not fit. Give 3 values, each a number.");
   expect("missing end", "subsection mesh\n  set scale = 1\n",
          "case.prm: the subsection 'mesh' is still open at the end of the file. Add the missing "
          "'end'.");
   expect("end without beginning", "end\n", "case.prm:1: there is an 'end' without a 'subsection'");
+  {
+    Problems problems;
+    Parameters::read("subsection mesh\ninclude part.prm\nset scale = 1\nend\n", "case.prm", {},
+                     problems, [](const std::string &) { return std::string("end\n"); });
+    check("end that an included file did not begin",
+          problems.text().find("part.prm:1: there is an 'end' without") == 0, problems.text());
+  }
   expect("nonsense", "hello\n", "case.prm:1: 'hello' is not understood.");
   expect("no value", "set process\n", "case.prm:1: 'set process' has no '='.");
   expect("override", "",
@@ -100,8 +113,10 @@ void test_spreading()
   expect("gravity sideways",
          spreading + "subsection lagrangian physical properties\n set g = 0, 0, -9.81\nend\n",
          "does not point to -y.");
-  expect("own mesh", spreading + "subsection mesh\n set scale = 1\nend\n",
+  expect("own mesh", spreading + "subsection mesh\n set scale = 2\nend\n",
          "is set, but the process makes its own. Remove the subsection.");
+  expect("own end", spreading + "subsection simulation control\n set time end = 2\nend\n",
+         "is set, but the process ends when its last layer is weighed. Remove the entry");
 }
 
 /// What only the made domain can tell.

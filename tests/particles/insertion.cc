@@ -69,6 +69,51 @@ void test_list_and_file()
   });
 }
 
+/// A file may hold larger particles than the types' sizes; contacts between them must be found.
+void test_large_particles_of_a_file()
+{
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank == 0)
+    write_file("large.csv", "p_x; p_y; p_z; diameters\n0; 0; 0; 3e-3\n0; 0; 2.9e-3; 3e-3\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  Case file(case_with(" set insertion method = file\n set list of input files = large.csv"));
+  file.run();
+  const auto all = particle_table(*file);
+  check("large particles of a file repel each other",
+        all.size() == 2 && all[0][c_vz] < 0. && all[1][c_vz] > 0.);
+  check("their number is known before",
+        file->estimate().most_particles == 2. && file->estimate().steps == 1.);
+}
+
+/// All types in a single event, and over several.
+void test_types()
+{
+  for (const unsigned int frequency : {0u, 1u}) {
+    const std::string events = frequency == 0
+                                   ? ""
+                                   : " set insertion frequency = 1\n"
+                                     " set inserted number of particles at each time step = 25\n";
+    Case mixed(box_input(1e-6, 2e-6,
+                         "subsection lagrangian physical properties\n"
+                         " set number of particle types = 3\n"
+                         " subsection particle type 0\n  set number of particles = 20\n end\n"
+                         " subsection particle type 2\n  set number of particles = 30\n"
+                         "  set diameter = 5e-4\n end\nend\n"
+                         "subsection insertion info\n"
+                         " set insertion box points coordinates = -5e-3, -5e-3, -5e-3 : 5e-3, "
+                         "5e-3, 5e-3\n set insertion distance threshold = 1.2\n"
+                         " set insertion maximum offset = 0.2\n" +
+                             events + "end\n"));
+    mixed.run();
+    const auto all = particle_table(*mixed);
+    const auto small =
+        std::count_if(all.begin(), all.end(), [](const auto &p) { return p[c_radius] == 2.5e-4; });
+    check(frequency == 0 ? "types in one event" : "types in two events",
+          all.size() == 50 && small == 30);
+  }
+}
+
 void test_errors()
 {
   const auto refused = [](const std::string &insertion) -> std::string {
@@ -90,6 +135,10 @@ void test_errors()
         refused(" set insertion box points coordinates = 0, 0, 0 : 5e-3, 5e-3, 5e-3\n"
                 " set insertion distance threshold = 1.2\n set insertion maximum offset = 0.2")
                 .find("room for") != std::string::npos);
+  check("less than all in a single event is refused",
+        refused(" set insertion box points coordinates = -5e-3, -5e-3, -5e-3 : 5e-3, 9e-3, 9e-3\n"
+                " set inserted number of particles at each time step = 100")
+                .find("all 400 particles come in a single event") != std::string::npos);
   check("a missing file is refused",
         refused(" set insertion method = file\n set list of input files = nowhere.csv")
                 .find("nowhere.csv cannot be read") != std::string::npos);
@@ -102,5 +151,7 @@ int main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_volume();
   test_list_and_file();
+  test_large_particles_of_a_file();
+  test_types();
   test_errors();
 }

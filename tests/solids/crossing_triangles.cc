@@ -52,10 +52,11 @@ double largest_difference(const Track &a, const Track &b, Vec3 Sphere::*vector)
 /// Steps at which a sphere does not have exactly one contact.
 int steps_without_one_contact(const Track &track)
 {
-  int n = 0;
-  for (const auto &all : track)
-    n += std::any_of(all.begin(), all.end(), [](const Sphere &s) { return s.normals.size() != 1; });
-  return n;
+  // A contact is remembered from the first step on.
+  return static_cast<int>(std::count_if(track.begin() + 1, track.end(), [](const auto &all) {
+    return std::any_of(all.begin(), all.end(),
+                       [](const Sphere &s) { return s.normals.size() != 1; });
+  }));
 }
 
 } // namespace

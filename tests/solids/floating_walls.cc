@@ -50,7 +50,8 @@ void rest_and_fall()
     const Sphere s = spheres(simulation)[0];
     const auto n = static_cast<int>(simulation.step_number());
     if (n <= end) {
-      held = held && s.normals.size() == 1;
+      // A contact is remembered from the first step on.
+      held = held && s.normals.size() == (n == 0 ? 0 : 1);
       largest_move = std::max(largest_move, std::abs(s.position.y - rest));
     } else {
       is_free = is_free && s.normals.empty();

@@ -18,6 +18,8 @@ public:
 
   void line(const std::string &text);
   void warning(const std::string &text);
+  /// To the standard error stream, so that output which is passed on stays clean.
+  void error(const std::string &text);
 
   /// What a run has done so far.
   struct Progress
