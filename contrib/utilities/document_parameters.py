@@ -4,9 +4,8 @@ documentation, as the program itself states them.
 
 Usage: contrib/utilities/document_parameters.py path/to/eunoe-particles [--check]
 
-Names, defaults and documentation come from --print-parameters. That does not tell the kind of a
-value; the message with which the program refuses a wrong one does, so every entry is given a wrong
-one, all at once.
+Names, defaults and documentation come from --print-parameters. That does not tell what values an
+entry takes, so some of every kind are tried: the program names all that do not fit.
 
 Exit code 1 with --check if the file is out of date; 0 otherwise.
 """
@@ -21,7 +20,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "doc" / "parameters.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "doc" / "parameters.md"
 
 # One of each of the numbered subsections.
 COUNTS = {
@@ -35,7 +35,6 @@ CHOSEN = {
     "floating walls/wall 0/end time": ("1", "0"),
     "solid objects/solid surfaces/solid object 0/mesh/type": ("shape", "gmsh"),
 }
-NONSENSE = "?"
 
 HEAD = """# Parameters
 
@@ -80,6 +79,8 @@ def read_entries(program: str) -> list[Entry]:
     path: list[str] = []
     comment: list[str] = []
     for line in map(str.strip, text.splitlines()):
+        if line == "# Listing of Parameters" or line.startswith("# ----"):
+            continue
         if line.startswith("#"):
             comment.append(line.lstrip("# ").strip())
             continue
@@ -101,74 +102,79 @@ def read_entries(program: str) -> list[Entry]:
     return entries
 
 
-def read_patterns(program: str, entries: list[Entry]) -> dict[str, str]:
-    """What the program asks for where it is given nonsense; texts accept anything and are missing."""
+def refused(program: str, trials: list[tuple[str, str]]) -> set[tuple[str, str]]:
+    """Those of the trials (entry, value) whose value the program says does not fit."""
     lines = []
-    for path, name, value in ([(*key.split("/")[:-1],), key.split("/")[-1], value]
-                              for key, value in COUNTS.items()):
-        lines += [f"subsection {p}" for p in path] + [f"set {name} = {value}"] + ["end"] * len(path)
-    at: dict[int, str] = {}
-    for entry in entries:
-        lines += [f"subsection {p}" for p in entry.path]
-        lines.append(f"set {entry.name} = {NONSENSE}")
-        at[len(lines)] = entry.key
-        lines += ["end"] * len(entry.path)
+    at: dict[int, tuple[str, str]] = {}
+    for key, value in [*COUNTS.items(), *trials]:
+        *path, name = key.split("/")
+        lines += [f"subsection {p}" for p in path]
+        lines.append(f"set {name} = {value}")
+        at[len(lines)] = (key, value)
+        lines += ["end"] * len(path)
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "nonsense.prm"
+        file = Path(folder) / "trials.prm"
         file.write_text("\n".join(lines) + "\n")
         _, text = run(program, str(file), "--check")
-    patterns = {}
-    for line in text.splitlines():
-        found = re.search(r"nonsense\.prm:(\d+): .*which does not fit\.\s*(?:Give (.*)\.)?$", line)
-        if found:
-            patterns[at[int(found[1])]] = found[2] or ""
-    return patterns
+    return {at[int(line)] for line in
+            re.findall(r"trials\.prm:(\d+): [^\n]*which does not fit", text)}
 
 
-def limits(low: str, high: str) -> str:
-    """ "from 0", "0 to 5", or nothing."""
-    has_low = low not in ("", "-MAX_DOUBLE", "-2147483648")
-    has_high = high not in ("", "MAX_DOUBLE", "2147483647", "4294967295", "18446744073709551615")
-    if has_low and has_high:
-        return f", {low} to {high}"
-    if has_low:
-        return f", at least {low}"
-    return f", at most {high}" if has_high else ""
+def words_of_the_code(entries: list[Entry]) -> list[str]:
+    """All that may be a choice: short texts of the code, alone or with bars between them."""
+    names = {name for entry in entries for name in (*entry.path, entry.name)}
+    words = set()
+    for file in (ROOT / "source").rglob("*.cc"):
+        for literal in re.findall(r'"([A-Za-z][\w |]*)"', file.read_text(encoding="utf-8")):
+            words.update(literal.split("|"))
+    return sorted(word for word in words - names if word == word.strip() != "" and len(word.split()) <= 2)
 
 
-def kind(pattern: str) -> str:
-    """A pattern of deal.II in words."""
-    pattern = pattern.strip().strip("[]").strip()
-    if pattern == "":
-        return "text"
-    if pattern.startswith("Bool"):
-        return "true or false"
-    found = re.match(r"(?:DirectoryName|FileName|Anything)", pattern)
-    if found:
-        return "text"
-    found = re.match(r"Selection\s+(.*)$", pattern)
-    if found:
-        return " or ".join(f"`{word.strip()}`" for word in found[1].split("|"))
-    found = re.match(r"(Double|Integer)(?: range)?\s*(\S*?)\.\.\.(\S*)\s*(?:\(inclusive\))?$", pattern)
-    if found:
-        return ("number" if found[1] == "Double" else "whole number") + limits(found[2], found[3])
-    if re.match(r"(Double|Integer)", pattern):
-        return "number" if pattern.startswith("Double") else "whole number"
-    found = re.match(r"List of <(.*)> of length (\S+)\.\.\.(\S+) \(inclusive\)"
-                     r"(?: separated by <(.*)>)?$", pattern)
-    if found:
-        inner = kind(found[1])
-        many = "list of" if found[2] != found[3] else f"{found[2]} times"
-        between = f", separated by `{found[4]}`" if found[4] else ""
-        return f"{many}: {inner}{between}"
-    return pattern
+NUMBERS = ("-1", "0", "0.5", "1", "1.5", "50")
+LISTS = {"0.5, 0.5": "numbers", "0.5, 0.5, 0.5": "three numbers", "0, 1, 2": "three whole numbers",
+         "0, 0, 0 : 1, 1, 1": "two points"}
+
+
+def kind_of_number(fits: set[str]) -> str:
+    """In words, of what takes these of NUMBERS."""
+    kind = "number" if fits & {"0.5", "1.5"} else "whole number"
+    if "-1" not in fits:
+        kind += " of at least 0" if "0" in fits else \
+            " above 0" if "0.5" in fits else " of at least 1" if "1" in fits else " above 1"
+    if "50" not in fits and kind.startswith("number"):
+        kind += f", at most {max(fits, key=float)}"
+    return kind
+
+
+def read_kinds(program: str, entries: list[Entry]) -> dict[str, str]:
+    """The kinds of all entries in words, found by trying values."""
+    values = ("?", "true", *NUMBERS, *LISTS)
+    wrong = refused(program, [(entry.key, value) for entry in entries for value in values])
+    kinds: dict[str, str] = {}
+    for entry in entries:
+        fits = {value for value in values if (entry.key, value) not in wrong}
+        lists = [words for value, words in LISTS.items() if value in fits]
+        if "?" in fits:
+            kinds[entry.key] = "text"
+        elif "true" in fits:
+            kinds[entry.key] = "`true` or `false`"
+        elif lists:
+            kinds[entry.key] = lists[0]
+        elif fits:
+            kinds[entry.key] = kind_of_number(fits & set(NUMBERS))
+    choices = [entry.key for entry in entries if entry.key not in kinds]
+    words = words_of_the_code(entries)
+    wrong = refused(program, [(key, word) for key in choices for word in words])
+    for key in choices:
+        kinds[key] = ", ".join(f"`{word}`" for word in words if (key, word) not in wrong)
+    return kinds
 
 
 def cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def page(entries: list[Entry], patterns: dict[str, str]) -> str:
+def page(entries: list[Entry], kinds: dict[str, str]) -> str:
     text = HEAD
     sections: dict[tuple[str, ...], list[Entry]] = {}
     for entry in entries:
@@ -178,7 +184,7 @@ def page(entries: list[Entry], patterns: dict[str, str]) -> str:
         text += f"\n## {title}\n\n| Entry | Default | Value | Meaning |\n|---|---|---|---|\n"
         for entry in listed:
             default = f"`{entry.default}`" if entry.default else "(empty)"
-            text += (f"| `{entry.name}` | {cell(default)} | {cell(kind(patterns.get(entry.key, '')))} "
+            text += (f"| `{entry.name}` | {cell(default)} | {cell(kinds[entry.key])} "
                      f"| {cell(entry.documentation)} |\n")
     return text
 
@@ -190,7 +196,7 @@ def main() -> int:
                         help="change nothing, and fail if the page is out of date")
     options = parser.parse_args()
     entries = read_entries(options.program)
-    text = page(entries, read_patterns(options.program, entries))
+    text = page(entries, read_kinds(options.program, entries))
     if not options.check:
         PAGE.write_text(text, encoding="utf-8")
         return 0
