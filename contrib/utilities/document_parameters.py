@@ -122,12 +122,13 @@ def refused(program: str, trials: list[tuple[str, str]]) -> set[tuple[str, str]]
 
 def words_of_the_code(entries: list[Entry]) -> list[str]:
     """All that may be a choice: short texts of the code, alone or with bars between them."""
-    names = {name for entry in entries for name in (*entry.path, entry.name)}
+    names = {entry.name for entry in entries}
     words = set()
     for file in (ROOT / "source").rglob("*.cc"):
         for literal in re.findall(r'"([A-Za-z][\w |]*)"', file.read_text(encoding="utf-8")):
             words.update(literal.split("|"))
-    return sorted(word for word in words - names if word == word.strip() != "" and len(word.split()) <= 2)
+    return sorted(word for word in words - names
+                  if word == word.strip() != "" and len(word.split()) <= 2)
 
 
 NUMBERS = ("-1", "0", "0.5", "1", "1.5", "50")
