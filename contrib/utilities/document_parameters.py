@@ -29,11 +29,11 @@ COUNTS = {
     "floating walls/number of floating walls": "1",
     "solid objects/solid surfaces/number of solids": "1",
 }
-# Entries whose defaults the program refuses, as the user has to choose: what to give instead. The
-# default is then what stands beside the value.
+# Entries whose defaults the program refuses, as the user has to choose. Their defaults stand beside
+# these values in what it prints.
 CHOSEN = {
-    "floating walls/wall 0/end time": ("1", "0"),
-    "solid objects/solid surfaces/solid object 0/mesh/type": ("shape", "gmsh"),
+    "floating walls/wall 0/end time": "1",
+    "solid objects/solid surfaces/solid object 0/mesh/type": "shape",
 }
 
 HEAD = """# Parameters
@@ -70,7 +70,7 @@ def run(program: str, *arguments: str) -> tuple[int, str]:
 
 def read_entries(program: str) -> list[Entry]:
     overrides = []
-    for key, value in {**COUNTS, **{k: v[0] for k, v in CHOSEN.items()}}.items():
+    for key, value in {**COUNTS, **CHOSEN}.items():
         overrides += ["--set", f"{key} = {value}"]
     code, text = run(program, "--print-parameters", *overrides)
     if code != 0:
@@ -95,8 +95,6 @@ def read_entries(program: str) -> list[Entry]:
                           (default[0] if default else value).strip(), " ".join(comment).strip())
             if entry.key in COUNTS:
                 entry.default = "0"
-            elif entry.key in CHOSEN:
-                entry.default = CHOSEN[entry.key][1]
             entries.append(entry)
         comment = []
     return entries
