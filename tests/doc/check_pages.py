@@ -71,7 +71,8 @@ def check_examples(program: str) -> list[str]:
                 done = subprocess.run([program, file.name, "--check"], capture_output=True,
                                       text=True, check=False)
             if done.returncode != 0:
-                wrong.append(f"{page.relative_to(ROOT)}: example {count} is refused:\n{done.stdout}")
+                place = page.relative_to(ROOT)
+                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}")
     if count == 0:
         wrong.append("No example is marked as complete.")
     for case in sorted((ROOT / "prm" / "examples").glob("*.prm")):
