@@ -1,0 +1,96 @@
+"""The pages of the documentation: relative links lead to files and headings that exist, every page
+of doc/ is reached from its index, and the examples marked as complete (```prm complete) are
+accepted by the program.
+
+Usage: check_pages.py path/to/eunoe-particles
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def pages() -> list[Path]:
+    folders = [ROOT / name for name in ("doc", "contrib", "prm", "tests")]
+    return sorted([*ROOT.glob("*.md"), *(p for f in folders for p in f.rglob("*.md"))])
+
+
+def without_code(text: str) -> str:
+    return re.sub(r"`[^`\n]*`", "", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S))
+
+
+def anchors(page: Path) -> set[str]:
+    """The names that GitHub gives to the headings of a page."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    headings = re.findall(r"^#+ (.*)$", text, flags=re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
+            for heading in headings}
+
+
+def links(page: Path) -> list[str]:
+    text = without_code(page.read_text(encoding="utf-8"))
+    return [link for link in re.findall(r"\]\(([^)\s]+)\)", text)
+            if not re.match(r"[a-z]+:", link)]
+
+
+def check_links() -> list[str]:
+    wrong = []
+    for page in pages():
+        for link in links(page):
+            name, _, anchor = link.partition("#")
+            target = (page.parent / name).resolve() if name else page
+            place = f"{page.relative_to(ROOT)}: the link {link} "
+            if not target.exists():
+                wrong.append(place + "leads nowhere.")
+            elif anchor and target.suffix == ".md" and anchor not in anchors(target):
+                wrong.append(place + "names a heading that does not exist.")
+    index = ROOT / "doc" / "README.md"
+    named = {(index.parent / link.partition("#")[0]).resolve() for link in links(index)}
+    wrong += [f"doc/README.md does not name {page.name}."
+              for page in sorted((ROOT / "doc").glob("*.md")) if page not in named | {index}]
+    return wrong
+
+
+def check_examples(program: str) -> list[str]:
+    """Each example runs through --check in the folder prm/examples, where includes are found."""
+    wrong = []
+    count = 0
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        for example in re.findall(r"^```prm complete\n(.*?)^```", text, flags=re.M | re.S):
+            count += 1
+            with tempfile.NamedTemporaryFile("w", suffix=".prm") as file:
+                file.write(example.replace("include ", f"include {ROOT}/prm/examples/"))
+                file.flush()
+                done = subprocess.run([program, file.name, "--check"], capture_output=True,
+                                      text=True, check=False)
+            if done.returncode != 0:
+                place = page.relative_to(ROOT)
+                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}")
+    if count == 0:
+        wrong.append("No example is marked as complete.")
+    for case in sorted((ROOT / "prm" / "examples").glob("*.prm")):
+        done = subprocess.run([program, str(case), "--check"], capture_output=True, text=True,
+                              check=False)
+        if done.returncode != 0:
+            wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}")
+    case = ROOT / "prm" / "examples" / "falling_particles.prm"
+    if case.read_text(encoding="utf-8") not in (ROOT / "README.md").read_text(encoding="utf-8"):
+        wrong.append(f"README.md does not show {case.name} as it is.")
+    return wrong
+
+
+def main() -> int:
+    wrong = check_links() + check_examples(sys.argv[1])
+    print("\n".join(wrong) if wrong else "ok")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
