@@ -120,9 +120,14 @@ private:
   {
     const std::string word = statement.substr(0, statement.find_first_of(" \t"));
     const std::string rest = trimmed_words(statement.substr(word.size()));
-    if (word == "subsection" && !rest.empty())
+    if (word == "subsection" && !rest.empty()) {
       path.push_back(rest);
-    else if (word == "end" && rest.empty()) {
+      InputEntry opening;
+      opening.path = path;
+      opening.where = where;
+      opening.is_default = true;
+      entries.push_back(opening);
+    } else if (word == "end" && rest.empty()) {
       if (path.size() == open_at_start)
         problems.add(where + ":", "there is an 'end' without a 'subsection' before it.",
                      "Remove it.");

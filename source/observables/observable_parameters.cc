@@ -9,7 +9,6 @@ const std::string section = "post-processing";
 
 void ObservableParameters::declare(dealii::ParameterHandler &prm)
 {
-  using declare::Patterns::Integer;
   prm.enter_subsection(section);
 
   prm.enter_subsection("solid forces");

@@ -201,7 +201,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
       }
       known = next;
     }
-    if (!exists)
+    if (!exists || entry.name.empty())
       continue;
     for (const std::string &name : entry.path)
       prm.enter_subsection(name);

@@ -26,8 +26,10 @@ void test_syntax()
          "case.prm:2: subsection 'simulation control' / entry 'time stp' is unknown. Did you mean "
          "'time step'?");
   expect("unknown subsection", "subsection simulation controll\n  set time step = 1\nend\n",
-         "case.prm:2: subsection 'simulation controll' is unknown. Did you mean 'simulation "
+         "case.prm:1: subsection 'simulation controll' is unknown. Did you mean 'simulation "
          "control'?");
+  expect("unknown subsection without entries", "subsection Mesh\nend\n",
+         "case.prm:1: subsection 'Mesh' is unknown. Did you mean 'mesh'?");
   expect("wrong type", "subsection simulation control\n  set time step = fast\nend\n",
          "case.prm:2: subsection 'simulation control' / entry 'time step' is 'fast', which does "
          "not fit. Give a number of at least 0.");

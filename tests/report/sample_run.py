@@ -17,48 +17,19 @@ PARAMETERS = """
 # Listing of Parameters
 set process = powder spreading
 
-subsection lagrangian physical properties
-  # Acceleration of gravity (m/s2).
-  set g = 0, -9.81, 0
-  subsection particle type 0
-    set density particles = 4000
-  end
-end
-
-subsection mesh
-  set grid arguments = 9, 9, 1 : 0, -0.001, 0 : 0.0042, 0.002, 0.0004 : true
-end
-
-subsection powder spreading
-  set depth                        = 0.0004
-  set exit plate length W4         = 0.0005
-  set feedstock                    = replenished
-  set feedstock bed depth          = 0
-  set feedstock margin             = 0.0002
-  set feedstock platform length W1 = 0.0015
-  set feedstock platform velocity  = 0.03
-  set feedstock stroke delta_f     = 0.0003
-  set first feedstock stroke       = 0.0005
-  set gap                          = 0.0001
-  set layer thickness delta_l      = 0.0001
-  set length factor                = 1
-  set lip height                   = 0.0001
-  set measuring plate length W3    = 0.0015
-  set number of layers             = 3
-  set rest before weighing         = 0
-  set spreader                     = half round
-  set spreader clearance delta_s   = 0.0001
-  set spreader height              = 0
-  set spreader radius R_s          = 0.0004
-  set spreader thickness           = 0.002
-  set spreading velocity v_s       = 0.1
-  set transfer plate length W2     = 0.0005
-end
-
 subsection simulation control
   set output name = spreading
 end
 """
+
+APPARATUS = {
+    "x_transfer": 1.5e-3, "x_gap": 2.0e-3, "x_plate": 2.1e-3, "x_plate_end": 3.6e-3,
+    "x_exit": 3.7e-3, "x_end": 4.2e-3, "y_bottom": -1e-3, "y_top": 2e-3, "depth": 4e-4,
+    "lip": 1e-4, "spreader": "half round", "x_start": -6e-4, "front": 4e-4, "rear": 4e-4,
+    "spreader_height": 1.0e-3, "clearance": 1e-4, "n_layers": 3, "layer_thickness": 1e-4,
+    "velocity": 0.1, "first_stroke": 5e-4, "stroke": 3e-4, "platform_velocity": 0.03,
+    "rest_before_weighing": 0., "replenished": True, "bed_depth": 5e-4,
+    "first_bed_depth": 7e-4, "density": 4000.}
 
 LAYERS = """\
 layer,time,mass,particles,LRD,CRD,mass_removed,mass_to_gap,mass_to_collector,\
@@ -134,6 +105,7 @@ def write_run(folder: Path, layers: int = 3, pictures: bool = True, summary: boo
     """The folder of a run that has weighed so many layers."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "used.prm").write_text(PARAMETERS)
+    (folder / "apparatus.json").write_text(json.dumps(APPARATUS))
     rows = LAYERS.splitlines(keepends=True)[:1 + layers]
     (folder / "layers.csv").write_text("".join(rows))
     if summary:

@@ -27,7 +27,6 @@ import sample_run
 from eunoe_report.apparatus import Apparatus
 from eunoe_report.layer_results import counting_noise, moved_over_plate
 from eunoe_report.measured import read_measured
-from eunoe_report.prm_file import parse_prm
 from eunoe_report.quantities import number
 from eunoe_report.run_folder import ReportError, read_layers
 from eunoe_report.vtk_files import VtkError, read_pvd, read_vtu
@@ -141,7 +140,7 @@ class Tables(InFolder):
 
 class Geometry(unittest.TestCase):
     def setUp(self) -> None:
-        self.apparatus = Apparatus.of(parse_prm(sample_run.PARAMETERS))
+        self.apparatus = Apparatus(**sample_run.APPARATUS)
 
     def test_places(self) -> None:
         a = self.apparatus
@@ -210,10 +209,14 @@ class Report(InFolder):
         self.file("spreading_layers_00002.vtu", "<VTKFile>")
         self.assert_says("spreading_layers_00002.vtu cannot be read")
 
-    def test_run_without_parameters(self) -> None:
+    def test_run_without_its_apparatus(self) -> None:
         sample_run.write_run(self.folder)
-        (self.folder / "used.prm").unlink()
-        self.assert_says("used.prm is missing")
+        (self.folder / "apparatus.json").write_text('{"x_end": 1}')
+        self.assert_says("apparatus.json lacks")
+        (self.folder / "apparatus.json").write_text("[")
+        self.assert_says("apparatus.json cannot be read")
+        (self.folder / "apparatus.json").unlink()
+        self.assert_says("apparatus.json is missing")
 
     def test_run_that_was_no_spreading(self) -> None:
         self.file("summary.json", json.dumps(sample_run.SUMMARY))

@@ -1,4 +1,4 @@
-"""The spreading apparatus, rebuilt from used.prm as source/processes/powder_spreading makes it.
+"""The spreading apparatus as a run tells it in apparatus.json.
 
 x runs along the passes with the feedstock platform's left end at 0, y upwards with the transfer
 plate's surface at 0. SI units.
@@ -6,30 +6,34 @@ plate's surface at 0. SI units.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from math import radians, sqrt, tan
+import json
+from dataclasses import dataclass, fields
+from pathlib import Path
 from typing import Sequence
 
 import numpy as np
 
-from .prm_file import MissingEntry, Parameters
 
-PILE_SLOPE = tan(radians(35.))  # with which the simulation estimates the pile before the spreader
+class ApparatusError(Exception):
+    """The file is missing or is not what a run writes; the text says so in a sentence."""
 
 
 @dataclass(frozen=True)
 class Apparatus:
-    """Lengths in m, velocities in m/s, density in kg/m3."""
+    """Places and lengths in m, velocities in m/s, density in kg/m3."""
 
-    platform_length: float
-    transfer_length: float
-    plate_length: float
-    exit_length: float
-    gap: float
+    x_transfer: float
+    x_gap: float
+    x_plate: float
+    x_plate_end: float
+    x_exit: float
+    x_end: float
+    y_bottom: float
+    y_top: float
     depth: float
     lip: float
-    y_bottom: float
     spreader: str  # 'half round' or 'flat blade'
+    x_start: float  # of the spreader's lowest line when a pass begins
     front: float  # reach of the spreader before its lowest line
     rear: float  # and behind it
     spreader_height: float
@@ -47,77 +51,36 @@ class Apparatus:
     density: float
 
     @classmethod
-    def of(cls, parameters: Parameters) -> Apparatus:
-        """A MissingEntry says what used.prm lacks."""
-        p = parameters.section("powder spreading")
-        powder = parameters.section("lagrangian physical properties", "particle type 0")
-        corners = parameters.section("mesh").text("grid arguments").split(":")
-        if len(corners) < 3:
-            raise MissingEntry("used.prm does not tell the corners of the domain.")
-        factor = p.number("length factor")
-        platform_length = factor * p.number("feedstock platform length W1")
-        clearance = p.number("spreader clearance delta_s")
-        first, stroke = p.number("first feedstock stroke"), p.number("feedstock stroke delta_f")
-        n_layers = int(p.number("number of layers"))
-        replenished = p.text("feedstock") == "replenished"
-        round_bar = p.text("spreader") == "half round"
-        radius = p.number("spreader radius R_s")
-        front = radius if round_bar else 0.
-        pile = sqrt(2. * max(first, stroke) * platform_length * PILE_SLOPE)
-        margin = p.number("feedstock margin")
-        bed_depth = p.number("feedstock bed depth") or stroke + margin
-        strokes = first if replenished else first + (n_layers - 1) * stroke
-        return cls(
-            platform_length=platform_length,
-            transfer_length=factor * p.number("transfer plate length W2"),
-            plate_length=factor * p.number("measuring plate length W3"),
-            exit_length=factor * p.number("exit plate length W4"),
-            gap=p.number("gap"),
-            depth=p.number("depth"),
-            lip=p.number("lip height"),
-            y_bottom=float(corners[1].split(",")[1]),
-            spreader=p.text("spreader"),
-            front=front,
-            rear=radius if round_bar else p.number("spreader thickness"),
-            spreader_height=p.number("spreader height")
-            or max(1.2 * front, max(first, stroke) + pile),
-            clearance=clearance,
-            n_layers=n_layers,
-            layer_thickness=p.number("layer thickness delta_l"),
-            velocity=p.number("spreading velocity v_s"),
-            first_stroke=first,
-            stroke=stroke,
-            platform_velocity=p.number("feedstock platform velocity"),
-            rest_before_weighing=p.number("rest before weighing"),
-            replenished=replenished,
-            bed_depth=bed_depth,
-            first_bed_depth=max(bed_depth, strokes + margin),
-            density=powder.number("density particles"),
-        )
+    def read(cls, file: Path) -> Apparatus:
+        try:
+            values = json.loads(file.read_text(encoding="utf-8"))
+            return cls(**{field.name: values[field.name] for field in fields(cls)})
+        except FileNotFoundError as error:
+            raise ApparatusError(f"{file.name} is missing.") from error
+        except (OSError, ValueError, TypeError) as error:
+            raise ApparatusError(f"{file.name} cannot be read: {error}.") from error
+        except KeyError as error:
+            raise ApparatusError(f"{file.name} lacks {error}.") from error
 
     @property
-    def x_transfer(self) -> float:
-        return self.platform_length
+    def platform_length(self) -> float:
+        return self.x_transfer
 
     @property
-    def x_gap(self) -> float:
-        return self.x_transfer + self.transfer_length
+    def transfer_length(self) -> float:
+        return self.x_gap - self.x_transfer
 
     @property
-    def x_plate(self) -> float:
-        return self.x_gap + self.gap
+    def gap(self) -> float:
+        return self.x_plate - self.x_gap
 
     @property
-    def x_plate_end(self) -> float:
-        return self.x_plate + self.plate_length
+    def plate_length(self) -> float:
+        return self.x_plate_end - self.x_plate
 
     @property
-    def x_exit(self) -> float:
-        return self.x_plate_end + self.gap
-
-    @property
-    def x_end(self) -> float:
-        return self.x_exit + self.exit_length
+    def exit_length(self) -> float:
+        return self.x_end - self.x_exit
 
     @property
     def full_layer_mass(self) -> float:
@@ -164,9 +127,3 @@ class Apparatus:
             s = min(1., (weighings[layer] - feed) / rise)
             height += stroke * s * s * (3. - 2. * s)
         return height
-
-    @property
-    def x_start(self) -> float:
-        """Place of the spreader's lowest line when a pass begins."""
-        run_up = 0.2e-3
-        return -run_up - self.front

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .apparatus import Apparatus
-from .prm_file import MissingEntry
+from .apparatus import Apparatus, ApparatusError
 from .run_folder import Run
 from .vtk_files import VtkError, read_vtu
 
@@ -29,14 +28,12 @@ class Evidence:
 
 
 def gather(run: Run) -> Evidence:
-    """Reads used.prm and the pictures; what is missing becomes a sentence of the problems."""
+    """Reads apparatus.json and the pictures; what is missing becomes a sentence of the problems."""
     problems: list[str] = []
     apparatus, pictures = None, {}
     try:
-        if run.parameters is None:
-            raise MissingEntry("used.prm is missing.")
-        apparatus = Apparatus.of(run.parameters)
-    except (MissingEntry, ValueError) as error:
+        apparatus = Apparatus.read(run.folder / "apparatus.json")
+    except ApparatusError as error:
         problems.append(f"{error} The plates and the size of the case are unknown.")
     try:
         files = run.layer_pictures()

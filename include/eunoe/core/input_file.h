@@ -13,9 +13,9 @@ namespace eunoe {
 struct InputEntry
 {
   std::vector<std::string> path; ///< names of the subsections around it
-  std::string name, value;
-  std::string where;       ///< "case.prm:12" or "--set"
-  bool is_default = false; ///< whether the value is what it would be without this line
+  std::string name, value;       ///< without a name: the opening of the innermost subsection
+  std::string where;             ///< "case.prm:12" or "--set"
+  bool is_default = false;       ///< whether the value is what it would be without this line
 };
 
 /// Name of an entry for messages: "subsection 'a' / subsection 'b' / entry 'c'".

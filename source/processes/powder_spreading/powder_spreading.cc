@@ -1,3 +1,4 @@
+#include <eunoe/core/files.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 #include <eunoe/processes/powder_spreading/layer_log.h>
@@ -183,6 +184,11 @@ RunEstimate PowderSpreading::estimate(const Parameters &parameters) const
 void PowderSpreading::start(Simulation &simulation)
 {
   layers = std::make_unique<LayerLog>(simulation, p, *apparatus);
+  int rank;
+  MPI_Comm_rank(simulation.communicator(), &rank);
+  if (rank == 0)
+    write_file(simulation.output_file("apparatus.json"),
+               apparatus->as_json(simulation.get_parameters().physics.types[0].density));
   insert_loose_bed(simulation);
 }
 

@@ -43,6 +43,10 @@ public:
   }
   bool is_in_reservoir(const Vec3 &x) const { return x.x < x_transfer; }
 
+  /// The lengths (m), velocities (m/s) and the powder's density (kg/m3) for programs that evaluate
+  /// the run, as an object of JSON.
+  std::string as_json(double density) const;
+
   /// The solids, with the motions that a schedule fills. The first two are the spreaders, which
   /// take turns so that passes may overlap.
   static constexpr unsigned int n_spreaders = 2;
