@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Turns the output folder of a run into one page, report.html, that any browser shows.
 
-Usage: python3 contrib/postprocessing/report.py output/quickstart [--out FILE]
+Usage: contrib/postprocessing/report.py output/quickstart [--out FILE] [--figures pdf|png|svg]
 
 Needs numpy and matplotlib, as Debian's packages python3-numpy and python3-matplotlib have them.
 """
@@ -29,6 +29,8 @@ def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
     parser.add_argument("folder", type=Path, help="output folder of a run")
     parser.add_argument("--out", type=Path, help="file to write (default: FOLDER/report.html)")
+    parser.add_argument("--figures", choices=("pdf", "png", "svg"),
+                        help="write the figures as files too, into 'figures' beside the page")
     options = parser.parse_args(arguments)
     # matplotlib tells of the building of its font cache, which says nothing about the run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
@@ -37,6 +39,8 @@ def main(arguments: list[str]) -> int:
         run = read_run(options.folder)
         page = spreading_report(run, run.layers) if run.layers is not None else general_report(run)
         target.write_text(page.html(), encoding="utf-8")
+        if options.figures:
+            page.write_figures(target.parent / "figures", options.figures)
     except ReportError as error:
         print(error, file=sys.stderr)
         return 2

@@ -231,6 +231,13 @@ class Report(InFolder):
         self.assertEqual(self.make("--out", str(target))[0], 0)
         self.assertTrue(target.is_file())
 
+    def test_figures_as_files(self) -> None:
+        sample_run.write_run(self.folder)
+        self.assertEqual(self.make("--figures", "png")[0], 0)
+        files = sorted((self.folder / "figures").iterdir())
+        self.assertEqual([file.name for file in files], [f"figure-{k}.png" for k in range(1, 6)])
+        self.assertTrue(all(file.read_bytes().startswith(b"\x89PNG") for file in files))
+
     def test_folders_without_a_run(self) -> None:
         for prepare in (lambda: None, lambda: self.file("used.prm", sample_run.PARAMETERS),
                         lambda: self.file("layers.csv", sample_run.LAYERS.splitlines()[0])):

@@ -24,7 +24,7 @@ def plate_window(apparatus: Apparatus, last_layer: int, largest_diameter: float)
     beside = max(2.5 * apparatus.gap, 0.08 * apparatus.plate_length)
     above = max(2. * largest_diameter, 0.07 * apparatus.plate_length)
     return Window(apparatus.x_gap - beside, apparatus.x_exit + beside,
-                  apparatus.plate_height(last_layer) - 1.4 * apparatus.lip,
+                  apparatus.plate_height(last_layer) - min(1.4 * apparatus.lip, above),
                   apparatus.clearance + above)
 
 

@@ -15,7 +15,7 @@ from . import style
 MOST_CIRCLES = 100_000  # in a panel; of more, only those in the front of the slice are drawn
 MM = 1e3  # of a metre
 
-LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 0.5, 0.82, 0.42, 0.08, 0.12  # around the panels (inch)
+LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 0.62, 0.82, 0.42, 0.08, 0.12  # around the panels (inch)
 MOST_HEIGHT = 6.  # of a panel (inch)
 LEAST_BAR, MOST_BAR = 1.2, 1.8  # height of a colour bar (inch)
 

@@ -18,12 +18,12 @@ def _draw_measured(axes: Axes, layer: np.ndarray, repeats: np.ndarray) -> None:
     """Repeats, mean and standard deviation band of a measured density (fractions)."""
     mean, std = 100. * repeats.mean(axis=1), 100. * repeats.std(axis=1, ddof=1)
     axes.plot(layer, mean, color=style.INK, linewidth=1.1, zorder=3,
-              label="measured, full-size apparatus")
+              label="measured (full size)")
     axes.fill_between(layer, mean - std, mean + std, color="#dddddd", linewidth=0.,
-                      label="± standard deviation")
+                      label="± std. deviation")
     for k, repeat in enumerate(repeats.T):
         axes.plot(layer, 100. * repeat, color="#9a9a9a", linewidth=0.5, zorder=2,
-                  label="the three repeats" if k == 0 else None)
+                  label="its repeats" if k == 0 else None)
 
 
 def _draw_simulated(axes: Axes, layer: np.ndarray, density: np.ndarray,
@@ -51,7 +51,7 @@ def density_figure(layers: Layers, noise: DensityNoise | None, measured: Measure
     for axes in (left, right):
         style.layer_axis(axes, max(layers.last, measured.layer[-1]))
     handles, labels = left.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="lower center", ncol=4, columnspacing=1.5, handlelength=1.6)
+    figure.legend(handles, labels, loc="lower center", ncol=4, columnspacing=1.1, handlelength=1.3)
     return figure
 
 

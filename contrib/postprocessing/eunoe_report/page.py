@@ -44,7 +44,7 @@ class Page:
     def __init__(self, title: str, subtitle: str) -> None:
         self.title = title
         self.parts = [f"<h1>{escape(title)}</h1>", f'<p class="subtitle">{escape(subtitle)}</p>']
-        self.n_figures = 0
+        self.figures: list[Figure] = []
 
     def heading(self, text: str) -> None:
         self.parts.append(f"<h2>{escape(text)}</h2>")
@@ -57,11 +57,18 @@ class Page:
         self.parts.append(f'<p class="notice">{escape(text)}</p>')
 
     def figure(self, figure: Figure, caption: str) -> None:
-        self.n_figures += 1
-        name = f"figure-{self.n_figures}"
+        self.figures.append(figure)
+        number = len(self.figures)
+        name = f"figure-{number}"
         svg = style.to_svg(figure, name, escape(caption.split(".")[0], quote=True))
-        self.parts.append(f"<figure>{svg}<figcaption>Figure {self.n_figures}. {escape(caption)}"
+        self.parts.append(f"<figure>{svg}<figcaption>Figure {number}. {escape(caption)}"
                           "</figcaption></figure>")
+
+    def write_figures(self, folder: Path, file_format: str) -> None:
+        """Each figure as a file of its own: figure-1.pdf, ..."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for number, figure in enumerate(self.figures, start=1):
+            figure.savefig(folder / f"figure-{number}.{file_format}", dpi=style.RESOLUTION)
 
     def table(self, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
         self.parts.append(table(head, rows))
