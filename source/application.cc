@@ -18,6 +18,7 @@ struct CommandLine
 {
   std::string file;
   std::vector<std::string> overrides;
+  std::string dump;
   bool check = false, print_parameters = false, help = false, version = false, quiet = false;
   std::string help_text, error;
 };
@@ -34,6 +35,8 @@ CommandLine parse_command_line(int argc, char **argv)
       "nothing")(
       "print-parameters", po::bool_switch(&line.print_parameters),
       "print a complete input file with documentation and exit; with a case, its values")(
+      "dump", po::value<std::string>(&line.dump),
+      "at the end, write the complete state to this file, which is the same on any number of ranks")(
       "quiet", po::bool_switch(&line.quiet), "print nothing but errors")(
       "version", po::bool_switch(&line.version),
       "print the version and exit")("help", po::bool_switch(&line.help), "print this and exit");
@@ -122,8 +125,10 @@ int run(const CommandLine &line, MPI_Comm comm)
     errors.error(error.what());
     return exit_bad_input;
   }
-  simulation->run();
-  return exit_success;
+  const bool complete = simulation->run();
+  if (!line.dump.empty())
+    simulation->dump(line.dump);
+  return complete ? exit_success : exit_stopped;
 }
 
 } // namespace

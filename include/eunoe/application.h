@@ -11,6 +11,7 @@ enum ExitCode
   exit_success = 0,
   exit_failure = 1,   ///< the run broke off
   exit_bad_input = 2, ///< the input was refused; nothing was run or written
+  exit_stopped = 3,   ///< the run was asked to stop and has left a checkpoint
 };
 
 /// The program eunoe-particles: reads the command line and the input file, runs the case on all

@@ -1,8 +1,10 @@
 #include <eunoe/core/exact_sum.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace eunoe {
 
@@ -56,6 +58,30 @@ void ExactSum::carry() const
     digits[d + 1] += over;
   }
   pending = 0;
+}
+
+std::vector<std::int64_t> ExactSum::words() const
+{
+  carry();
+  // Whether it is finite, the first digit that is not zero, and the digits from there on.
+  unsigned int first = 0, last = n_digits;
+  while (first < n_digits && digits[first] == 0)
+    ++first;
+  while (last > first && digits[last - 1] == 0)
+    --last;
+  std::vector<std::int64_t> list = {finite ? 1 : 0, first};
+  list.insert(list.end(), digits.begin() + first, digits.begin() + last);
+  return list;
+}
+
+ExactSum ExactSum::from_words(const std::vector<std::int64_t> &words)
+{
+  ExactSum sum;
+  if (words.size() < 2 || words[1] < 0 || words[1] + words.size() - 2 > n_digits)
+    throw std::invalid_argument("these are no words of an exact sum");
+  sum.finite = words[0] != 0;
+  std::copy(words.begin() + 2, words.end(), sum.digits.begin() + words[1]);
+  return sum;
 }
 
 ExactSum &ExactSum::operator+=(const ExactSum &other)

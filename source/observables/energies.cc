@@ -1,4 +1,3 @@
-#include <eunoe/core/csv_file.h>
 #include <eunoe/simulation/simulation.h>
 
 namespace eunoe {
@@ -10,10 +9,10 @@ class Energies : public Observable
 public:
   Energies(const ObservableParameters &parameters, Simulation &simulation)
       : frequency(parameters.energies_frequency),
-        file(simulation.output_file(parameters.energies_file + ".csv"),
-             {"time", "particles", "kinetic", "rotational", "potential", "momentum_x", "momentum_y",
-              "momentum_z"},
-             simulation.communicator())
+        file(simulation.output_folder().table(parameters.energies_file + ".csv",
+                                              {"time", "particles", "kinetic", "rotational",
+                                               "potential", "momentum_x", "momentum_y",
+                                               "momentum_z"}))
   {
   }
 
@@ -41,12 +40,12 @@ public:
       sum->reduce(simulation.communicator());
       row.push_back(sum->value());
     }
-    file.write(row);
+    file->write(row);
   }
 
 private:
   const unsigned long long frequency;
-  CsvFile file;
+  const std::shared_ptr<CsvFile> file;
 };
 
 const ObservableRegistry::Registration registration(

@@ -1,4 +1,3 @@
-#include <eunoe/core/csv_file.h>
 #include <eunoe/simulation/simulation.h>
 
 namespace eunoe {
@@ -18,10 +17,9 @@ public:
       char number[8];
       std::snprintf(number, sizeof number, "_%02zu", files.size());
       numbers.push_back(s);
-      files.push_back(std::make_unique<CsvFile>(
-          simulation.output_file(parameters.solid_forces_file + number + ".csv"),
-          std::vector<std::string>{"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"},
-          simulation.communicator()));
+      files.push_back(simulation.output_folder().table(
+          parameters.solid_forces_file + number + ".csv",
+          {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
     }
   }
 
@@ -44,7 +42,7 @@ public:
 private:
   const unsigned long long frequency;
   std::vector<std::size_t> numbers;
-  std::vector<std::unique_ptr<CsvFile>> files;
+  std::vector<std::shared_ptr<CsvFile>> files;
 };
 
 const ObservableRegistry::Registration registration(

@@ -145,6 +145,19 @@ void PictureSeries::write_index() const
   write_file(folder + "/" + name + ".pvd", text);
 }
 
+void PictureSeries::resume(const Files &earlier)
+{
+  files = earlier;
+  bool written = true;
+  if (is_first(comm))
+    try {
+      write_index();
+    } catch (const UserError &) {
+      written = false;
+    }
+  agree_on_success(written, folder + "/" + name + ".pvd", comm);
+}
+
 void PictureSeries::write(const double time, const ParticleArrays &particles,
                           const std::vector<Process::Field> &fields)
 {

@@ -161,7 +161,7 @@ std::vector<ParameterSection *> Parameters::sections()
 {
   std::vector<ParameterSection *> all = {&control,        &mesh,      &boundaries,
                                          &physics,        &insertion, &model,
-                                         &floating_walls, &solids,    &observables};
+                                         &floating_walls, &solids,    &observables, &restart};
   for (auto &[name, process] : processes)
     all.push_back(process.get());
   return all;

@@ -131,15 +131,20 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
     store.migrate();
     ++balances;
   }
+  const std::vector<Origin> origins = build_lists(solids);
+  rows.fetch(origins, domain.communicator()).attach(particles, pairs, solid_contacts);
+  ++searches;
+}
+
+std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids)
+{
   std::vector<Origin> origins;
   store.read(particles, grid, origins);
   halo.build(particles, store, grid);
-
   pairs.clear(model.history_size());
   grid.find_pairs(particles, skin + model.range(), pairs);
   solid_contacts.search(particles, solids, skin + model.range());
-  rows.fetch(origins, domain.communicator()).attach(particles, pairs, solid_contacts);
-  ++searches;
+  return origins;
 }
 
 } // namespace eunoe

@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
@@ -71,9 +72,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
              parameters.process() ? count_components(parameters.process()->fields()) : 0, skin,
              largest_diameter, ledger, timers),
       integrator(integrators().make(parameters.model.integration_method)),
-      particle_pictures(parameters.control.output_path, parameters.control.output_name, comm),
-      solid_pictures(parameters.control.output_path, parameters.control.output_name + "_solids",
-                     comm),
+      output(parameters.control.output_path, comm),
+      checkpoints(parameters.control.output_path, parameters.restart.filename,
+                  parameters.restart.keep, comm),
       allowed_displacement(parameters.model.displacement_share * skin)
 {
   Problems problems;
@@ -85,6 +86,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
   };
   append(parameters.floating_walls.make(wall));
   append(parameters.solids.make(wall, parameters.control.time_step, comm, problems));
+  find_checkpoint(problems);
   if (!problems.empty())
     throw UserError(problems);
   if (Process *const process = parameters.process()) {
@@ -123,6 +125,10 @@ void Simulation::open_output()
   if (rank == 0)
     // One of an earlier run would make this one look finished.
     remove_file(output_file("summary.json"));
+  if (checkpoint)
+    output.resume(checkpoint->head.at("output"));
+  particle_pictures = output.pictures(parameters.control.output_name);
+  solid_pictures = output.pictures(parameters.control.output_name + "_solids");
   for (const std::string &name : eunoe::observables().list())
     if (auto observable = eunoe::observables().make(name, parameters.observables, *this))
       observable_list.push_back(std::move(observable));
@@ -137,26 +143,36 @@ int Simulation::find_solid(const std::string &name) const
   return it == solids.end() ? -1 : static_cast<int>(it - solids.begin());
 }
 
-void Simulation::run(const std::function<void(Simulation &)> &look)
+bool Simulation::run(const std::function<void(Simulation &)> &look)
 {
   print_overview();
-  start();
+  if (parameters.restart.checkpoint)
+    stop_request::listen();
+  if (checkpoint)
+    resume();
+  else
+    start();
+  last_checkpoint = MPI_Wtime();
   if (look)
     look(*this);
   timers = Timers();
   const double start_of_loop = MPI_Wtime();
-  while (!finished()) {
+  while (!finished() && !stopped) {
     advance();
     do_what_is_due();
     if (look)
       look(*this);
+    checkpoint_if_due();
   }
   loop_seconds = MPI_Wtime() - start_of_loop;
   complete_step();
+  if (stopped)
+    return false;
   for (auto &observable : observable_list)
     observable->finish(*this);
   report_progress(true);
   write_summary();
+  return true;
 }
 
 void Simulation::start()
@@ -292,6 +308,7 @@ void Simulation::insert_if_due()
   Delivery delivery;
   delivery.particles = insertion->next(next_id);
   exchange(delivery, {});
+  ++n_insertions;
 }
 
 std::vector<SolidLoad> Simulation::global_solid_loads() const
@@ -330,9 +347,9 @@ void Simulation::do_what_is_due()
           : control.output_frequency > 0 && step % control.output_frequency == 0;
   if (output_due) {
     next_output += control.output_time;
-    write_pictures(particle_pictures);
+    write_pictures(*particle_pictures);
     const Timers::Scope scope(timers, Section::output);
-    solid_pictures.write(present_time, solids);
+    solid_pictures->write(present_time, solids);
   }
   report_progress(false);
 }

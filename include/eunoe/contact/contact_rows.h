@@ -3,18 +3,12 @@
 
 #include <eunoe/contact/pair_list.h>
 #include <eunoe/contact/solid_contacts.h>
+#include <eunoe/core/rows.h>
 #include <eunoe/particles/particle_arrays.h>
 
-#include <mpi.h>
+#include <utility>
 
 namespace eunoe {
-
-/// Where a particle's row of remembered contacts is kept while the particle moves between ranks.
-struct Origin
-{
-  std::int32_t rank = -1; ///< -1: the particle has no memory
-  std::int32_t row = 0;
-};
 
 /// The memory of contacts by particle, for the time in which lists are rebuilt: one row a particle
 /// with a record a contact. A pair of particles stands in the rows of both, so that either one can
@@ -22,9 +16,12 @@ struct Origin
 class ContactRows
 {
 public:
-  explicit ContactRows(unsigned int n_history) : n_history(n_history) {}
+  ContactRows(unsigned int n_history, Rows rows = {}) : n_history(n_history), rows(std::move(rows))
+  {
+  }
 
-  std::size_t size() const { return starts.size() - 1; }
+  std::size_t size() const { return rows.size(); }
+  const Rows &get_rows() const { return rows; }
 
   /// Collects the rows of all owned particles, in their order.
   void collect(const ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids);
@@ -46,7 +43,7 @@ public:
     const double *history; ///< with particles: oriented from the lower to the higher id
   };
   std::vector<Record> records(std::size_t row) const;
-  void start_row() { starts.push_back(values.size()); }
+  void start_row() { rows.starts.push_back(rows.values.size()); }
   void add(const Record &record);
   ///@}
 
@@ -58,8 +55,7 @@ private:
   }
 
   unsigned int n_history;
-  std::vector<std::size_t> starts = {0};
-  std::vector<double> values;
+  Rows rows;
 };
 
 } // namespace eunoe

@@ -1,6 +1,7 @@
 #ifndef eunoe_core_csv_file_h
 #define eunoe_core_csv_file_h
 
+#include <cstdint>
 #include <cstdio>
 #include <mpi.h>
 #include <string>
@@ -13,8 +14,10 @@ namespace eunoe {
 class CsvFile
 {
 public:
-  /// Starts the file anew. Throws a UserError on every rank if that fails; collective.
-  CsvFile(const std::string &path, const std::vector<std::string> &columns, MPI_Comm comm);
+  /// Starts the file anew, or goes on behind the first @p keep bytes of an old one. Throws a
+  /// UserError on every rank if that fails; collective.
+  CsvFile(const std::string &path, const std::vector<std::string> &columns, MPI_Comm comm,
+          std::uint64_t keep = 0);
   ~CsvFile();
   CsvFile(const CsvFile &) = delete;
   CsvFile &operator=(const CsvFile &) = delete;
@@ -22,8 +25,11 @@ public:
   /// Appends a row with full precision; a NaN stays empty. Collective, throws like the constructor.
   void write(const std::vector<double> &row);
 
+  /// Bytes written, on the first rank.
+  std::uint64_t size() const;
+
 private:
-  void check(bool ok) const;
+  void check(bool ok, const std::string &what) const;
 
   const std::string path;
   MPI_Comm comm;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <mpi.h>
+#include <vector>
 
 namespace eunoe {
 
@@ -24,6 +25,12 @@ public:
   /// Whether two sums are equal to the last bit of all their terms.
   friend bool operator==(const ExactSum &a, const ExactSum &b);
   friend bool operator!=(const ExactSum &a, const ExactSum &b) { return !(a == b); }
+
+  /// @name The exact state as whole numbers, to be kept and put back
+  ///@{
+  std::vector<std::int64_t> words() const;
+  static ExactSum from_words(const std::vector<std::int64_t> &words);
+  ///@}
 
   /// Adds up the sums of all ranks; collective.
   void reduce(MPI_Comm comm);

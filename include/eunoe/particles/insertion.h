@@ -48,6 +48,9 @@ public:
   /// @param next_id first free id, raised by the number of particles of all ranks
   virtual std::vector<NewParticle> next(ParticleId &next_id) = 0;
 
+  /// Passes over the particles of the first events, which have been supplied already.
+  virtual void skip(std::size_t n_events) = 0;
+
   /// Whether all particles have been supplied.
   virtual bool finished() const = 0;
 };

@@ -10,6 +10,8 @@
 
 namespace eunoe {
 
+class Checkpoint;
+class CheckpointWriter;
 class Parameters;
 class Simulation;
 struct Solid;
@@ -50,6 +52,11 @@ public:
 
   /// Called once before the first step.
   virtual void start(Simulation &simulation) = 0;
+
+  /// Adds all that the process keeps to a checkpoint; collective.
+  virtual void save(CheckpointWriter &writer) const = 0;
+  /// Called instead of `start` when the run continues from a checkpoint; collective.
+  virtual void resume(Simulation &simulation, const Checkpoint &checkpoint) = 0;
 
   /// Called after every step. Must call Simulation::complete_step before it looks at particles.
   virtual void step(Simulation &simulation) = 0;

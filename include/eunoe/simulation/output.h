@@ -29,13 +29,19 @@ public:
   /// Writes the surfaces of those solids that are drawn; collective.
   void write(double time, const std::vector<Solid> &solids);
 
+  /// Times (s) and names of the files so far.
+  using Files = std::vector<std::pair<double, std::string>>;
+  const Files &get_files() const { return files; }
+  /// Goes on behind the files of an interrupted run; later ones disappear from the .pvd file.
+  void resume(const Files &earlier);
+
 private:
   std::string next_file(double time);
   void write_index() const;
 
   const std::string folder, name;
   MPI_Comm comm;
-  std::vector<std::pair<double, std::string>> files;
+  Files files;
 };
 
 } // namespace eunoe

@@ -1,6 +1,7 @@
 #ifndef eunoe_simulation_parameters_h
 #define eunoe_simulation_parameters_h
 
+#include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/contact/model_parameters.h>
 #include <eunoe/observables/observable_parameters.h>
 #include <eunoe/particles/insertion.h>
@@ -54,6 +55,7 @@ public:
   FloatingWallParameters floating_walls;
   SolidObjectParameters solids;
   ObservableParameters observables;
+  RestartParameters restart;
   std::string process_name = "none";
   std::map<std::string, std::unique_ptr<Process>> processes;
 

@@ -12,6 +12,9 @@
 
 namespace eunoe {
 
+class Checkpoint;
+class CheckpointWriter;
+
 /// New particles with what their contacts remember.
 struct Delivery
 {
@@ -58,6 +61,15 @@ public:
   void add_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
                          const std::vector<Solid> &solids, double time);
 
+  /// Adds all particles, with what their contacts remember and where they were at the last search,
+  /// to a checkpoint; collective. Velocities must belong to the present time.
+  void save(CheckpointWriter &writer) const;
+
+  /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
+  /// last search had left them; collective.
+  /// @param solids in their places at that search
+  void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids);
+
   /// Memory of all contacts by owned particle.
   ContactRows contact_rows() const;
 
@@ -75,6 +87,9 @@ public:
 private:
   std::vector<std::size_t> find_leaving();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
+  /// Reads the particles from the store and makes ghosts and empty lists.
+  /// @return where the contacts of each owned particle are kept
+  std::vector<Origin> build_lists(const std::vector<Solid> &solids);
 
   Domain &domain;
   const ContactModel &model;

@@ -1,11 +1,12 @@
 #ifndef eunoe_simulation_simulation_h
 #define eunoe_simulation_simulation_h
 
+#include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/core/log.h>
 #include <eunoe/forces/load.h>
 #include <eunoe/observables/observable.h>
 #include <eunoe/simulation/integrator.h>
-#include <eunoe/simulation/output.h>
+#include <eunoe/simulation/output_folder.h>
 #include <eunoe/simulation/parameters.h>
 #include <eunoe/simulation/particle_system.h>
 
@@ -31,7 +32,11 @@ public:
 
   /// Runs to the end and leaves all results in the output folder.
   /// @param look called before the first step and after every step, for tests and other programs
-  void run(const std::function<void(Simulation &)> &look = {});
+  /// @return false if the run was asked to stop earlier and has left a checkpoint
+  bool run(const std::function<void(Simulation &)> &look = {});
+
+  /// Writes the complete state to a file which is the same on any number of ranks; collective.
+  void dump(const std::string &path);
 
   /// @name For processes and observables
   ///@{
@@ -67,15 +72,18 @@ public:
 
   /// Writes the particles to a series of their own, beside the regular output.
   void write_pictures(PictureSeries &series);
-  std::string output_file(const std::string &name) const
-  {
-    return parameters.control.output_path + "/" + name;
-  }
+  OutputFolder &output_folder() { return output; }
+  std::string output_file(const std::string &name) const { return output.file(name); }
   ///@}
 
 private:
   void print_overview();
   void start();
+  void find_checkpoint(Problems &problems);
+  void save(CheckpointWriter &writer);
+  void resume();
+  /// Writes a checkpoint if it is time or if the run was asked to stop.
+  void checkpoint_if_due();
   void advance();
   void compute_forces(double dt);
   void move_solids();
@@ -106,7 +114,10 @@ private:
   std::vector<std::unique_ptr<Observable>> observable_list;
   std::vector<SolidLoad> solid_loads;
   std::vector<Process::Field> fields;
-  PictureSeries particle_pictures, solid_pictures;
+  OutputFolder output;
+  std::shared_ptr<PictureSeries> particle_pictures, solid_pictures;
+  CheckpointStore checkpoints;
+  std::unique_ptr<Checkpoint> checkpoint; ///< from which the run continues
 
   /// Largest sum of the displacements of two bodies before the next search (m).
   const double allowed_displacement;
@@ -114,6 +125,10 @@ private:
   double present_time = 0.;
   double next_output = 0.;
   bool balanced_once = false;
+  std::size_t n_insertions = 0;
+  unsigned long long first_step = 0; ///< of this part of the run
+  double last_checkpoint = 0.;       ///< by the wall clock (s)
+  bool stopped = false;
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;

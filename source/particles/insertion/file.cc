@@ -36,6 +36,8 @@ public:
     return n;
   }
 
+  void skip(std::size_t n) override { n_events = n; }
+
   bool finished() const override { return !repeats && n_events > 0; }
 
   std::vector<NewParticle> next(ParticleId &next_id) override

@@ -25,6 +25,8 @@ public:
 
   std::size_t supply(std::size_t) const override { return p.list_x.size(); }
 
+  void skip(std::size_t n_events) override { done = n_events > 0; }
+
   bool finished() const override { return done; }
 
   std::vector<NewParticle> next(ParticleId &next_id) override

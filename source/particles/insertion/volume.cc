@@ -74,6 +74,8 @@ public:
     return std::min(n_remaining(), n_events * std::min(of_next_event(), grid.capacity()));
   }
 
+  void skip(std::size_t n_events) override { take(supply(n_events)); }
+
   bool finished() const override { return n_remaining() == 0; }
 
   std::vector<NewParticle> next(ParticleId &next_id) override
@@ -98,12 +100,7 @@ public:
       particles.push_back(p);
     }
     next_id += static_cast<ParticleId>(n);
-    std::size_t taken = n;
-    for (std::size_t &left : remaining) {
-      const std::size_t now = std::min(left, taken);
-      left -= now;
-      taken -= now;
-    }
+    take(n);
     return particles;
   }
 
@@ -111,6 +108,14 @@ private:
   std::size_t n_remaining() const
   {
     return std::accumulate(remaining.begin(), remaining.end(), std::size_t(0));
+  }
+  void take(std::size_t n)
+  {
+    for (std::size_t &left : remaining) {
+      const std::size_t now = std::min(left, n);
+      left -= now;
+      n -= now;
+    }
   }
   std::size_t of_next_event() const
   {

@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 
@@ -133,6 +134,51 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
     }
   }
   return delivery;
+}
+
+void FeedBed::save(CheckpointWriter &writer) const
+{
+  writer.head["bed_depth"] = depth;
+  Rows all;
+  std::vector<std::uint32_t> keys;
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const NewParticle &p = particles[k];
+    std::vector<double> row = {static_cast<double>(p.id), static_cast<double>(p.type), p.radius,
+                               p.mass};
+    for (const Vec3 *const v : {&p.position, &p.velocity, &p.spin})
+      row.insert(row.end(), {v->x, v->y, v->z});
+    const Rows &contacts = rows.get_rows();
+    row.insert(row.end(), contacts[k], contacts[k] + contacts.length(k));
+    all.append(row.data(), row.data() + row.size());
+    keys.push_back(p.id);
+  }
+  writer.add_rows("feed bed", keys, all);
+}
+
+void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
+{
+  constexpr std::size_t n_fixed = 13;
+  depth = checkpoint.head.at("bed_depth");
+  const Rows all = checkpoint.rows("feed bed");
+  particles.clear();
+  Rows contacts;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double *const row = all[k];
+    NewParticle p;
+    p.id = static_cast<ParticleId>(row[0]);
+    p.type = static_cast<int>(row[1]);
+    p.radius = row[2];
+    p.mass = row[3];
+    p.position = {row[4], row[5], row[6]};
+    p.velocity = {row[7], row[8], row[9]};
+    p.spin = {row[10], row[11], row[12]};
+    particles.push_back(p);
+    contacts.append(row + n_fixed, row + all.length(k));
+  }
+  rows = ContactRows(simulation.contact_model().history_size(), std::move(contacts));
+  unsigned long long n = particles.size();
+  MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
+  n_global = n;
 }
 
 } // namespace eunoe::spreading

@@ -33,16 +33,14 @@ LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters
                    const Apparatus &apparatus)
     : apparatus(apparatus), full_layer_mass(simulation.get_parameters().physics.types[0].density *
                                             apparatus.plate_area() * parameters.layer_thickness),
-      file(simulation.output_file("layers.csv"),
-           {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
-            "mass_to_collector", "spreader_force_mean", "spreader_force_max", "wall_seconds"},
-           simulation.communicator()),
-      pictures(simulation.get_parameters().control.output_path,
-               simulation.get_parameters().control.output_name + "_layers",
-               simulation.communicator()),
-      solid_pictures(simulation.get_parameters().control.output_path,
-                     simulation.get_parameters().control.output_name + "_layers_solids",
-                     simulation.communicator()),
+      file(simulation.output_folder().table(
+          "layers.csv",
+          {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
+           "mass_to_collector", "spreader_force_mean", "spreader_force_max", "wall_seconds"})),
+      pictures(simulation.output_folder().pictures(
+          simulation.get_parameters().control.output_name + "_layers")),
+      solid_pictures(simulation.output_folder().pictures(
+          simulation.get_parameters().control.output_name + "_layers_solids")),
       draws(parameters.layer_pictures), last_wall_time(MPI_Wtime())
 {
 }
@@ -118,7 +116,7 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   to_gap -= last_out.gap;
   to_collector -= last_out.collector;
   const double now = MPI_Wtime();
-  file.write({static_cast<double>(layer), simulation.time(), mass,
+  file->write({static_cast<double>(layer), simulation.time(), mass,
               static_cast<double>(present.number),
               layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing,
               layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing,
@@ -131,9 +129,33 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   force_sum = force_max = 0.;
   n_forces = 0;
   if (draws) {
-    simulation.write_pictures(pictures);
-    solid_pictures.write(simulation.time(), simulation.get_solids());
+    simulation.write_pictures(*pictures);
+    solid_pictures->write(simulation.time(), simulation.get_solids());
   }
+}
+
+nlohmann::ordered_json LayerLog::save() const
+{
+  return {{"last_present", last_present.words()},
+          {"first_mass", first_mass},
+          {"last_plate_height", last_plate_height},
+          {"last_to_gap", last_out.gap.words()},
+          {"last_to_collector", last_out.collector.words()},
+          {"force_sum", force_sum},
+          {"force_max", force_max},
+          {"n_forces", n_forces}};
+}
+
+void LayerLog::load(const nlohmann::ordered_json &saved)
+{
+  last_present = ExactSum::from_words(saved.at("last_present"));
+  first_mass = saved.at("first_mass");
+  last_plate_height = saved.at("last_plate_height");
+  last_out.gap = ExactSum::from_words(saved.at("last_to_gap"));
+  last_out.collector = ExactSum::from_words(saved.at("last_to_collector"));
+  force_sum = saved.at("force_sum");
+  force_max = saved.at("force_max");
+  n_forces = saved.at("n_forces");
 }
 
 } // namespace eunoe::spreading

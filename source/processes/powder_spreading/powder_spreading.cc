@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
@@ -38,6 +39,8 @@ public:
     return apparatus->make_solids(parameters.physics.wall_material());
   }
   void start(Simulation &simulation) override;
+  void save(CheckpointWriter &writer) const override;
+  void resume(Simulation &simulation, const Checkpoint &checkpoint) override;
   void step(Simulation &simulation) override;
   bool wants_solid_loads(unsigned long long step) const override
   {
@@ -60,7 +63,8 @@ private:
   void fill_reservoir(Simulation &simulation, double platform_height);
   bool has_settled(Simulation &simulation);
   void go_on_after_settling(Simulation &simulation);
-  void start_passes(Simulation &simulation);
+  void lower_platform(double time);
+  void schedule_passes(double beginning);
   void step_passes(Simulation &simulation);
   double bed_particles(const Parameters &parameters, double bed_depth) const;
 
@@ -71,6 +75,8 @@ private:
 
   Phase phase = Phase::settling_bed;
   double phase_start = 0.;
+  /// When the platform went down for the reservoir of the first pass (s); negative: it did not.
+  double lowering = -1.;
   unsigned int n_fillings = 0;
   std::vector<Pass> passes;
   std::size_t next_feed = 0, next_weighing = 0;
@@ -282,8 +288,7 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
     simulation.get_log().line("The feedstock bed is at rest after " + format(simulation.time()) +
                               " s: " + std::to_string(bed.size()) + " particles");
     if (apparatus->first_bed_depth > apparatus->bed_depth) {
-      apparatus->platform->add(simulation.time(), 0.,
-                               {0., apparatus->bed_depth - apparatus->first_bed_depth, 0.});
+      lower_platform(simulation.time());
       simulation.renew_solids();
       fill_reservoir(simulation, -apparatus->first_bed_depth);
       phase = Phase::settling_stack;
@@ -291,13 +296,20 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
       return;
     }
   }
-  start_passes(simulation);
+  phase = Phase::passes;
+  schedule_passes(simulation.time());
+  next_feed = 1;
 }
 
-void PowderSpreading::start_passes(Simulation &simulation)
+void PowderSpreading::lower_platform(const double time)
 {
-  phase = Phase::passes;
-  passes = make_schedule(p, *apparatus, simulation.time());
+  lowering = time;
+  apparatus->platform->add(time, 0., {0., apparatus->bed_depth - apparatus->first_bed_depth, 0.});
+}
+
+void PowderSpreading::schedule_passes(const double beginning)
+{
+  passes = make_schedule(p, *apparatus, beginning);
   double height = -apparatus->first_bed_depth;
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pass &pass = passes[k];
@@ -312,7 +324,38 @@ void PowderSpreading::start_passes(Simulation &simulation)
     apparatus->plate->add(pass.weighing, p.layer_thickness / p.plate_velocity,
                           {0., -p.layer_thickness, 0.});
   }
-  next_feed = 1;
+}
+
+void PowderSpreading::save(CheckpointWriter &writer) const
+{
+  writer.head["powder spreading"] = {{"phase", static_cast<int>(phase)},
+                                     {"phase_start", phase_start},
+                                     {"fillings", n_fillings},
+                                     {"lowering", lowering},
+                                     {"beginning", passes.empty() ? -1. : passes.front().feed},
+                                     {"next_feed", next_feed},
+                                     {"next_weighing", next_weighing},
+                                     {"pass_over_plate", pass_over_plate},
+                                     {"layers", layers->save()}};
+  bed.save(writer);
+}
+
+void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoint)
+{
+  const auto &saved = checkpoint.head.at("powder spreading");
+  phase = static_cast<Phase>(saved.at("phase").get<int>());
+  phase_start = saved.at("phase_start");
+  n_fillings = saved.at("fillings");
+  if (saved.at("lowering") >= 0.)
+    lower_platform(saved.at("lowering"));
+  if (saved.at("beginning") >= 0.)
+    schedule_passes(saved.at("beginning"));
+  next_feed = saved.at("next_feed");
+  next_weighing = saved.at("next_weighing");
+  pass_over_plate = saved.at("pass_over_plate");
+  layers = std::make_unique<LayerLog>(simulation, p, *apparatus);
+  layers->load(saved.at("layers"));
+  bed.load(simulation, checkpoint);
 }
 
 void PowderSpreading::step(Simulation &simulation)

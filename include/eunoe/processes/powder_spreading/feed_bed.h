@@ -18,6 +18,10 @@ public:
   /// Number of particles of a copy.
   std::size_t size() const { return n_global; }
 
+  /// Adds the bed to a checkpoint, and takes it from one; collective.
+  void save(CheckpointWriter &writer) const;
+  void load(Simulation &simulation, const Checkpoint &checkpoint);
+
   /// This rank's share of a stack of copies on a platform at @p platform_height that reaches up to
   /// the level of the transfer plate, with new ids; the same for any number of ranks. Collective.
   /// @param event number that makes shifts and mirrorings differ

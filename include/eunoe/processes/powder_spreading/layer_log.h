@@ -1,7 +1,6 @@
 #ifndef eunoe_processes_powder_spreading_layer_log_h
 #define eunoe_processes_powder_spreading_layer_log_h
 
-#include <eunoe/core/csv_file.h>
 #include <eunoe/processes/powder_spreading/apparatus.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -25,6 +24,10 @@ public:
   /// @param plate_height of the measuring plate (m)
   void weigh(Simulation &simulation, unsigned int layer, double plate_height);
 
+  /// What has been measured so far, and its return.
+  nlohmann::ordered_json save() const;
+  void load(const nlohmann::ordered_json &saved);
+
 private:
   struct OutletTotals
   {
@@ -34,8 +37,8 @@ private:
 
   const Apparatus &apparatus;
   const double full_layer_mass; ///< of solid material that fills a layer (kg)
-  CsvFile file;
-  PictureSeries pictures, solid_pictures;
+  const std::shared_ptr<CsvFile> file;
+  const std::shared_ptr<PictureSeries> pictures, solid_pictures;
   const bool draws;
   ExactSum last_present;
   double first_mass = 0., last_plate_height = 0.;

@@ -1,0 +1,73 @@
+#ifndef eunoe_checkpoint_checkpoint_file_h
+#define eunoe_checkpoint_checkpoint_file_h
+
+#include <eunoe/core/rows.h>
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <string>
+
+namespace eunoe {
+
+// A checkpoint is one file: a line that names the format, the length of the head, the head (JSON:
+// all that is small), then sections of rows of doubles, and at the end a checksum of everything
+// (CRC-64). Numbers are little-endian. Rows are ordered by a key, so the file is the same on any
+// number of ranks.
+
+/// Collects the state of a run and writes it at once.
+class CheckpointWriter
+{
+public:
+  explicit CheckpointWriter(MPI_Comm comm) : comm(comm) {}
+
+  MPI_Comm communicator() const { return comm; }
+
+  /// What is small and known to every rank; the first rank's counts.
+  nlohmann::ordered_json head;
+
+  /// Adds a section; collective.
+  /// @param keys one a row, different from each other on all ranks
+  void add_rows(const std::string &name, const std::vector<std::uint32_t> &keys, const Rows &rows);
+
+  /// Writes the file beside an old one of this name and renames it when it is complete and on the
+  /// disk; collective. Throws a UserError on every rank if that fails, and leaves the old file.
+  /// @return size of the file (bytes)
+  std::uint64_t write(const std::string &path);
+
+private:
+  struct Section
+  {
+    std::string name;
+    std::uint64_t n_rows, n_values;
+    Rows part; ///< this rank's part of the rows in the order of the keys
+  };
+
+  MPI_Comm comm;
+  std::vector<Section> sections;
+};
+
+/// A checkpoint that has been read and found whole.
+class Checkpoint
+{
+public:
+  /// Reads the head and verifies the whole file; collective. Throws a UserError on every rank for
+  /// a file that is missing, of another format, cut short or damaged.
+  Checkpoint(const std::string &path, MPI_Comm comm);
+  ~Checkpoint();
+
+  const std::string path;
+  nlohmann::ordered_json head;
+
+  /// This rank's share of a section, in the order of the keys; collective.
+  Rows rows(const std::string &name) const;
+
+private:
+  struct File;
+  MPI_Comm comm;
+  std::unique_ptr<File> file; ///< on the first rank
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,20 @@
+#ifndef eunoe_checkpoint_input_differences_h
+#define eunoe_checkpoint_input_differences_h
+
+#include <eunoe/core/problems.h>
+
+#include <string>
+
+namespace eunoe {
+
+/// Notes every entry in which two complete inputs differ and which a run must not change when it
+/// continues from a checkpoint: all but those on its end, output, log, load balancing and
+/// checkpoints.
+/// @param now,then texts of complete input files
+/// @param checkpoint its path, for messages
+void find_input_differences(const std::string &now, const std::string &then,
+                            const std::string &checkpoint, Problems &problems);
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,24 @@
+#ifndef eunoe_checkpoint_restart_parameters_h
+#define eunoe_checkpoint_restart_parameters_h
+
+#include <eunoe/core/parameter_section.h>
+
+namespace eunoe {
+
+/// `subsection restart`.
+struct RestartParameters : public ParameterSection
+{
+  bool checkpoint = false;
+  unsigned long long frequency = 0; ///< steps between checkpoints; 0: by the clock alone
+  double minutes = 30.;             ///< of wall-clock time between checkpoints; 0: by steps alone
+  unsigned int keep = 2;            ///< number of checkpoints that stay
+  std::string filename = "restart";
+  std::string restart = "false"; ///< false, true, or auto: if there is a checkpoint
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+} // namespace eunoe
+
+#endif

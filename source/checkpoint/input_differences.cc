@@ -1,0 +1,82 @@
+#include <eunoe/checkpoint/input_differences.h>
+#include <eunoe/core/input_file.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <map>
+
+namespace eunoe {
+
+namespace {
+
+using Path = std::vector<std::string>;
+using Entries = std::map<std::pair<Path, std::string>, std::string>;
+
+Entries entries_of(const std::string &text)
+{
+  Problems none;
+  Entries entries;
+  for (const InputEntry &entry : parse_input(text, "", none, {}))
+    if (!entry.name.empty())
+      entries[{entry.path, entry.name}] = entry.value;
+  return entries;
+}
+
+/// Whether an entry may differ: it changes no particle's path.
+bool is_harmless(const Path &path, const std::string &entry)
+{
+  if (path == Path{"simulation control"})
+    return entry != "time step";
+  if (path == Path{"model parameters", "load balancing"})
+    return true;
+  if (!path.empty() && path.back().compare(0, 12, "solid object") == 0)
+    return entry == "output solid object";
+  return !path.empty() && (path.front() == "restart" || path.front() == "post-processing");
+}
+
+/// Whether two values are the same text or the same numbers.
+bool are_equal(const std::string &a, const std::string &b)
+{
+  if (a == b)
+    return true;
+  std::vector<std::string> words_a, words_b;
+  boost::split(words_a, a, boost::is_any_of(" ,:;"), boost::token_compress_on);
+  boost::split(words_b, b, boost::is_any_of(" ,:;"), boost::token_compress_on);
+  return std::equal(words_a.begin(), words_a.end(), words_b.begin(), words_b.end(),
+                    [](const std::string &x, const std::string &y) {
+                      char *end_x, *end_y;
+                      const double u = std::strtod(x.c_str(), &end_x);
+                      const double v = std::strtod(y.c_str(), &end_y);
+                      const bool numbers =
+                          !x.empty() && !y.empty() && *end_x == '\0' && *end_y == '\0';
+                      return x == y || (numbers && u == v);
+                    });
+}
+
+} // namespace
+
+void find_input_differences(const std::string &now, const std::string &then,
+                            const std::string &checkpoint, Problems &problems)
+{
+  const Entries entries_now = entries_of(now), entries_then = entries_of(then);
+  const auto note = [&](const auto &place, const std::string &what) {
+    if (!is_harmless(place.first, place.second))
+      problems.add(describe(place.first, place.second), what,
+                   "Set it back, or start anew with 'restart = false' in subsection 'restart'.");
+  };
+  for (const auto &[place, value] : entries_now) {
+    const auto before = entries_then.find(place);
+    if (before == entries_then.end())
+      note(place, "is set, and was not known in the run that wrote " + checkpoint + ".");
+    else if (!are_equal(value, before->second))
+      note(place, "is '" + value + "', and was '" + before->second + "' in the run that wrote " +
+                      checkpoint + ".");
+  }
+  for (const auto &[place, value] : entries_then)
+    if (entries_now.count(place) == 0)
+      note(place, "is missing, and was '" + value + "' in the run that wrote " + checkpoint + ".");
+}
+
+} // namespace eunoe

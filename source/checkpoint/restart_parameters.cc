@@ -1,0 +1,34 @@
+#include <eunoe/checkpoint/restart_parameters.h>
+#include <eunoe/core/declare.h>
+
+namespace eunoe {
+
+namespace {
+const std::string section = "restart";
+} // namespace
+
+void RestartParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section);
+  prm.add_parameter("checkpoint", checkpoint,
+                    "Whether checkpoints are written: at intervals, and when the run is asked to "
+                    "stop (SIGTERM, SIGINT, SIGUSR1), by which it ends with exit code 3.");
+  declare::count(prm, "frequency", frequency,
+                 "Steps between checkpoints; 0: by the clock alone.");
+  declare::positive(prm, "wall time interval", minutes,
+                    "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
+  declare::count(prm, "number of checkpoints", keep, "Number of checkpoints that stay.", 1);
+  prm.add_parameter("filename", filename,
+                    "Beginning of the names of the checkpoints in the output folder.");
+  declare::choice(prm, "restart", restart, "false|true|auto",
+                  "Whether the run continues from the last checkpoint; auto: if there is one.");
+  prm.leave_subsection();
+}
+
+void RestartParameters::check(const ParameterCheck &check) const
+{
+  check.require(!filename.empty() && filename.find('/') == std::string::npos, {section}, "filename",
+                "is '" + filename + "'.", "Give a name without '/'.");
+}
+
+} // namespace eunoe

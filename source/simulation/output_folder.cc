@@ -1,0 +1,44 @@
+#include <eunoe/simulation/output_folder.h>
+
+#include <nlohmann/json.hpp>
+
+namespace eunoe {
+
+std::shared_ptr<CsvFile> OutputFolder::table(const std::string &name,
+                                             const std::vector<std::string> &columns)
+{
+  const auto before = sizes_before.find(name);
+  tables[name] = std::make_shared<CsvFile>(file(name), columns, comm,
+                                           before == sizes_before.end() ? 0 : before->second);
+  return tables[name];
+}
+
+std::shared_ptr<PictureSeries> OutputFolder::pictures(const std::string &name)
+{
+  series[name] = std::make_shared<PictureSeries>(path, name, comm);
+  const auto before = files_before.find(name);
+  if (before != files_before.end())
+    series[name]->resume(before->second);
+  return series[name];
+}
+
+nlohmann::ordered_json OutputFolder::save() const
+{
+  nlohmann::ordered_json saved;
+  saved["tables"] = nlohmann::ordered_json::object();
+  saved["pictures"] = nlohmann::ordered_json::object();
+  for (const auto &[name, table] : tables)
+    saved["tables"][name] = table->size();
+  for (const auto &[name, pictures] : series)
+    if (!pictures->get_files().empty())
+      saved["pictures"][name] = pictures->get_files();
+  return saved;
+}
+
+void OutputFolder::resume(const nlohmann::ordered_json &saved)
+{
+  sizes_before = saved.at("tables").get<std::map<std::string, std::uint64_t>>();
+  files_before = saved.at("pictures").get<std::map<std::string, PictureSeries::Files>>();
+}
+
+} // namespace eunoe
