@@ -185,6 +185,16 @@ std::vector<InputEntry> parse_input(const std::string &text, const std::string &
   return parser.entries;
 }
 
+EntryValues values_in(const std::string &text)
+{
+  Problems problems;
+  EntryValues values;
+  for (const InputEntry &entry : parse_input(text, "", problems))
+    if (!entry.name.empty())
+      values[{entry.path, entry.name}] = entry.value;
+  return values;
+}
+
 InputEntry parse_override(const std::string &text, Problems &problems)
 {
   InputEntry entry;

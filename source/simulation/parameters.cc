@@ -147,6 +147,13 @@ std::string wanted_by(std::string message)
   return in_words(message.substr(begin + 1, end - begin));
 }
 
+std::string complete_text(const dealii::ParameterHandler &prm)
+{
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::Text);
+  return text.str();
+}
+
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
@@ -181,7 +188,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   dealii::ParameterHandler prm;
   declare(prm);
   std::set<Path> reported;
-  std::map<std::pair<Path, std::string>, std::string> defaults;
+  const std::string default_input = complete_text(prm);
   for (InputEntry &entry : entries) {
     Path known;
     bool exists = true;
@@ -208,10 +215,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
     const std::string place = entry.where + ": " + describe(entry.path, entry.name);
     bool declared = true;
     try {
-      const std::string before = prm.get(entry.name);
-      const auto original = defaults.emplace(std::pair(entry.path, entry.name), before).first;
       prm.set(entry.name, entry.value);
-      entry.is_default = prm.get(entry.name) == original->second;
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
       declared = false;
     } catch (const std::exception &error) {
@@ -224,9 +228,14 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
     if (!declared)
       problems.add(place, "is unknown.", suggestion(entry.name, look_at(prm, entry.path).entries));
   }
-  std::ostringstream text;
-  prm.print_parameters(text, dealii::ParameterHandler::Text);
-  complete_input = text.str();
+  complete_input = complete_text(prm);
+  const EntryValues before = values_in(default_input), after = values_in(complete_input);
+  for (InputEntry &entry : entries) {
+    const auto place = std::pair(entry.path, entry.name);
+    const auto value = after.find(place);
+    entry.is_default =
+        entry.name.empty() || (value != after.end() && value->second == before.at(place));
+  }
 }
 
 Parameters Parameters::read(const std::string &text, const std::string &file,

@@ -4,6 +4,7 @@
 #include <eunoe/core/problems.h>
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ using FileLoader = std::function<std::string(const std::string &path)>;
 /// is relative to the one that includes it.
 std::vector<InputEntry> parse_input(const std::string &text, const std::string &file,
                                     Problems &problems, const FileLoader &load = {});
+
+/// Values of entries by subsections and name.
+using EntryValues = std::map<std::pair<std::vector<std::string>, std::string>, std::string>;
+
+/// What a complete and correct text says.
+EntryValues values_in(const std::string &text);
 
 /// One "subsection/.../entry = value" from the command line.
 InputEntry parse_override(const std::string &text, Problems &problems);
