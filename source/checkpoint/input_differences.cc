@@ -5,25 +5,12 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <map>
 
 namespace eunoe {
 
 namespace {
 
 using Path = std::vector<std::string>;
-using Entries = std::map<std::pair<Path, std::string>, std::string>;
-
-Entries entries_of(const std::string &text)
-{
-  Problems none;
-  Entries entries;
-  for (const InputEntry &entry : parse_input(text, "", none, {}))
-    if (!entry.name.empty())
-      entries[{entry.path, entry.name}] = entry.value;
-  return entries;
-}
-
 /// Whether an entry may differ: it changes no particle's path.
 bool is_harmless(const Path &path, const std::string &entry)
 {
@@ -60,7 +47,7 @@ bool are_equal(const std::string &a, const std::string &b)
 void find_input_differences(const std::string &now, const std::string &then,
                             const std::string &checkpoint, Problems &problems)
 {
-  const Entries entries_now = entries_of(now), entries_then = entries_of(then);
+  const EntryValues entries_now = values_in(now), entries_then = values_in(then);
   const auto note = [&](const auto &place, const std::string &what) {
     if (!is_harmless(place.first, place.second))
       problems.add(describe(place.first, place.second), what,

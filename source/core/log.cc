@@ -75,13 +75,14 @@ void Log::progress(const Progress &p)
 {
   if (!active)
     return;
-  const double left = p.share > 0. ? p.elapsed * (1. - p.share) / p.share : 0.;
+  const double done_here = p.share - p.share_before;
+  const double left = done_here > 0. ? p.elapsed * (1. - p.share) / done_here : 0.;
   char text[256];
   std::snprintf(text, sizeof text,
                 "%5.1f %%  step %llu  t = %.6g s  %llu particles  %.2f M particle-steps/s  "
                 "left: %s%s%s",
                 100. * p.share, p.step, p.time, static_cast<unsigned long long>(p.particles),
-                p.speed, p.share > 0. ? format_duration(left).c_str() : "?",
+                p.speed, done_here > 0. ? format_duration(left).c_str() : "?",
                 p.stage.empty() ? "" : "  ", p.stage.c_str());
   if (!terminal) {
     line(text);

@@ -1,6 +1,7 @@
 #include <eunoe/core/stop_request.h>
 
 #include <csignal>
+#include <initializer_list>
 
 namespace eunoe::stop_request {
 

@@ -166,9 +166,9 @@ Parameters::Parameters(const SectionCounts &counts)
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {&control,        &mesh,      &boundaries,
-                                         &physics,        &insertion, &model,
-                                         &floating_walls, &solids,    &observables, &restart};
+  std::vector<ParameterSection *> all = {&control,     &mesh,   &boundaries,     &physics,
+                                         &insertion,   &model,  &floating_walls, &solids,
+                                         &observables, &restart};
   for (auto &[name, process] : processes)
     all.push_back(process.get());
   return all;

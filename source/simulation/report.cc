@@ -82,6 +82,9 @@ void Simulation::report_progress(const bool at_end)
     progress.share = at_end ? 1. : process->progress(*this);
     progress.stage = process->stage();
   }
+  if (share_before < 0.)
+    share_before = first_step > 0 ? progress.share : 0.;
+  progress.share_before = share_before;
   progress.elapsed = now - start_of_run;
   progress.speed = (particle_steps - reported_particle_steps) /
                    std::max(1e-9, now - (last_report > 0. ? last_report : start_of_run)) * 1e-6;
@@ -101,6 +104,7 @@ void Simulation::write_summary()
   summary["deal_ii_version"] = deal_ii_version();
   summary["particles"] = n_particles;
   summary["steps"] = step;
+  summary["first_step"] = first_step;
   summary["ranks"] = n_ranks;
   summary["time_step"] = parameters.control.time_step;
   summary["simulated_time"] = present_time;

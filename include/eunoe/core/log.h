@@ -25,8 +25,9 @@ public:
   struct Progress
   {
     unsigned long long step = 0;
-    double share = 0.; ///< of the whole run, in [0, 1]
-    double time = 0.;  ///< simulated (s)
+    double share = 0.;        ///< of the whole run, in [0, 1]
+    double share_before = 0.; ///< that an earlier part of the run had done
+    double time = 0.;         ///< simulated (s)
     std::uint64_t particles = 0;
     double speed = 0.;   ///< million particle-steps/s
     double elapsed = 0.; ///< wall clock (s)

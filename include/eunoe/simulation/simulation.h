@@ -132,6 +132,7 @@ private:
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;
+  double share_before = -1.; ///< of the run that was done before this part, once it is known
   double particle_steps = 0., loop_seconds = 0., last_report = 0., reported_particle_steps = 0.;
 };
 

@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""Kills a run again and again at random moments, lets it continue from its last checkpoint, and
+compares the end with that of a run that was left alone: state, tables and lists of pictures.
+
+Usage: contrib/utilities/kill_and_restart.py build/release/eunoe-particles case.prm FOLDER
+           [--kills 100] [--ranks 1,2] [--frequency 1000] [--seed 1] [--set ENTRY=VALUE ...]
+
+Exit code 1 and a sentence if a restart failed, lost more than one interval, or ended differently.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+
+class Failure(Exception):
+    """What went wrong, in a sentence."""
+
+
+class Case:
+    """A case of the program in a folder of its own."""
+
+    def __init__(self, program: str, case: str, folder: Path, settings: list[str]) -> None:
+        self.program, self.case, self.folder, self.settings = program, case, folder, settings
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.results = folder / "results"
+        self.dump = folder / "dump"
+
+    def command(self, ranks: int, *settings: str) -> list[str]:
+        launch = []
+        if ranks > 1:
+            launch = ["mpirun", "-np", str(ranks), "--oversubscribe", "--bind-to", "none",
+                      "--mca", "mpi_yield_when_idle", "1"]
+            if os.geteuid() == 0:
+                launch.append("--allow-run-as-root")
+        options = [word for setting in (f"simulation control/output path = {self.results}",
+                                        *self.settings, *settings)
+                   for word in ("--set", setting)]
+        return [*launch, self.program, self.case, "--dump", str(self.dump), *options]
+
+    def start(self, ranks: int, *settings: str) -> subprocess.Popen:
+        # In a group of its own, so that all ranks can be hit at once.
+        return subprocess.Popen(self.command(ranks, *settings), start_new_session=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def run(self, ranks: int, *settings: str) -> None:
+        process = self.start(ranks, *settings)
+        output = process.communicate()[0]
+        if process.returncode != 0:
+            raise Failure(f"The run ended with exit code {process.returncode}:\n{output}")
+
+    def last_step(self) -> int:
+        """Of the newest checkpoint, 0 if there is none."""
+        index = self.results / "restart.latest"
+        names = index.read_text().split() if index.is_file() else []
+        return int(re.search(r"_(\d+)\.", names[0]).group(1)) if names else 0
+
+
+def tables_of(folder: Path) -> dict[str, str]:
+    """Tables and lists of pictures, without the columns that the wall clock fills."""
+    found = {}
+    for file in sorted([*folder.glob("*.csv"), *folder.glob("*.pvd")]):
+        lines = file.read_text().splitlines()
+        if lines and lines[0].endswith(",wall_seconds"):
+            lines = [line.rsplit(",", 1)[0] for line in lines]
+        found[file.name] = "\n".join(lines)
+    return found
+
+
+def compare(reference: Case, other: Case, what: str) -> None:
+    if reference.dump.read_bytes() != other.dump.read_bytes():
+        raise Failure(f"{what}: the final state differs from that of the run left alone.")
+    tables, others = tables_of(reference.results), tables_of(other.results)
+    for name in sorted(tables.keys() | others.keys()):
+        if tables.get(name) != others.get(name):
+            raise Failure(f"{what}: {name} differs from that of the run left alone.")
+
+
+def kill_group(process: subprocess.Popen) -> None:
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills: int,
+                     frequency: int, draw: random.Random) -> int:
+    """@return number of times that the case came to its end and was compared"""
+    began = time.monotonic()
+    case.run(rank_numbers[0])
+    duration = time.monotonic() - began
+    checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}")
+    done, ends, fresh = 0, 0, True
+    while done < kills or not fresh:
+        mode = "restart/restart = " + ("false" if fresh else "auto")
+        if fresh:
+            shutil.rmtree(case.results, ignore_errors=True)
+            case.dump.unlink(missing_ok=True)
+        before = 0 if fresh else case.last_step()
+        process = case.start(draw.choice(rank_numbers), *checkpoints, mode)
+        try:
+            output = process.communicate(
+                timeout=None if done >= kills else draw.uniform(0., 0.6 * duration))[0]
+        except subprocess.TimeoutExpired:
+            kill_group(process)
+            done += 1
+            if case.last_step() < before:
+                raise Failure(f"After kill {done} the newest checkpoint is of step "
+                              f"{case.last_step()}, and it had been of step {before}.") from None
+            fresh = False
+            continue
+        if process.returncode != 0:
+            raise Failure(f"After kill {done} the run ended with exit code {process.returncode}:\n"
+                          f"{output}")
+        if before > 0 and f"step {before}," not in output:
+            raise Failure(f"After kill {done} the run did not continue from step {before}:\n{output}")
+        compare(reference, case, f"After kill {done}")
+        ends += 1
+        fresh = True
+    return ends
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", 1)[0])
+    parser.add_argument("program")
+    parser.add_argument("case")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--ranks", default="1,2", help="numbers of ranks to draw from")
+    parser.add_argument("--frequency", type=int, default=1000, help="steps between checkpoints")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[], dest="settings")
+    options = parser.parse_args(arguments)
+    rank_numbers = [int(word) for word in options.ranks.split(",")]
+    program = str(Path(options.program).resolve())
+    reference = Case(program, options.case, options.folder / "alone", options.settings)
+    killed = Case(program, options.case, options.folder / "killed", options.settings)
+    try:
+        reference.run(rank_numbers[0])
+        ends = kill_and_restart(reference, killed, rank_numbers, options.kills, options.frequency,
+                                random.Random(options.seed))
+    except Failure as failure:
+        print(failure)
+        return 1
+    print(f"{options.kills} kills: every restart went on from the last checkpoint; {ends} runs came "
+          "to their end with the same bits.")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,86 @@
+"""A run gives the same bits on any number of ranks, however its work is shared out, and however
+often it is stopped and continued.
+
+Usage: restart.py path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
+from kill_and_restart import Case, Failure, compare, kill_and_restart  # noqa: E402
+
+CASE = str(Path(__file__).with_name("stirred.prm"))
+EVERY = ("restart/checkpoint = true", "restart/frequency = 1700")
+BALANCING = "model parameters/load balancing/"
+FREQUENT = (BALANCING + "load balance method = frequent", BALANCING + "frequency = 300")
+DYNAMIC = (BALANCING + "load balance method = dynamic", BALANCING + "threshold = 0.1",
+           BALANCING + "dynamic check frequency = 200")
+OTHER_MESH = ("mesh/grid arguments = 3, 2, 1 : 0, 0, 0 : 10e-3, 8e-3, 4e-3 : true",)
+failures = 0
+
+
+def check(name: str, action) -> None:
+    global failures
+    try:
+        action()
+    except Failure as failure:
+        failures += 1
+        print(f"{name}: {failure}")
+
+
+def same(reference: Case, folder: Path, ranks: int, *settings: str) -> None:
+    other = Case(reference.program, CASE, folder, [])
+    other.run(ranks, *settings)
+    compare(reference, other, f"On {ranks} ranks")
+
+
+def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after: int) -> None:
+    """Stopped by a signal, continued on another number of ranks."""
+    other = Case(reference.program, CASE, folder, [])
+    longer = ["simulation control/iteration end = 10000000", *EVERY]
+    process = other.start(ranks, *longer)
+    while other.last_step() == 0 and process.poll() is None:
+        time.sleep(0.02)
+    pids = subprocess.run(["pgrep", "-f", f"^{reference.program}.*{other.results}"], text=True,
+                          capture_output=True, check=False).stdout.split()
+    subprocess.run(["kill", f"-{number}", pids[-1]], check=True)  # one of the ranks is enough
+    output = process.communicate()[0]
+    if process.returncode != 3 or "The run continues from" not in output:
+        raise Failure(f"Signal {number}: exit code {process.returncode}, output:\n{output}")
+    step = other.last_step()
+    last = f"simulation control/iteration end = {step + 3000}"
+    other.run(ranks_after, *EVERY, "restart/restart = true", last)
+    alone = Case(reference.program, CASE, folder.with_name(folder.name + "_alone"), [])
+    alone.run(1, last)
+    compare(alone, other, f"After signal {number} at step {step}")
+
+
+def killed(reference: Case, folder: Path) -> None:
+    kill_and_restart(reference, Case(reference.program, CASE, folder, []), [1, 2], 6, 1700,
+                     random.Random(3))
+
+
+def main(program: str, folder: Path) -> int:
+    reference = Case(str(Path(program).resolve()), CASE, folder / "reference", [])
+    reference.run(1)
+    check("checkpoints", lambda: same(reference, folder / "checkpoints", 1, *EVERY))
+    check("2 ranks", lambda: same(reference, folder / "2", 2))
+    check("2 ranks, frequent", lambda: same(reference, folder / "2f", 2, *FREQUENT))
+    check("2 ranks, dynamic", lambda: same(reference, folder / "2d", 2, *DYNAMIC))
+    check("4 ranks, other mesh", lambda: same(reference, folder / "4", 4, *OTHER_MESH))
+    check("8 ranks, dynamic", lambda: same(reference, folder / "8", 8, *DYNAMIC, *EVERY))
+    check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
+    check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
+    check("kill", lambda: killed(reference, folder / "killed"))
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], Path(sys.argv[2])))
