@@ -11,6 +11,7 @@ Exit code 1 and a sentence if a restart failed, lost more than one interval, or 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import random
 import re
@@ -49,7 +50,6 @@ class Case:
         return [*launch, self.program, self.case, "--dump", str(self.dump), *options]
 
     def start(self, ranks: int, *settings: str) -> subprocess.Popen:
-        # In a group of its own, so that all ranks can be hit at once.
         return subprocess.Popen(self.command(ranks, *settings), start_new_session=True,
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
 
@@ -58,6 +58,12 @@ class Case:
         output = process.communicate()[0]
         if process.returncode != 0:
             raise Failure(f"The run ended with exit code {process.returncode}:\n{output}")
+
+    def processes(self) -> list[int]:
+        """Numbers of the ranks that run the case, without the launcher."""
+        found = subprocess.run(["pgrep", "-f", f"^{self.program} .*{self.results}"], text=True,
+                               capture_output=True, check=False)
+        return [int(word) for word in found.stdout.split()]
 
     def last_step(self) -> int:
         """Of the newest checkpoint, 0 if there is none."""
@@ -86,8 +92,14 @@ def compare(reference: Case, other: Case, what: str) -> None:
             raise Failure(f"{what}: {name} differs from that of the run left alone.")
 
 
-def kill_group(process: subprocess.Popen) -> None:
+def kill_all(case: Case, process: subprocess.Popen) -> None:
+    """Kills the launcher and every rank, which the launcher puts into groups of their own."""
     os.killpg(process.pid, signal.SIGKILL)
+    while case.processes():
+        for number in case.processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        time.sleep(0.01)
     process.communicate()
 
 
@@ -110,7 +122,7 @@ def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills
             output = process.communicate(
                 timeout=None if done >= kills else draw.uniform(0., 0.6 * duration))[0]
         except subprocess.TimeoutExpired:
-            kill_group(process)
+            kill_all(case, process)
             done += 1
             if case.last_step() < before:
                 raise Failure(f"After kill {done} the newest checkpoint is of step "

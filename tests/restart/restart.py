@@ -6,9 +6,9 @@ Usage: restart.py path/to/eunoe-particles folder
 
 from __future__ import annotations
 
+import os
 import random
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
@@ -48,9 +48,7 @@ def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after:
     process = other.start(ranks, *longer)
     while other.last_step() == 0 and process.poll() is None:
         time.sleep(0.02)
-    pids = subprocess.run(["pgrep", "-f", f"^{reference.program}.*{other.results}"], text=True,
-                          capture_output=True, check=False).stdout.split()
-    subprocess.run(["kill", f"-{number}", pids[-1]], check=True)  # one of the ranks is enough
+    os.kill(other.processes()[-1], number)  # one of the ranks is enough
     output = process.communicate()[0]
     if process.returncode != 3 or "The run continues from" not in output:
         raise Failure(f"Signal {number}: exit code {process.returncode}, output:\n{output}")
