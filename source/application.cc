@@ -36,8 +36,8 @@ CommandLine parse_command_line(int argc, char **argv)
       "print-parameters", po::bool_switch(&line.print_parameters),
       "print a complete input file with documentation and exit; with a case, its values")(
       "dump", po::value<std::string>(&line.dump),
-      "at the end, write the complete state to this file, which is the same on any number of ranks")(
-      "quiet", po::bool_switch(&line.quiet), "print nothing but errors")(
+      "at the end, write the complete state to this file, which is the same on any number of "
+      "ranks")("quiet", po::bool_switch(&line.quiet), "print nothing but errors")(
       "version", po::bool_switch(&line.version),
       "print the version and exit")("help", po::bool_switch(&line.help), "print this and exit");
   po::options_description all;

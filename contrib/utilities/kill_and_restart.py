@@ -104,23 +104,24 @@ def kill_all(case: Case, process: subprocess.Popen) -> None:
 
 
 def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills: int,
-                     frequency: int, draw: random.Random) -> int:
-    """@return number of times that the case came to its end and was compared"""
+                     frequency: int, draw: random.Random) -> tuple[int, int]:
+    """@return numbers of restarts from a checkpoint, and of ends that were compared"""
     began = time.monotonic()
     case.run(rank_numbers[0])
     duration = time.monotonic() - began
     checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}")
-    done, ends, fresh = 0, 0, True
+    done, restarts, ends, fresh = 0, 0, 0, True
     while done < kills or not fresh:
         mode = "restart/restart = " + ("false" if fresh else "auto")
         if fresh:
             shutil.rmtree(case.results, ignore_errors=True)
             case.dump.unlink(missing_ok=True)
         before = 0 if fresh else case.last_step()
+        restarts += before > 0
         process = case.start(draw.choice(rank_numbers), *checkpoints, mode)
         try:
             output = process.communicate(
-                timeout=None if done >= kills else draw.uniform(0., 0.6 * duration))[0]
+                timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
         except subprocess.TimeoutExpired:
             kill_all(case, process)
             done += 1
@@ -137,7 +138,7 @@ def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills
         compare(reference, case, f"After kill {done}")
         ends += 1
         fresh = True
-    return ends
+    return restarts, ends
 
 
 def main(arguments: list[str]) -> int:
@@ -157,13 +158,13 @@ def main(arguments: list[str]) -> int:
     killed = Case(program, options.case, options.folder / "killed", options.settings)
     try:
         reference.run(rank_numbers[0])
-        ends = kill_and_restart(reference, killed, rank_numbers, options.kills, options.frequency,
+        restarts, ends = kill_and_restart(reference, killed, rank_numbers, options.kills, options.frequency,
                                 random.Random(options.seed))
     except Failure as failure:
         print(failure)
         return 1
-    print(f"{options.kills} kills: every restart went on from the last checkpoint; {ends} runs came "
-          "to their end with the same bits.")
+    print(f"{options.kills} kills, {restarts} restarts, each from the last checkpoint; {ends} runs came "
+          "to their end, with the same bits.")
     return 0
 
 

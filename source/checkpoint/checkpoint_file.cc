@@ -421,8 +421,7 @@ Rows Checkpoint::rows(const std::string &name) const
   agree(error, comm);
   std::vector<std::uint32_t> lengths(share(rank));
   receive(lengths.data(), lengths.size() * sizeof(std::uint32_t), 0, tag_lengths, comm);
-  std::vector<double> values(
-      std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0)));
+  std::vector<double> values(std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0)));
   receive(values.data(), values.size() * sizeof(double), 0, tag_values, comm);
   keep(lengths, std::move(values));
   return mine;

@@ -13,8 +13,7 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
   prm.add_parameter("checkpoint", checkpoint,
                     "Whether checkpoints are written: at intervals, and when the run is asked to "
                     "stop (SIGTERM, SIGINT, SIGUSR1), by which it ends with exit code 3.");
-  declare::count(prm, "frequency", frequency,
-                 "Steps between checkpoints; 0: by the clock alone.");
+  declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
   declare::positive(prm, "wall time interval", minutes,
                     "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
   declare::count(prm, "number of checkpoints", keep, "Number of checkpoints that stay.", 1);

@@ -17,9 +17,9 @@ public:
       char number[8];
       std::snprintf(number, sizeof number, "_%02zu", files.size());
       numbers.push_back(s);
-      files.push_back(simulation.output_folder().table(
-          parameters.solid_forces_file + number + ".csv",
-          {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
+      files.push_back(
+          simulation.output_folder().table(parameters.solid_forces_file + number + ".csv",
+                                           {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
     }
   }
 

@@ -64,8 +64,8 @@ void Simulation::find_checkpoint(Problems &problems)
   if (path.empty()) {
     if (p.restart == "true")
       problems.add("subsection 'restart' / entry 'restart'",
-                   "is true, but " + parameters.control.output_path +
-                       " holds no checkpoint '" + p.filename + "'.",
+                   "is true, but " + parameters.control.output_path + " holds no checkpoint '" +
+                       p.filename + "'.",
                    "Check 'output path' and 'filename', or set restart = auto to start anew where "
                    "there is none.");
     return;
@@ -123,8 +123,8 @@ void Simulation::resume()
   if (Process *const process = parameters.process())
     process->resume(*this, *checkpoint);
   move_solids();
-  log.line("Continuing from " + checkpoint->path + ": step " + std::to_string(step) + ", t = " +
-           format(present_time) + " s, " + std::to_string(n_particles) + " particles");
+  log.line("Continuing from " + checkpoint->path + ": step " + std::to_string(step) +
+           ", t = " + format(present_time) + " s, " + std::to_string(n_particles) + " particles");
   checkpoint.reset();
 }
 

@@ -60,9 +60,14 @@ def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after:
     compare(alone, other, f"After signal {number} at step {step}")
 
 
-def killed(reference: Case, folder: Path) -> None:
-    kill_and_restart(reference, Case(reference.program, CASE, folder, []), [1, 2], 6, 1700,
-                     random.Random(3))
+def killed(program: str, folder: Path) -> None:
+    longer = ["simulation control/iteration end = 100000"]
+    alone = Case(program, CASE, folder.with_name("alone"), longer)
+    alone.run(1)
+    restarts, _ = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
+                                   random.Random(3))
+    if restarts == 0:
+        raise Failure("No kill came after a checkpoint, so nothing was tried.")
 
 
 def main(program: str, folder: Path) -> int:
@@ -76,7 +81,7 @@ def main(program: str, folder: Path) -> int:
     check("8 ranks, dynamic", lambda: same(reference, folder / "8", 8, *DYNAMIC, *EVERY))
     check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
     check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
-    check("kill", lambda: killed(reference, folder / "killed"))
+    check("kill", lambda: killed(reference.program, folder / "killed"))
     return 1 if failures else 0
 
 

@@ -4,9 +4,10 @@
 #include <eunoe/core/csv_file.h>
 #include <eunoe/simulation/output.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <map>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 
 namespace eunoe {
 

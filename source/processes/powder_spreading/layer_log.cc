@@ -37,8 +37,8 @@ LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters
           "layers.csv",
           {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
            "mass_to_collector", "spreader_force_mean", "spreader_force_max", "wall_seconds"})),
-      pictures(simulation.output_folder().pictures(
-          simulation.get_parameters().control.output_name + "_layers")),
+      pictures(simulation.output_folder().pictures(simulation.get_parameters().control.output_name +
+                                                   "_layers")),
       solid_pictures(simulation.output_folder().pictures(
           simulation.get_parameters().control.output_name + "_layers_solids")),
       draws(parameters.layer_pictures), last_wall_time(MPI_Wtime())
@@ -117,11 +117,11 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   to_collector -= last_out.collector;
   const double now = MPI_Wtime();
   file->write({static_cast<double>(layer), simulation.time(), mass,
-              static_cast<double>(present.number),
-              layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing,
-              layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing,
-              removed.value(), to_gap.value(), to_collector.value(),
-              n_forces > 0 ? force_sum / n_forces : 0., force_max, now - last_wall_time});
+               static_cast<double>(present.number),
+               layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing,
+               layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing,
+               removed.value(), to_gap.value(), to_collector.value(),
+               n_forces > 0 ? force_sum / n_forces : 0., force_max, now - last_wall_time});
   last_present = present.mass;
   last_plate_height = plate_height;
   last_out = out;
