@@ -1,6 +1,7 @@
 // The particles and their contacts in a checkpoint: a row of doubles a particle.
 
 #include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/contact/model_parameters.h>
 #include <eunoe/simulation/particle_system.h>
 
 namespace eunoe {
@@ -71,10 +72,10 @@ void ParticleSystem::save(CheckpointWriter &writer) const
     keys.push_back(p.id[k]);
   }
   writer.add_rows("particles", keys, all);
-  writer.head["searches"] = searches;
 }
 
-void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids)
+void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
+                          const LoadBalancingParameters &balancing)
 {
   MPI_Comm comm = domain.communicator();
   int rank;
@@ -96,6 +97,10 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   }
   store.insert(list, extra_defaults, kept);
   store.migrate();
+  if (store.imbalance(balancing) > balancing.threshold_at_start) {
+    store.repartition(balancing);
+    store.migrate();
+  }
   const Rows mine = fetch_rows(share, build_lists(solids), comm);
 
   Rows contacts;
@@ -113,7 +118,6 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   }
   ContactRows(model.history_size(), contacts).attach(particles, pairs, solid_contacts);
   halo.update(particles);
-  searches = checkpoint.head["searches"];
 }
 
 } // namespace eunoe

@@ -118,7 +118,7 @@ void Simulation::resume()
     solids_at_search.push_back(to_state(head.at("solids_at_search").at(s)));
     solids[s].state = solids_at_search[s];
   }
-  system.load(*checkpoint, solids);
+  system.load(*checkpoint, solids, parameters.model.load_balancing);
   n_particles = system.n_global();
   if (Process *const process = parameters.process())
     process->resume(*this, *checkpoint);

@@ -14,6 +14,8 @@ struct LoadBalancingParameters
   unsigned int frequency = 100000;
   unsigned int check_frequency = 10000;
   double threshold = 0.5;
+  /// When the first particles are there, sharing out by their number costs little.
+  static constexpr double threshold_at_start = 0.1;
   unsigned int particle_weight = 2000;
   unsigned int cell_weight = 1000;
 };

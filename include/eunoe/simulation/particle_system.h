@@ -68,11 +68,13 @@ public:
   /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
   /// last search had left them; collective.
   /// @param solids in their places at that search
-  void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids);
+  void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
+            const LoadBalancingParameters &balancing);
 
   /// Memory of all contacts by owned particle.
   ContactRows contact_rows() const;
 
+  /// Largest load of a rank less the smallest, over the mean; collective.
   double imbalance(const LoadBalancingParameters &parameters) const
   {
     return store.imbalance(parameters);
