@@ -78,6 +78,13 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
                   "al. (2011) use the contact point.");
   declare::choice(prm, "integration method", integration_method, "velocity_verlet|explicit_euler",
                   "Time integration.");
+  declare::choice(prm, "lost particles", lost_particles, "stop|remove|ignore",
+                  "What happens when a particle has left the mesh other than through an outlet, or "
+                  "is not a number any more: the run stops, or the particle is taken out and "
+                  "counted, with or without a warning.");
+  declare::positive(prm, "largest overlap", largest_overlap,
+                    "Overlap over the radius of the smaller particle above which the run stops, as "
+                    "no contact law holds there; 0: never.");
   prm.add_action("epsd inertia", [this](const std::string &value) {
     options.epsd_inertia_about_contact = value == "contact point";
   });

@@ -46,6 +46,20 @@ std::int32_t SolidContacts::create(const Vec3 &normal)
   return record;
 }
 
+double SolidContacts::deepest_overlap(const Candidate &candidate, const Solid &solid,
+                                      const Vec3 &centre, const double radius) const
+{
+  std::array<SurfaceContact, Shape::max_contacts> found;
+  const std::int32_t *const first = facets.data() + candidate.first_facet;
+  const unsigned int n =
+      solid.shape->find_contacts(solid.to_own_frame(centre), radius, radius + model.range(), first,
+                                 first + candidate.n_facets, found.data());
+  double deepest = -model.range();
+  for (unsigned int k = 0; k < n; ++k)
+    deepest = std::max(deepest, radius - found[k].distance);
+  return deepest;
+}
+
 void SolidContacts::reset(const Memory &saved)
 {
   candidates = saved.candidates;

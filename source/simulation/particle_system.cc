@@ -53,11 +53,17 @@ std::vector<std::size_t> ParticleSystem::find_leaving()
 }
 
 void ParticleSystem::search(const std::vector<Solid> &solids,
-                            const LoadBalancingParameters *balance)
+                            const LoadBalancingParameters *balance,
+                            const std::vector<std::size_t> &lost)
 {
   rows.collect(particles, pairs, solid_contacts);
   store.write(particles);
-  store.remove(find_leaving());
+  std::vector<std::size_t> leaving = find_leaving();
+  for (const std::size_t row : lost) {
+    ledger.lost.count(particles.velocity[row].w);
+    leaving.push_back(row);
+  }
+  store.remove(leaving);
   rebuild(solids, balance);
 }
 

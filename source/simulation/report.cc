@@ -120,7 +120,11 @@ void Simulation::write_summary()
   summary["inserted_mass"] = inserted.mass.value();
   summary["taken_out_particles"] = taken.number;
   summary["taken_out_mass"] = taken.mass.value();
+  const Tally lost = ledger.lost.global(comm);
+  summary["lost_particles"] = lost.number;
+  summary["lost_mass"] = lost.mass.value();
   ExactSum balance = inserted.mass;
+  balance -= lost.mass;
   balance -= taken.mass;
   std::uint64_t left = 0;
   for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o) {

@@ -84,6 +84,7 @@ void Simulation::save(CheckpointWriter &writer)
   head["insertions"] = n_insertions;
   head["inserted"] = to_json(ledger.inserted.global(comm));
   head["taken_out"] = to_json(ledger.taken_out.global(comm));
+  head["lost"] = to_json(ledger.lost.global(comm));
   head["through_outlet"] = Json::array();
   for (const Tally &tally : ledger.through_outlet)
     head["through_outlet"].push_back(to_json(tally.global(comm)));
@@ -108,6 +109,7 @@ void Simulation::resume()
   last_balance = head.at("last_balance");
   ledger.inserted = to_tally(head.at("inserted"), comm);
   ledger.taken_out = to_tally(head.at("taken_out"), comm);
+  ledger.lost = to_tally(head.at("lost"), comm);
   for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o)
     ledger.through_outlet[o] = to_tally(head.at("through_outlet").at(o), comm);
   if (insertion)

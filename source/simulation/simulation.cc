@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe {
 
@@ -67,7 +68,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       skin(parameters.model.skin(largest_diameter)),
       domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
-      ledger(domain.outlets()),
+      guard(domain, parameters.model.largest_overlap), ledger(domain.outlets()),
       system(domain, model,
              parameters.process() ? count_components(parameters.process()->fields()) : 0, skin,
              largest_diameter, ledger, timers),
@@ -200,7 +201,8 @@ void Simulation::advance()
   }
   if (search_is_due(moved2)) {
     const Timers::Scope scope(timers, Section::search);
-    system.search(solids, balance_if_due());
+    const std::vector<std::size_t> lost = inspect();
+    system.search(solids, balance_if_due(), lost);
     for (std::size_t s = 0; s < solids.size(); ++s)
       solids_at_search[s] = solids[s].state;
     n_particles = system.n_global();
@@ -244,7 +246,8 @@ bool Simulation::search_is_due(const double moved2)
     return false;
   if (p.detection_method == "constant")
     return true;
-  double moved = std::sqrt(moved2);
+  // How the largest over ranks treats what is no number depends on the MPI.
+  double moved = std::isnan(moved2) ? std::numeric_limits<double>::infinity() : std::sqrt(moved2);
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm);
   double solid_moved = 0.;
   for (std::size_t s = 0; s < solids.size(); ++s)

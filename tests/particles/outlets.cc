@@ -36,6 +36,7 @@ int main(int argc, char **argv)
       set insertion maximum offset = 0.3
     end
     subsection model parameters
+      set largest overlap = 0   # more is inserted where some still are
       subsection load balancing
         set load balance method = frequent
         set frequency = 300

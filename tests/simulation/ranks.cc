@@ -76,6 +76,7 @@ std::string input(const std::string &balancing)
     subsection model parameters
       set particle particle contact force method = DMT
       set particle wall contact force method = DMT
+      set largest overlap = 0   # more is inserted where some still are
       set rolling resistance torque method = epsd
       set f coefficient = 0.1
       subsection contact detection

@@ -35,6 +35,9 @@ struct ModelParameters : public ParameterSection
   double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
   double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
 
+  std::string lost_particles = "stop"; ///< stop, remove or ignore
+  double largest_overlap = 0.5;        ///< over the radius of the smaller particle; 0: any
+
   LoadBalancingParameters load_balancing;
 
   /// The laws behind the names of the input file.

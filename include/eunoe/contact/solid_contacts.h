@@ -42,6 +42,9 @@ public:
   const double *history(std::int32_t record) const { return memory[record]; }
   /// Normal in the solid's own frame, by which a contact is recognised at the next step.
   const Vec3 &normal(std::int32_t record) const { return normals[record]; }
+  /// Depth of a sphere in a solid near it (m), negative across a gap.
+  double deepest_overlap(const Candidate &candidate, const Solid &solid, const Vec3 &centre,
+                         double radius) const;
   /// All that the contacts remember, to be put back by `reset`.
   struct Memory
   {

@@ -31,14 +31,15 @@ struct Tally
   }
 };
 
-/// Where particles came from and went: inserted = inside + through outlets + taken out, in number
-/// and, without any rounding, in mass.
+/// Where particles came from and went: inserted = inside + through outlets + taken out + lost, in
+/// number and, without any rounding, in mass.
 struct Ledger
 {
   explicit Ledger(const std::vector<Outlet> &outlets) : through_outlet(outlets.size()) {}
 
   Tally inserted;
   Tally taken_out;                   ///< by a process
+  Tally lost;                        ///< left the mesh other than through an outlet, or no number
   std::vector<Tally> through_outlet; ///< in the order of Domain::outlets
 };
 

@@ -9,6 +9,7 @@
 #include <eunoe/particles/halo.h>
 #include <eunoe/particles/particle_store.h>
 #include <eunoe/simulation/ledger.h>
+#include <eunoe/simulation/particle_guard.h>
 
 namespace eunoe {
 
@@ -39,7 +40,20 @@ public:
 
   /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
   /// memory. Particles beyond an outlet leave. Collective.
-  void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr);
+  /// @param lost rows of owned particles that are taken out and counted as lost
+  void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
+              const std::vector<std::size_t> &lost = {});
+
+  /// What is wrong with this rank's particles.
+  Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids, double longest_way,
+                 double dt) const
+  {
+    return guard.inspect(particles, pairs, solid_contacts, solids, longest_way, dt);
+  }
+  std::string describe(std::size_t row, const std::vector<Solid> &solids) const
+  {
+    return describe_particle(particles, row, pairs, solid_contacts, solids);
+  }
 
   /// Adds and removes particles, then searches. Those that stay keep their forces; the new ones
   /// have none yet. Collective.

@@ -88,6 +88,10 @@ private:
   void compute_forces(double dt);
   void move_solids();
   bool search_is_due(double moved2);
+  /// Looks for particles with something wrong before a search; stops the run on all ranks, or
+  /// returns the rows of those to take out.
+  std::vector<std::size_t> inspect();
+  [[noreturn]] void stop_for(const std::string &first, std::uint64_t number);
   const LoadBalancingParameters *balance_if_due();
   void insert_if_due();
   void do_what_is_due();
@@ -104,6 +108,7 @@ private:
   const double skin;
   Domain domain;
   const ContactModel model;
+  const ParticleGuard guard;
   Ledger ledger;
   Timers timers;
   ParticleSystem system;

@@ -1,0 +1,49 @@
+// The passes of the spreader, one layer after the other.
+
+#include <eunoe/processes/powder_spreading/powder_spreading.h>
+
+namespace eunoe::spreading {
+
+void PowderSpreading::schedule_passes(const double beginning)
+{
+  passes = make_schedule(p, *apparatus, beginning);
+  double height = -apparatus->first_bed_depth;
+  for (std::size_t k = 0; k < passes.size(); ++k) {
+    const Pass &pass = passes[k];
+    const double stroke = k == 0 ? p.first_stroke : p.stroke;
+    if (k > 0 && p.feedstock == "replenished") {
+      apparatus->platform->add(pass.feed, 0., {0., -apparatus->bed_depth - height, 0.});
+      height = -apparatus->bed_depth;
+    }
+    apparatus->platform->add(pass.feed, stroke / p.platform_velocity, {0., stroke, 0.});
+    height += stroke;
+    apparatus->spreaders[k % Apparatus::n_spreaders]->add(pass.start);
+    apparatus->plate->add(pass.weighing, p.layer_thickness / p.plate_velocity,
+                          {0., -p.layer_thickness, 0.});
+  }
+}
+
+void PowderSpreading::step_passes(Simulation &simulation)
+{
+  const double t = simulation.time();
+  if (wants_solid_loads(simulation.step_number()))
+    layers->sample_force(simulation,
+                         "spreader " + std::to_string(pass_over_plate % Apparatus::n_spreaders));
+  if (next_feed < passes.size() && t >= passes[next_feed].feed) {
+    if (p.feedstock == "replenished")
+      fill_reservoir(simulation, -apparatus->bed_depth);
+    ++next_feed;
+  }
+  pass_over_plate = -1;
+  for (std::size_t k = next_weighing; k < passes.size() && t >= passes[k].over_plate; ++k)
+    if (t < passes[k].past_plate)
+      pass_over_plate = static_cast<int>(k);
+  if (t >= passes[next_weighing].weighing) {
+    layers->weigh(simulation, static_cast<unsigned int>(next_weighing),
+                  apparatus->plate->at(t).centre.y);
+    if (++next_weighing == passes.size())
+      phase = Phase::done;
+  }
+}
+
+} // namespace eunoe::spreading

@@ -1,0 +1,73 @@
+// What a simulation does when particles go wrong.
+
+#include <eunoe/simulation/simulation.h>
+
+#include <limits>
+
+namespace eunoe {
+
+std::vector<std::size_t> Simulation::inspect()
+{
+  // Two bodies must not come closer by more than the skin without a search; half of it is the way
+  // of each.
+  const Faults faults = system.inspect(guard, solids, 0.5 * skin, parameters.control.time_step);
+  const bool stops_for_lost = parameters.model.lost_particles == "stop";
+  std::vector<Fault> grave = faults.squeezed;
+  if (stops_for_lost)
+    grave.insert(grave.end(), faults.lost.begin(), faults.lost.end());
+
+  std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
+  MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
+  if (numbers[0] + numbers[1] == 0)
+    return {};
+
+  // The one with the smallest id is named, whichever rank it is on.
+  const std::vector<Fault> &list = numbers[0] > 0 ? grave : faults.lost;
+  struct
+  {
+    int id = std::numeric_limits<int>::max(), rank = 0;
+  } mine, first;
+  MPI_Comm_rank(comm, &mine.rank);
+  std::string text;
+  for (const Fault &fault : list) {
+    const auto id = static_cast<int>(system.particles.id[fault.row]);
+    if (id < mine.id) {
+      mine.id = id;
+      text = system.describe(fault.row, solids) + " " + fault.what;
+    }
+  }
+  MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, comm);
+  int length = static_cast<int>(text.size());
+  MPI_Bcast(&length, 1, MPI_INT, first.rank, comm);
+  text.resize(length);
+  MPI_Bcast(text.data(), length, MPI_CHAR, first.rank, comm);
+
+  if (numbers[0] > 0)
+    stop_for(text, numbers[0]);
+  if (parameters.model.lost_particles == "remove")
+    log.warning("At t = " + format(present_time) + " s, " + std::to_string(numbers[1]) +
+                " lost particle(s) are taken out: " + text);
+  std::vector<std::size_t> rows;
+  for (const Fault &fault : faults.lost)
+    rows.push_back(fault.row);
+  return rows;
+}
+
+void Simulation::stop_for(const std::string &first, const std::uint64_t number)
+{
+  const std::string file = output_file(parameters.restart.filename + "_fault.checkpoint");
+  std::string place = " The state is in " + file + ".";
+  try {
+    dump(file);
+  } catch (const UserError &error) {
+    place = std::string(" ") + error.what();
+  }
+  throw UserError(
+      "At t = " + format(present_time) + " s (step " + std::to_string(step) + "), " + first +
+      (number > 1 ? " " + std::to_string(number - 1) + " more have gone wrong." : "") +
+      " Check the time step, the solids and the insertion; doc/faults.md tells what may "
+      "be behind it." +
+      place);
+}
+
+} // namespace eunoe

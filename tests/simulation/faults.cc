@@ -1,0 +1,79 @@
+// Particles that go wrong: what is found, what is said, and what is done, on any number of ranks.
+
+#include "../tests.h"
+
+#include <limits>
+
+using namespace test;
+
+namespace {
+
+/// Three spheres of 1 mm in a box of 20 mm; the first does as told.
+std::string input(const std::string &velocity, const std::string &more = "")
+{
+  return box_input(1e-5, 2e-3,
+                   "subsection insertion info\n set insertion method = list\n"
+                   " set list x = 0, -4e-3, 4e-3\n set list y = 0, 4e-3, -4e-3\n"
+                   " set list z = 5e-3, 5e-3, 5e-3\n"
+                   " set list diameters = 1e-3, 1e-3, 1e-3\n set list velocity z = " +
+                       velocity + ", 0, 0\nend\n" + more);
+}
+
+std::string model(const std::string &entries)
+{
+  return "subsection model parameters\n" + entries + "\nend\n";
+}
+
+std::string failure(const std::string &text, const std::function<void(Simulation &)> &look = {})
+{
+  Case test_case(text);
+  try {
+    test_case.run(look);
+  } catch (const UserError &error) {
+    return error.what();
+  }
+  return "nothing";
+}
+
+void expect(const std::string &name, const std::string &message,
+            const std::vector<std::string> &parts)
+{
+  for (const std::string &part : parts)
+    check(name, message.find(part) != std::string::npos, "got '" + message + "'");
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  expect("through the wall", failure(input("-3000")),
+         {"particle 1 at (0, 0, -", "with a velocity of (0, 0, -3000) m/s, which touched nothing,",
+          "has left the mesh, though not through an outlet.", "fault.checkpoint"});
+  expect("deep in the wall", failure(input("-12", model(" set largest overlap = 0.05"))),
+         {"particle 1", "overlaps '", "largest overlap"});
+  expect("any overlap is allowed", failure(input("-12", model(" set largest overlap = 0"))),
+         {"nothing"});
+  const auto poison = [](Simulation &simulation) {
+    if (simulation.step_number() != 10)
+      return;
+    ParticleArrays &p = simulation.changeable_particles();
+    for (std::size_t row = 0; row < p.n_owned; ++row)
+      if (p.id[row] == 2)
+        p.velocity[row].y = std::numeric_limits<double>::quiet_NaN();
+  };
+  expect("no number", failure(input("0"), poison), {"particle 2", "is not a number any more."});
+  expect("searched too rarely",
+         failure(input("-5", model(" subsection contact detection\n"
+                                   "  set contact detection method = constant\n"
+                                   "  set frequency = 50\n  set neighborhood threshold = 1.1\n"
+                                   " end"))),
+         {"particle 1", "without a search for contacts, and only"});
+  for (const std::string action : {"remove", "ignore"}) {
+    Case test_case(input("-3000", model(" set lost particles = " + action)));
+    test_case.run();
+    const Tally lost = test_case->get_ledger().lost.global(test_case->communicator());
+    check(action, particle_table(*test_case).size() == 2 && lost.number == 1 &&
+                      lost.mass.value() == sphere_mass(0.5e-3, 1000.));
+  }
+}
