@@ -83,6 +83,10 @@ public:
   {
     const std::size_t outer_depth = open_at_start;
     open_at_start = path.size();
+    if (text.find('\0') != std::string::npos) {
+      problems.add(file + ":", "this is no text.", "Give an input file.");
+      return;
+    }
     std::istringstream stream(text);
     std::string line;
     unsigned int number = 0;

@@ -4,6 +4,20 @@
 
 namespace eunoe {
 
+void check_places(const Domain &domain, const std::vector<Vec3> &places, MPI_Comm comm,
+                  Problems &problems)
+{
+  unsigned long long outside = 0;
+  for (const Vec3 &x : places)
+    outside += domain.contains(x) ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &outside, 1, MPI_UNSIGNED_LONG_LONG, MPI_MAX, comm);
+  if (outside > 0)
+    problems.add("subsection 'insertion info':",
+                 "particles are to be inserted outside the mesh, " + std::to_string(outside) +
+                     " or more.",
+                 "Enlarge the mesh, or correct the places.");
+}
+
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
                   Problems &problems)
 {

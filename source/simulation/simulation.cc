@@ -80,6 +80,8 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
 {
   Problems problems;
   check_domain(domain, parameters, largest_diameter + skin + model.range(), problems);
+  if (insertion)
+    check_places(domain, insertion->known_places(), comm, problems);
   const int wall = parameters.physics.wall_material();
   solids = domain.walls();
   const auto append = [this](const std::vector<Solid> &more) {

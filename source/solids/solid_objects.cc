@@ -121,7 +121,10 @@ std::vector<Solid> SolidObjectParameters::make(const int material, const double 
     try {
       solid.shape = std::make_shared<TriangulatedSurface>(make_mesh(object, comm));
     } catch (const std::exception &error) {
-      problems.add(describe(path_of(k, "mesh"), "") + ":", error.what(), "");
+      std::string what = error.what();
+      const bool is_sentence = what.back() == '.';
+      problems.add(describe(path_of(k, "mesh"), "") + ":", what + (is_sentence ? "" : "."),
+                   is_sentence ? "" : "Correct the file, or 'grid arguments' as its text says.");
       continue;
     }
     try {

@@ -130,7 +130,7 @@ void test_errors()
                 .find("reaches out of the mesh") != std::string::npos);
   check("a particle outside the mesh is refused",
         refused(" set insertion method = list\n set list x = 1\n set list y = 0\n set list z = 0")
-                .find("lie outside the mesh") != std::string::npos);
+                .find("inserted outside the mesh") != std::string::npos);
   check("too little room is refused",
         refused(" set insertion box points coordinates = 0, 0, 0 : 5e-3, 5e-3, 5e-3\n"
                 " set insertion distance threshold = 1.2\n set insertion maximum offset = 0.2")

@@ -117,8 +117,10 @@ int main(int argc, char **argv)
     message = error.what();
   }
   check("the message names the solid",
-        message == "subsection 'solid objects' / subsection 'solid "
-                   "surfaces' / subsection 'solid object 0' / "
-                   "subsection 'mesh': there are too few arguments",
+        message ==
+            "subsection 'solid objects' / subsection 'solid "
+            "surfaces' / subsection 'solid object 0' / "
+            "subsection 'mesh': there are too few arguments. Correct the file, or 'grid arguments' "
+            "as its text says.",
         message);
 }

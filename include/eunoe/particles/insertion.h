@@ -22,7 +22,7 @@ struct InsertionParameters : public ParameterSection
   std::vector<int> directions = {0, 1, 2};
   Vec3 box_lower, box_upper = {1., 1., 1.};
   double distance_threshold = 1.;
-  double maximum_offset = 1.;
+  double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
   unsigned int seed = 1;
   Vec3 velocity, spin;
 
@@ -47,6 +47,9 @@ public:
   /// the same for any number of ranks.
   /// @param next_id first free id, raised by the number of particles of all ranks
   virtual std::vector<NewParticle> next(ParticleId &next_id) = 0;
+
+  /// Places of this rank's share of the particles, where they are known beforehand (m).
+  virtual std::vector<Vec3> known_places() const { return {}; }
 
   /// Passes over the particles of the first events, which have been supplied already.
   virtual void skip(std::size_t n_events) = 0;

@@ -141,6 +141,11 @@ private:
   double particle_steps = 0., loop_seconds = 0., last_report = 0., reported_particle_steps = 0.;
 };
 
+/// Notes a problem if particles are to be inserted outside the mesh; collective.
+/// @param places of this rank's share (m)
+void check_places(const Domain &domain, const std::vector<Vec3> &places, MPI_Comm comm,
+                  Problems &problems);
+
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
 /// @param reach of the contact search (m)
 void check_domain(const Domain &domain, const Parameters &parameters, double reach,

@@ -36,6 +36,15 @@ public:
     return n;
   }
 
+  std::vector<Vec3> known_places() const override
+  {
+    std::vector<Vec3> places;
+    for (const Contents &file : files)
+      for (const NewParticle &particle : file.share)
+        places.push_back(particle.position);
+    return places;
+  }
+
   void skip(std::size_t n) override { n_events = n; }
 
   bool finished() const override { return !repeats && n_events > 0; }

@@ -25,6 +25,14 @@ public:
 
   std::size_t supply(std::size_t) const override { return p.list_x.size(); }
 
+  std::vector<Vec3> known_places() const override
+  {
+    std::vector<Vec3> places;
+    for (std::size_t k = 0; k < p.list_x.size(); ++k)
+      places.push_back({p.list_x[k], p.list_y[k], p.list_z[k]});
+    return places;
+  }
+
   void skip(std::size_t n_events) override { done = n_events > 0; }
 
   bool finished() const override { return done; }

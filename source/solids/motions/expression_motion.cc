@@ -6,6 +6,8 @@
 #include <boost/algorithm/string.hpp>
 
 #include <cstdlib>
+#include <iostream>
+#include <sstream>
 #include <stdexcept>
 
 namespace eunoe {
@@ -31,12 +33,19 @@ public:
     const auto parts = dealii::Utilities::split_string_list(text, ';');
     if (parts.size() != 3)
       throw std::invalid_argument("'" + text + "' does not hold three expressions");
+    // The parser writes of errors by itself; the sentence that is thrown here is enough.
+    std::ostringstream unwanted;
+    std::streambuf *const errors = std::cerr.rdbuf(unwanted.rdbuf());
+    bool understood = true;
     try {
       parser.initialize("x,y,z,t", parts, values, true);
       (*this)({}, 0.);
     } catch (const std::exception &) {
-      throw std::invalid_argument("'" + text + "' is not understood");
+      understood = false;
     }
+    std::cerr.rdbuf(errors);
+    if (!understood)
+      throw std::invalid_argument("'" + text + "' is not understood");
   }
 
   Vec3 operator()(const Vec3 &x, double t)

@@ -1,0 +1,109 @@
+"""Every broken input of this folder is refused with its sentence: on one rank and on two, with exit
+code 2, soon, without a stack trace, and without a change to the results of an earlier run.
+
+Usage: bad_input.py path/to/eunoe-particles folder
+
+sentences.txt holds a line a case: its name, and a part of the sentence that it must give.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+TWO_RANKS = ["mpirun", "-np", "2", "--oversubscribe", "--bind-to", "none"]
+if os.geteuid() == 0:
+    TWO_RANKS.append("--allow-run-as-root")
+failures = 0
+
+
+def fail(text: str) -> None:
+    global failures
+    failures += 1
+    print(text)
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {str(path.relative_to(folder)): path.read_bytes()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str) -> None:
+    options = [word for setting in settings for word in ("--set", setting)]
+    for launch in ([], TWO_RANKS):
+        place = f"{case} on {2 if launch else 1} rank(s)"
+        try:
+            run = subprocess.run([*launch, program, f"{case}.prm", *options], cwd=folder, timeout=60,
+                                 capture_output=True, check=False)
+        except subprocess.TimeoutExpired:
+            fail(f"{place}: it hangs")
+            continue
+        errors = run.stderr.decode(errors="replace")
+        if run.returncode != 2:
+            fail(f"{place}: exit code {run.returncode}\n{errors}")
+        elif errors.count(sentence) != 1:
+            fail(f"{place}: no '{sentence}' in\n{errors}")
+        elif "Stacktrace" in errors or "terminate called" in errors:
+            fail(f"{place}: a stack trace")
+
+
+def spoil_checkpoints(program: str, folder: Path) -> None:
+    """Checkpoints that were cut short or damaged, and inputs that do not fit to them."""
+    subprocess.run([program, "checkpointed.prm", "--quiet"], cwd=folder, check=True)
+    results = folder / "checkpointed"
+    original = next(results.glob("*.checkpoint"))
+    again = "restart/restart = true"
+    refuse(program, "checkpointed", "time step' is '2e-6', and was '1e-6' in the run that wrote",
+           folder, again, "simulation control/time step = 2e-6")
+    refuse(program, "checkpointed", "'number of floating walls' is '1', and was '0'", folder, again,
+           "floating walls/number of floating walls = 1",
+           "floating walls/wall 0/end time = 1")
+    data = original.read_bytes()
+    for name, broken, sentence in (
+            ("cut short", data[:-9], "its checksum does not fit"),
+            ("nearly empty", data[:20], "is cut short: it has 20 bytes"),
+            ("empty", b"", "is cut short: it has 0 bytes"),
+            ("one bit", data[:-40] + bytes([data[-40] ^ 1]) + data[-39:], "its checksum does not fit"),
+            ("a bit of the head", data[:60] + bytes([data[60] ^ 4]) + data[61:],
+             "its checksum does not fit")):
+        original.write_bytes(broken)
+        print(name, end="; ")
+        refuse(program, "checkpointed", sentence, folder, again)
+    original.unlink()
+    refuse(program, "checkpointed", "cannot be read: No such file", folder, again)
+
+
+def main(program: str, folder: Path) -> int:
+    shutil.rmtree(folder, ignore_errors=True)
+    shutil.copytree(HERE, folder)
+    # The spreading cases include files of the project.
+    for file in folder.glob("*.prm"):
+        file.write_bytes(file.read_bytes().replace(b"../../prm", str(HERE.parents[1] / "prm").encode()))
+    lines = (HERE / "sentences.txt").read_text().splitlines()
+    sentences = dict(line.split(": ", 1) for line in lines)
+    unknown = {path.stem for path in HERE.glob("*.prm")} ^ (sentences.keys() | {"checkpointed"})
+    if unknown:
+        fail(f"sentences.txt and the folder differ: {sorted(unknown)}")
+    results = folder / "output"
+    results.mkdir()
+    (results / "summary.json").write_text("of an earlier run")
+    before = contents(folder)
+    # A launcher takes seconds to notice that its ranks have failed, in which the others can work.
+    with ThreadPoolExecutor(8) as pool:
+        for waiting in [pool.submit(refuse, program, case, sentence, folder)
+                        for case, sentence in sentences.items()]:
+            waiting.result()
+    if contents(folder) != before:
+        fail(f"files have changed: {set(contents(folder)) ^ set(before)}")
+    spoil_checkpoints(program, folder)
+    print(f"{len(sentences) + 8} broken inputs")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
