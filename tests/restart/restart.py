@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -60,6 +62,21 @@ def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after:
     compare(alone, other, f"After signal {number} at step {step}")
 
 
+def write_failure(reference: Case, folder: Path) -> None:
+    """A checkpoint that cannot be written stops the run, and the one before is as it was."""
+    other = Case(reference.program, CASE, folder, [])
+    obstacle = other.results / "restart_000000005100.checkpoint.new"
+    (obstacle / "full").mkdir(parents=True)
+    run = subprocess.run(other.command(2, *EVERY), text=True, check=False, capture_output=True)
+    if run.returncode != 1 or "cannot be written: Is a directory." not in run.stderr:
+        raise Failure(f"Exit code {run.returncode}, errors:\n{run.stderr}")
+    if other.last_step() != 3400:
+        raise Failure(f"The newest checkpoint is of step {other.last_step()}.")
+    shutil.rmtree(obstacle)
+    other.run(1, *EVERY, "restart/restart = true")
+    compare(reference, other, "After a checkpoint that could not be written")
+
+
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 100000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
@@ -81,6 +98,7 @@ def main(program: str, folder: Path) -> int:
     check("8 ranks, dynamic", lambda: same(reference, folder / "8", 8, *DYNAMIC, *EVERY))
     check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
     check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
+    check("write failure", lambda: write_failure(reference, folder / "full"))
     check("kill", lambda: killed(reference.program, folder / "killed"))
     return 1 if failures else 0
 
