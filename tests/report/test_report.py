@@ -150,6 +150,12 @@ class Geometry(unittest.TestCase):
         self.assertAlmostEqual(a.spreader_tip(), 4.0e-3)
         self.assertAlmostEqual(a.spreader_outline(a.spreader_tip())[:, 1].min(), 1e-4)
 
+    def test_next_spreader_is_under_way_where_passes_overlap(self) -> None:
+        a = self.apparatus
+        np.testing.assert_allclose(a.spreader_tips(0, [0.1, 0.12]), [4.0e-3, 2.0e-3])
+        np.testing.assert_allclose(a.spreader_tips(0, [0.1, 0.2]), [4.0e-3])
+        np.testing.assert_allclose(a.spreader_tips(0, [0.1]), [4.0e-3])
+
     def test_platform_has_made_its_stroke_at_the_weighing(self) -> None:
         for layer in range(3):
             self.assertAlmostEqual(self.apparatus.platform_height(layer, [0.1, 0.2, 0.3]), -2e-4)

@@ -95,6 +95,18 @@ class Apparatus:
         """Place of the lowest line of the spreader that has made a layer when that is weighed."""
         return self.x_plate_end + self.rear + self.velocity * self.rest_before_weighing
 
+    def spreader_tips(self, layer: int, weighings: Sequence[float]) -> list[float]:
+        """Places of the lowest lines of all spreaders at work when a layer is weighed.
+
+        :param weighings: times (s) at which layers 0, 1, ... were weighed
+        """
+        tips = [self.spreader_tip()]
+        if layer + 1 < len(weighings):
+            behind = self.velocity * (weighings[layer + 1] - weighings[layer])
+            if self.spreader_tip() - behind > self.x_start:
+                tips.append(self.spreader_tip() - behind)
+        return tips
+
     def spreader_outline(self, tip: float) -> np.ndarray:
         """Corners of the spreader's side view with its lowest line at x = tip."""
         x = np.array([tip - self.rear, tip - self.rear, tip, tip])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Sequence
+
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -36,15 +38,17 @@ def whole_window(apparatus: Apparatus) -> Window:
                   1.1 * apparatus.spreader_height + apparatus.clearance)
 
 
-def _draw_plates(axes: Axes, apparatus: Apparatus, plate_height: float) -> None:
-    """Transfer, measuring and exit plate, and the spreader at the time of weighing."""
+def _draw_plates(axes: Axes, apparatus: Apparatus, plate_height: float,
+                 tips: Sequence[float] = ()) -> None:
+    """Transfer, measuring and exit plate, and the spreaders at the time of weighing."""
     a = apparatus
     look = {"facecolor": style.SOLID_FACE, "edgecolor": style.SOLID_EDGE, "linewidth": 0.6,
             "zorder": 0.5}
     for x0, x1, y in ((a.x_transfer, a.x_gap, 0.), (a.x_plate, a.x_plate_end, plate_height),
                       (a.x_exit, a.x_end, 0.)):
         axes.add_patch(Rectangle((MM * x0, MM * (y - a.lip)), MM * (x1 - x0), MM * a.lip, **look))
-    axes.add_patch(Polygon(MM * a.spreader_outline(a.spreader_tip()), **look))
+    for tip in tips or [a.spreader_tip()]:
+        axes.add_patch(Polygon(MM * a.spreader_outline(tip), **look))
 
 
 def _draw_platform(axes: Axes, apparatus: Apparatus, height: float) -> None:
@@ -104,12 +108,13 @@ def layers_figure(pictures: dict[int, Fields], apparatus: Apparatus,
 
 
 def overview_figure(particles: Fields, apparatus: Apparatus, layer: int,
-                    platform_height: float) -> tuple[Figure, float]:
+                    weighings: Sequence[float]) -> tuple[Figure, float]:
     """The whole apparatus at a weighing; and the share of the powder that is drawn."""
     window = whole_window(apparatus)
     figure, panels = make_panels(window, 1)
-    _draw_plates(panels[0], apparatus, apparatus.plate_height(layer))
-    _draw_platform(panels[0], apparatus, platform_height)
+    _draw_plates(panels[0], apparatus, apparatus.plate_height(layer),
+                 apparatus.spreader_tips(layer, weighings))
+    _draw_platform(panels[0], apparatus, apparatus.platform_height(layer, weighings))
     share = _draw_layers(panels[0], particles, window, _layer_colours(layer + 1)[0])
     _add_layer_colour_bar(figure, panels, layer + 1)
     return figure, share

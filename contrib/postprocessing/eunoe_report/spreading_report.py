@@ -99,8 +99,8 @@ def _add_pictures(page: Page, layers: Layers, evidence: Evidence) -> None:
                 "spreader. The newest layers are in front." + _drawn(share, apparatus))
     if layer > 0 and (last["tracked"] > 0).any():
         _add_displacement(page, last, apparatus, layer)
-    height = apparatus.platform_height(layer, _weighing_times(layers, apparatus))
-    figure, share = bed_pictures.overview_figure(last, apparatus, layer, height)
+    figure, share = bed_pictures.overview_figure(last, apparatus, layer,
+                                                 _weighing_times(layers, apparatus))
     page.figure(figure, f"The whole apparatus when layer {layer} was weighed: feedstock platform, "
                 "transfer plate, measuring plate between its gaps, exit plate. Colours as above."
                 + _drawn(share, apparatus))
