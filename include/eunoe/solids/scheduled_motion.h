@@ -34,12 +34,13 @@ private:
 };
 
 /// Passes along a line at constant velocity, each from the same place; at rest at the start before
-/// the first one, and at the end of one until the next.
+/// the first one, and after one beyond its end, out of the way, until the next.
 class PassMotion : public Motion
 {
 public:
-  PassMotion(const Vec3 &start, const Vec3 &velocity, double duration)
-      : start(start), velocity(velocity), duration(duration)
+  /// @param parking from the end of a pass to the place of rest (m)
+  PassMotion(const Vec3 &start, const Vec3 &velocity, double duration, const Vec3 &parking = {})
+      : start(start), velocity(velocity), parking(parking), duration(duration)
   {
   }
 
@@ -49,7 +50,7 @@ public:
   RigidState at(double time) const override;
 
 private:
-  const Vec3 start, velocity;
+  const Vec3 start, velocity, parking;
   const double duration;
   std::vector<double> passes;
 };

@@ -60,8 +60,9 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   platform = std::make_shared<StrokeMotion>(Vec3{0., -bed_depth, 0.});
   plate = std::make_shared<StrokeMotion>(Vec3());
   for (auto &spreader : spreaders)
-    spreader = std::make_shared<PassMotion>(Vec3{x_start, p.clearance, 0.},
-                                            Vec3{p.velocity, 0., 0.}, path() / p.velocity);
+    spreader =
+        std::make_shared<PassMotion>(Vec3{x_start, p.clearance, 0.}, Vec3{p.velocity, 0., 0.},
+                                     path() / p.velocity, Vec3{2. * margin, 0., 0.});
 }
 
 double Apparatus::pile_length() const

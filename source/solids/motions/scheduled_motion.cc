@@ -31,6 +31,8 @@ RigidState PassMotion::at(const double time) const
       state.centre += (moving ? time - *pass : duration) * velocity;
       if (moving)
         state.velocity = velocity;
+      else
+        state.centre += parking;
       break;
     }
   return state;
