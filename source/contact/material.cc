@@ -41,4 +41,10 @@ double damping_factor(const double restitution)
   return -2. * std::sqrt(5. / 6.) * beta;
 }
 
+double hertz_tangent_stiffness(const double effective_young_modulus, const double effective_radius,
+                               const double overlap)
+{
+  return 2. * effective_young_modulus * std::sqrt(effective_radius * overlap);
+}
+
 } // namespace eunoe

@@ -1,5 +1,9 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/particles/new_particle.h>
 #include <eunoe/particles/physical_properties.h>
+
+#include <algorithm>
+#include <limits>
 
 namespace eunoe {
 
@@ -60,6 +64,32 @@ double PhysicalProperties::rayleigh_time(const double radius, const double densi
   const double nu = material.poisson_ratio;
   const double shear_modulus = material.young_modulus / (2. * (1. + nu));
   return M_PI * radius * std::sqrt(density / shear_modulus) / (0.1631 * nu + 0.8766);
+}
+
+double PhysicalProperties::shortest_contact_time(const ParticleType &type) const
+{
+  const double radius = 0.5 * type.sizes.make()->smallest(), overlap = 0.01 * radius;
+  const double mass = sphere_mass(radius, type.density);
+  const double with_its_like = hertz_tangent_stiffness(
+      effective_young_modulus(type.material, type.material), 0.5 * radius, overlap);
+  double largest = with_its_like / (0.5 * mass);
+  // A partner that is much larger and heavier, like a wall, lends the particle its own radius and
+  // mass.
+  const Materials all = materials();
+  for (int m = 0; m < all.size(); ++m)
+    largest =
+        std::max(largest, hertz_tangent_stiffness(effective_young_modulus(type.material, all[m]),
+                                                  radius, overlap) /
+                              mass);
+  return M_PI / std::sqrt(largest);
+}
+
+double PhysicalProperties::smallest_diameter() const
+{
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const ParticleType &type : types)
+    smallest = std::min(smallest, type.sizes.make()->smallest());
+  return smallest;
 }
 
 double PhysicalProperties::largest_diameter() const

@@ -1,4 +1,5 @@
 #include <eunoe/simulation/simulation.h>
+#include <eunoe/solids/crossings.h>
 
 #include <algorithm>
 
@@ -16,6 +17,30 @@ void check_places(const Domain &domain, const std::vector<Vec3> &places, MPI_Com
                  "particles are to be inserted outside the mesh, " + std::to_string(outside) +
                      " or more.",
                  "Enlarge the mesh, or correct the places.");
+}
+
+void check_crossings(const std::vector<Solid> &solids, const std::size_t n_given,
+                     Problems &problems)
+{
+  const auto surface = [](const Solid &solid) {
+    const RigidState state = solid.motion->at(0.);
+    std::vector<Vec3> corners = solid.shape->triangles();
+    for (Vec3 &x : corners)
+      x = state.centre + state.rotation.apply(x);
+    return corners;
+  };
+  for (std::size_t a = 0; a < n_given; ++a) {
+    const std::vector<Vec3> given = surface(solids[a]);
+    for (std::size_t b = n_given; b < solids.size(); ++b) {
+      constexpr double tolerance = 1e-9;
+      Vec3 where;
+      if (surfaces_cross(given, surface(solids[b]), tolerance, where))
+        problems.add("subsection 'solid objects':",
+                     "'" + solids[a].name + "' passes through the '" + solids[b].name + "' at (" +
+                         format(where.x) + ", " + format(where.y) + ", " + format(where.z) + ") m.",
+                     "Move it or make it smaller.");
+    }
+  }
 }
 
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,

@@ -18,6 +18,7 @@ std::vector<std::size_t> Simulation::inspect()
 
   std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
   MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
+  compare_time_step(faults.stiffest);
   if (numbers[0] + numbers[1] == 0)
     return {};
 

@@ -20,6 +20,13 @@ std::string format(const Vec3 &v)
 
 } // namespace
 
+ParticleGuard::ParticleGuard(const Domain &domain, const Materials &materials,
+                             const double largest_overlap)
+    : domain(domain), materials(materials), young_modulus(materials.table(effective_young_modulus)),
+      largest_overlap(largest_overlap)
+{
+}
+
 Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
                               const SolidContacts &solid_contacts, const std::vector<Solid> &solids,
                               const double longest_way, const double dt) const
@@ -42,15 +49,13 @@ Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
                                           " m without a search for contacts, and only " +
                                           eunoe::format(longest_way) + " m is safe."});
   }
-  if (largest_overlap > 0.) {
-    find_overlaps(p, pairs, faults.squeezed);
-    find_overlaps(p, solid_contacts, solids, faults.squeezed);
-  }
+  find_overlaps(p, pairs, faults);
+  find_overlaps(p, solid_contacts, solids, faults);
   return faults;
 }
 
 void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs,
-                                  std::vector<Fault> &found) const
+                                  Faults &faults) const
 {
   const PeriodicBox &box = domain.periods();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -58,16 +63,23 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
     // A pair with an i that is a ghost is seen by the owner of i.
     if (pairs.record[k] == ContactMemory::none || i >= p.n_owned)
       continue;
-    const double overlap = p.position[i].w + p.position[j].w -
-                           norm(box.shortest(p.position[j].vec() - p.position[i].vec()));
-    if (overlap > largest_overlap * std::min(p.position[i].w, p.position[j].w))
-      found.push_back({i, "overlaps particle " + std::to_string(p.id[j]) + " by " +
-                              eunoe::format(overlap) + " m, more than the 'largest overlap'."});
+    const double ri = p.position[i].w, rj = p.position[j].w;
+    const double overlap = ri + rj - norm(box.shortest(p.position[j].vec() - p.position[i].vec()));
+    if (overlap <= 0.)
+      continue;
+    const double mi = p.velocity[i].w, mj = p.velocity[j].w;
+    const double stiffness = hertz_tangent_stiffness(
+        young_modulus[materials.kind(p.type[i], p.type[j])], ri * rj / (ri + rj), overlap);
+    faults.stiffest = std::max(faults.stiffest, stiffness * (mi + mj) / (mi * mj));
+    if (largest_overlap > 0. && overlap > largest_overlap * std::min(ri, rj))
+      faults.squeezed.push_back({i, "overlaps particle " + std::to_string(p.id[j]) + " by " +
+                                        eunoe::format(overlap) +
+                                        " m, more than the 'largest overlap'."});
   }
 }
 
 void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &solid_contacts,
-                                  const std::vector<Solid> &solids, std::vector<Fault> &found) const
+                                  const std::vector<Solid> &solids, Faults &faults) const
 {
   for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates()) {
     if (candidate.n_living == 0)
@@ -75,10 +87,16 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
     const Quad &x = p.position[candidate.particle];
     const Solid &solid = solids[candidate.solid];
     const double depth = solid_contacts.deepest_overlap(candidate, solid, x.vec(), x.w);
-    if (depth > largest_overlap * x.w)
-      found.push_back({static_cast<std::size_t>(candidate.particle),
-                       "overlaps '" + solid.name + "' by " + eunoe::format(depth) +
-                           " m, more than the 'largest overlap'."});
+    if (depth <= 0.)
+      continue;
+    const int kind = materials.kind(p.type[candidate.particle], solid.material);
+    faults.stiffest =
+        std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], x.w, depth) /
+                                      p.velocity[candidate.particle].w);
+    if (largest_overlap > 0. && depth > largest_overlap * x.w)
+      faults.squeezed.push_back({static_cast<std::size_t>(candidate.particle),
+                                 "overlaps '" + solid.name + "' by " + eunoe::format(depth) +
+                                     " m, more than the 'largest overlap'."});
   }
 }
 

@@ -39,21 +39,7 @@ void Simulation::print_overview()
   MPI_Comm_size(comm, &n_ranks);
   log.line("Eunoe " + std::string(version()) + " on " + std::to_string(n_ranks) +
            (n_ranks == 1 ? " rank" : " ranks"));
-  const double dt = parameters.control.time_step;
-  for (std::size_t t = 0; t < parameters.physics.types.size(); ++t) {
-    const ParticleType &type = parameters.physics.types[t];
-    const auto sizes = type.sizes.make();
-    const double rayleigh =
-        PhysicalProperties::rayleigh_time(0.5 * sizes->smallest(), type.density, type.material);
-    log.line("Particle type " + std::to_string(t) + ": diameters " +
-             format(1e6 * sizes->smallest()) + " to " + format(1e6 * sizes->largest()) +
-             " um; the time step of " + format(dt) + " s is " + percent(dt / rayleigh) +
-             " of the Rayleigh time");
-    if (dt > 0.25 * rayleigh)
-      log.warning("the time step exceeds 25 % of the Rayleigh time of particle type " +
-                  std::to_string(t) + "; contacts may gain energy. At most " +
-                  format(0.25 * rayleigh) + " s is advised.");
-  }
+  judge_time_step();
   log.line("Domain: " + std::to_string(domain.n_cells()) + " cells of at least " +
            format(1e6 * domain.smallest_cell_width()) + " um, " + std::to_string(solids.size()) +
            " solids and walls, " + std::to_string(domain.outlets().size()) + " outlets");

@@ -24,23 +24,6 @@ unsigned int count_components(const std::vector<Process::Field> &fields)
   return n;
 }
 
-/// Largest distance that a point of a solid has moved between two states (m).
-double displacement(const Solid &solid, const RigidState &before)
-{
-  const RigidState &now = solid.state;
-  if (!solid.motion->rotates())
-    return norm(now.centre - before.centre);
-  const Box box = solid.shape->bounding_box();
-  double largest = 0.;
-  for (unsigned int corner = 0; corner < 8; ++corner) {
-    const Vec3 x = {corner & 1 ? box.upper.x : box.lower.x, corner & 2 ? box.upper.y : box.lower.y,
-                    corner & 4 ? box.upper.z : box.lower.z};
-    largest = std::max(largest, norm(now.centre + now.rotation.apply(x) - before.centre -
-                                     before.rotation.apply(x)));
-  }
-  return largest;
-}
-
 /// Prepares the parameters that a process decides, before anything is built from them.
 Parameters &prepare(Parameters &parameters)
 {
@@ -68,7 +51,8 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       skin(parameters.model.skin(largest_diameter)),
       domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
-      guard(domain, parameters.model.largest_overlap), ledger(domain.outlets()),
+      guard(domain, model.get_materials(), parameters.model.largest_overlap),
+      ledger(domain.outlets()),
       system(domain, model,
              parameters.process() ? count_components(parameters.process()->fields()) : 0, skin,
              largest_diameter, ledger, timers),
@@ -93,13 +77,18 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
   if (!problems.empty())
     throw UserError(problems);
   if (Process *const process = parameters.process()) {
+    const std::size_t n_given = solids.size();
     append(process->make_solids(parameters));
+    check_crossings(solids, n_given, problems);
     fields = process->fields();
     std::vector<double> defaults;
     for (const Process::Field &field : fields)
       defaults.insert(defaults.end(), field.n_components, field.initial);
     system.set_extra_defaults(defaults);
   }
+  check_speeds(problems);
+  if (!problems.empty())
+    throw UserError(problems);
   solid_loads.resize(solids.size());
   for (const std::string &name : eunoe::loads().list())
     if (auto load = eunoe::loads().make(name, parameters.physics))
@@ -253,7 +242,8 @@ bool Simulation::search_is_due(const double moved2)
   MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm);
   double solid_moved = 0.;
   for (std::size_t s = 0; s < solids.size(); ++s)
-    solid_moved = std::max(solid_moved, displacement(solids[s], solids_at_search[s]));
+    solid_moved =
+        std::max(solid_moved, displacement(solids[s], solids_at_search[s], solids[s].state));
   return !(moved + std::max(moved, solid_moved) <= allowed_displacement);
 }
 

@@ -110,4 +110,22 @@ int main()
   check_relative("15 % of the Rayleigh time of the paper's powder",
                  0.15 * PhysicalProperties::rayleigh_time(26.311e-6, 4386., titanium), 2.816e-7,
                  0.5e-3 / 2.816);
+
+  // Two spheres of radius R press 0.01 R into each other: Y* = Y / (2 (1 - nu^2)), R* = R / 2,
+  // m* = m / 2.
+  PhysicalProperties physics;
+  ParticleType &type = physics.types[0];
+  type.material = titanium;
+  type.density = 4386.;
+  type.sizes.average_diameter = 2e-4;
+  physics.wall = titanium;
+  const double mass = 4. / 3. * M_PI * 1e-12 * 4386.;
+  const double young = 26.25e6 / (2. * (1. - 0.342 * 0.342));
+  check_relative("contact time of two particles", physics.shortest_contact_time(type),
+                 M_PI * std::sqrt(0.5 * mass / (2. * young * std::sqrt(0.5e-4 * 1e-6))), 1e-12);
+  // With a wall of the same material the stiffness grows by sqrt(2) and the mass by 2; a rigid wall
+  // doubles the modulus, and then it is the stiffer one.
+  physics.wall.young_modulus = 1e16;
+  check_relative("contact time with a rigid wall", physics.shortest_contact_time(type),
+                 M_PI * std::sqrt(mass / (4. * young * std::sqrt(1e-4 * 1e-6))), 1e-8);
 }

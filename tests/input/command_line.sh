@@ -26,6 +26,26 @@ subsection simulation control
   set output path = results
 end
 PRM
+# The time step is right for the particles, but not for a wall a million times stiffer, nor for an
+# impact at 20 m/s.
+cat >impact.prm <<'PRM'
+subsection simulation control
+  set time step   = 2.1e-5
+  set time end    = 4e-3
+  set output path = impact
+end
+subsection model parameters
+  set largest overlap = 0
+end
+subsection insertion info
+  set insertion method = list
+  set list x = 0
+  set list y = 0
+  set list z = -0.97
+  set list diameters = 1e-3
+  set list velocity z = -20
+end
+PRM
 printf 'subsection mesh\n  set scael = 1\nend\n' >broken.prm
 
 expect help 0 "Usage: eunoe-particles" "$program" --help
@@ -49,6 +69,16 @@ fi
 export OMPI_MCA_rmaps_base_oversubscribe=1
 expect "broken case on two ranks" 2 "Did you mean 'scale'?" "${launch[@]}" "$program" broken.prm
 expect "run" 0 "Results are in results" "$program" fine.prm --set "subsection mesh/scale = 2"
+"$program" fine.prm >quiet_run.txt 2>&1
+if grep -q "Warning" quiet_run.txt; then
+  echo "a run with nothing to warn of warns"
+  failures=$((failures + 1))
+fi
+expect "hard impact" 0 "s the stiffest contact takes" "$program" impact.prm
+expect "stiff wall" 0 "the stiffest contact of particle type 0 takes" "$program" impact.prm \
+  --set "lagrangian physical properties/young modulus wall = 1e12"
+expect "coarse time step" 0 "the time step exceeds 25 % of the Rayleigh time" "$program" impact.prm \
+  --set "simulation control/time step = 5e-5"
 expect "values as used" 0 "= 1e-5" grep -rh "set time step" results/used.prm
 expect "used.prm can be run" 0 "The case is in order" "$program" results/used.prm --check
 "$program" "$cases/spreading/quickstart.prm" --print-parameters >all.prm

@@ -30,10 +30,16 @@ struct PhysicalProperties : public ParameterSection
   Materials materials() const;
   /// Largest diameter that the types' size distributions give (m).
   double largest_diameter() const;
+  /// Smallest diameter that the types' size distributions give (m).
+  double smallest_diameter() const;
   int wall_material() const { return static_cast<int>(types.size()); }
 
   /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).
   static double rayleigh_time(double radius, double density, const Material &material);
+
+  /// Half period of the stiffest contact that a type's smallest particle can have at an overlap of
+  /// one hundredth of its radius, with its like or with any material of the case (s).
+  double shortest_contact_time(const ParticleType &type) const;
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;

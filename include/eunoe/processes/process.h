@@ -50,6 +50,9 @@ public:
   /// Solids of the process.
   virtual std::vector<Solid> make_solids(const Parameters &parameters) = 0;
 
+  /// Largest speed at which a solid of the process will move (m/s).
+  virtual double fastest_solid() const { return 0.; }
+
   /// Called once before the first step.
   virtual void start(Simulation &simulation) = 0;
 

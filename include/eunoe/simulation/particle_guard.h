@@ -21,6 +21,9 @@ struct Faults
 {
   std::vector<Fault> lost;     ///< not a number, or outside the mesh and beyond no outlet
   std::vector<Fault> squeezed; ///< too deep in another particle or in a solid, or too fast
+  /// Largest stiffness over effective mass of a living contact (1/s2), its angular frequency
+  /// squared.
+  double stiffest = 0.;
 };
 
 /// Looks for particles that no correct simulation has.
@@ -28,10 +31,7 @@ class ParticleGuard
 {
 public:
   /// @param largest_overlap over the radius of the smaller particle; 0: any
-  ParticleGuard(const Domain &domain, double largest_overlap)
-      : domain(domain), largest_overlap(largest_overlap)
-  {
-  }
+  ParticleGuard(const Domain &domain, const Materials &materials, double largest_overlap);
 
   /// @param longest_way that a particle may have gone between the last search and the last step (m)
   /// @param dt time step (s)
@@ -40,12 +40,13 @@ public:
                  double longest_way, double dt) const;
 
 private:
-  void find_overlaps(const ParticleArrays &particles, const PairList &pairs,
-                     std::vector<Fault> &found) const;
+  void find_overlaps(const ParticleArrays &particles, const PairList &pairs, Faults &faults) const;
   void find_overlaps(const ParticleArrays &particles, const SolidContacts &solid_contacts,
-                     const std::vector<Solid> &solids, std::vector<Fault> &found) const;
+                     const std::vector<Solid> &solids, Faults &faults) const;
 
   const Domain &domain;
+  const Materials &materials;
+  const std::vector<double> young_modulus; ///< effective, one a kind of pair
   const double largest_overlap;
 };
 

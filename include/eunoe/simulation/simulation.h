@@ -91,6 +91,13 @@ private:
   /// Looks for particles with something wrong before a search; stops the run on all ranks, or
   /// returns the rows of those to take out.
   std::vector<std::size_t> inspect();
+  /// Says how the time step compares with what the contacts and the moving solids need.
+  void judge_time_step();
+  /// Largest speed of a solid, as far as it can be known (m/s).
+  double fastest_solid() const;
+  void check_speeds(Problems &problems) const;
+  /// Warns once if the stiffest contact is too fast for the time step; collective.
+  void compare_time_step(double stiffest);
   [[noreturn]] void stop_for(const std::string &first, std::uint64_t number);
   const LoadBalancingParameters *balance_if_due();
   void insert_if_due();
@@ -133,7 +140,7 @@ private:
   std::size_t n_insertions = 0;
   unsigned long long first_step = 0; ///< of this part of the run
   double last_checkpoint = 0.;       ///< by the wall clock (s)
-  bool stopped = false;
+  bool stopped = false, warned_of_stiffness = false;
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;
@@ -145,6 +152,10 @@ private:
 /// @param places of this rank's share (m)
 void check_places(const Domain &domain, const std::vector<Vec3> &places, MPI_Comm comm,
                   Problems &problems);
+
+/// Notes a problem if one of the first @p n_given solids passes through one of the others at the
+/// beginning, those of a process.
+void check_crossings(const std::vector<Solid> &solids, std::size_t n_given, Problems &problems);
 
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
 /// @param reach of the contact search (m)

@@ -44,6 +44,9 @@ struct Solid
   }
 };
 
+/// Largest distance that a point of a solid has moved between two states (m).
+double displacement(const Solid &solid, const RigidState &before, const RigidState &after);
+
 /// Sum of the forces (N) and torques about the solid's centre (N m) that the particles exert on a
 /// solid; exact, hence the same on any number of ranks.
 struct SolidLoad

@@ -5,6 +5,8 @@
 #include <eunoe/processes/powder_spreading/layer_log.h>
 #include <eunoe/processes/powder_spreading/schedule.h>
 
+#include <algorithm>
+
 namespace eunoe::spreading {
 
 /// Layer-by-layer spreading of powder: settles a bed of feedstock, then runs the passes of the
@@ -21,6 +23,11 @@ public:
   std::vector<Solid> make_solids(const Parameters &parameters) override
   {
     return apparatus->make_solids(parameters.physics.wall_material());
+  }
+  double fastest_solid() const override
+  {
+    // A smooth stroke is at most twice as fast as on average.
+    return std::max({p.velocity, 2. * p.plate_velocity, 2. * p.platform_velocity});
   }
   void start(Simulation &simulation) override;
   void save(CheckpointWriter &writer) const override;
