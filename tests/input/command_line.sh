@@ -76,7 +76,8 @@ if grep -q "Warning" quiet_run.txt; then
 fi
 expect "hard impact" 0 "s the stiffest contact takes" "$program" impact.prm
 expect "stiff wall" 0 "the stiffest contact of particle type 0 takes" "$program" impact.prm \
-  --set "lagrangian physical properties/young modulus wall = 1e12"
+  --set "lagrangian physical properties/young modulus wall = 1e12" \
+  --set "lagrangian physical properties/particle type 0/poisson ratio particles = 0.45"
 expect "coarse time step" 0 "the time step exceeds 25 % of the Rayleigh time" "$program" impact.prm \
   --set "simulation control/time step = 5e-5"
 expect "values as used" 0 "= 1e-5" grep -rh "set time step" results/used.prm
