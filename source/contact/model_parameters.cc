@@ -121,6 +121,26 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   declare::count(prm, "particle weight", load_balancing.particle_weight,
                  "Cost of a particle, beside that of a cell.");
   declare::count(prm, "cell weight", load_balancing.cell_weight, "Cost of a cell.", 1);
+  declare::positive(prm, "active weight factor", load_balancing.active_factor,
+                    "Factor on the weight of particles that are awake (see 'adaptive sparse "
+                    "contacts').");
+  declare::positive(prm, "inactive weight factor", load_balancing.inactive_factor,
+                    "Factor on the weight of particles that sleep.");
+  prm.leave_subsection();
+
+  prm.enter_subsection("adaptive sparse contacts");
+  prm.add_parameter("enable adaptive sparse contacts", sparse_contacts.enabled,
+                    "Whether particles that are at rest, and whose neighbours are, sleep: they do "
+                    "not move and their contacts with each other are not computed, until something "
+                    "stirs near them.");
+  declare::positive(prm, "granular temperature threshold", sparse_contacts.temperature,
+                    "Square of the speed below which a particle is at rest (m2/s2).");
+  declare::positive(prm, "rest time", sparse_contacts.rest_time,
+                    "Time for which a particle must have been at rest before it may sleep (s).");
+  declare::count(prm, "check frequency", sparse_contacts.frequency,
+                 "Steps between two looks at who may sleep and who must wake; every search for "
+                 "contacts looks as well.",
+                 1);
   prm.leave_subsection();
   prm.leave_subsection();
 }

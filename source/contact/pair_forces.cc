@@ -37,17 +37,51 @@ EUNOE_ALWAYS_INLINE void gather(const Quad *quads, const std::int32_t *rows, dou
   }
 }
 
-/// Sorts B candidates into those within reach and those whose contact has ended. Both outputs
-/// need room for B more entries.
-EUNOE_MULTIVERSION void select(const Quad *position, const std::int32_t *i, const std::int32_t *j,
-                               const std::int32_t *record, const std::int32_t first,
-                               const unsigned int count, const Period &period, const double range,
-                               std::int32_t *active, unsigned int &n_active, std::int32_t *ended,
-                               unsigned int &n_ended)
+/// B pairs that may be within reach; those behind the first n repeat a valid one.
+struct Candidates
+{
+  const std::int32_t *i, *j, *record;
+  std::int32_t place[B]; ///< in the list of pairs
+  unsigned int n;
+
+  /// The pairs of the list from @p first on.
+  void take(const PairList &pairs, const std::size_t first)
+  {
+    const std::size_t size = pairs.some_sleep ? pairs.awake.size() : pairs.size();
+    n = static_cast<unsigned int>(std::min<std::size_t>(B, size - first));
+    for (unsigned int k = 0; k < B; ++k)
+      place[k] = static_cast<std::int32_t>(first + k);
+    if (!pairs.some_sleep && n == B) {
+      i = &pairs.i[first];
+      j = &pairs.j[first];
+      record = &pairs.record[first];
+      return;
+    }
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::size_t at = std::min<std::size_t>(first + k, size - 1);
+      place[k] = pairs.some_sleep ? pairs.awake[at] : static_cast<std::int32_t>(at);
+      own_i[k] = pairs.i[place[k]];
+      own_j[k] = pairs.j[place[k]];
+      own_record[k] = pairs.record[place[k]];
+    }
+    i = own_i;
+    j = own_j;
+    record = own_record;
+  }
+
+private:
+  std::int32_t own_i[B], own_j[B], own_record[B];
+};
+
+/// Sorts candidates into those within reach and those whose contact has ended, by their places.
+/// Both outputs need room for B more entries.
+EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidates,
+                               const Period &period, const double range, std::int32_t *active,
+                               unsigned int &n_active, std::int32_t *ended, unsigned int &n_ended)
 {
   alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj, excess;
-  gather(position, i, xi, yi, zi, ri);
-  gather(position, j, xj, yj, zj, rj);
+  gather(position, candidates.i, xi, yi, zi, ri);
+  gather(position, candidates.j, xj, yj, zj, rj);
 #pragma omp simd
   for (unsigned int k = 0; k < B; ++k) {
     const double dx = shortest(xj[k] - xi[k], period.half.x, period.length.x);
@@ -57,12 +91,12 @@ EUNOE_MULTIVERSION void select(const Quad *position, const std::int32_t *i, cons
     excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
   }
   unsigned int a = n_active, e = n_ended;
-  for (unsigned int k = 0; k < count; ++k) {
+  for (unsigned int k = 0; k < candidates.n; ++k) {
     const bool within = excess[k] <= 0.;
-    active[a] = first + static_cast<std::int32_t>(k);
+    active[a] = candidates.place[k];
     a += within;
-    ended[e] = first + static_cast<std::int32_t>(k);
-    e += static_cast<unsigned int>(!within) & static_cast<unsigned int>(record[k] >= 0);
+    ended[e] = candidates.place[k];
+    e += static_cast<unsigned int>(!within) & static_cast<unsigned int>(candidates.record[k] >= 0);
   }
   n_active = a;
   n_ended = e;
@@ -216,23 +250,13 @@ void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt
 {
   const Period period{box.length, box.half()};
   const double range = model.range();
-  const std::size_t n_pairs = pairs.size();
+  const std::size_t n_pairs = pairs.some_sleep ? pairs.awake.size() : pairs.size();
   unsigned int n_active = 0;
+  Candidates candidates;
   for (std::size_t first = 0; first < n_pairs; first += B) {
-    const unsigned int count = static_cast<unsigned int>(std::min<std::size_t>(B, n_pairs - first));
-    alignas(64) std::int32_t last_i[B], last_j[B];
-    const std::int32_t *i = pairs.i.data() + first, *j = pairs.j.data() + first;
-    if (count < B) {
-      for (unsigned int k = 0; k < B; ++k) {
-        last_i[k] = i[std::min(k, count - 1)];
-        last_j[k] = j[std::min(k, count - 1)];
-      }
-      i = last_i;
-      j = last_j;
-    }
+    candidates.take(pairs, first);
     unsigned int n_ended = 0;
-    select(particles.position.data(), i, j, pairs.record.data() + first,
-           static_cast<std::int32_t>(first), count, period, range, active.data(), n_active,
+    select(particles.position.data(), candidates, period, range, active.data(), n_active,
            ended.data(), n_ended);
     for (unsigned int e = 0; e < n_ended; ++e) {
       pairs.memory.release(pairs.record[ended[e]]);

@@ -86,6 +86,9 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
 {
   block->n = 0;
   for (Candidate &candidate : candidates) {
+    // Sleepers weigh on solids, too, but feel nothing.
+    if (loads == nullptr && !particles.is_awake(candidate.particle))
+      continue;
     const Solid &solid = solids[candidate.solid];
     const Quad &position = particles.position[candidate.particle];
     const double reach = position.w + model.range();

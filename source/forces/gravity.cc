@@ -19,12 +19,12 @@ public:
 
   void add(ParticleArrays &p, double) const override
   {
-    for (std::size_t k = 0; k < p.n_owned; ++k) {
+    p.for_each_awake([&](const std::size_t k) {
       const double mass = p.velocity[k].w;
       p.force[k].x += mass * g.x;
       p.force[k].y += mass * g.y;
       p.force[k].z += mass * g.z;
-    }
+    });
   }
 
 private:

@@ -7,7 +7,7 @@ namespace eunoe {
 
 namespace {
 
-constexpr int tag_build = 311, tag_update = 312;
+constexpr int tag_build = 311, tag_update = 312, tag_flags = 313;
 /// Doubles a ghost when it is made (all that is constant, then the state) and at every step.
 constexpr std::size_t build_size = 14, update_size = 9;
 
@@ -101,10 +101,43 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     particles.type[row] = static_cast<std::int32_t>(v[13]);
     *ghosts[g].row = static_cast<std::int32_t>(row);
   }
+  include_all();
+}
+
+void Halo::include_all()
+{
   for (Neighbour &neighbour : neighbours) {
-    neighbour.out.resize(update_size * neighbour.sent.size());
-    neighbour.in.resize(update_size * neighbour.received.size());
+    neighbour.sent_awake = neighbour.sent;
+    neighbour.received_awake = neighbour.received;
   }
+}
+
+void Halo::leave_out_sleepers(const ParticleArrays &particles)
+{
+  const auto awake = [&](const std::vector<std::int32_t> &rows) {
+    std::vector<std::int32_t> list;
+    std::copy_if(rows.begin(), rows.end(), std::back_inserter(list),
+                 [&](const std::int32_t row) { return particles.is_awake(row); });
+    return list;
+  };
+  for (Neighbour &neighbour : neighbours) {
+    neighbour.sent_awake = awake(neighbour.sent);
+    neighbour.received_awake = awake(neighbour.received);
+  }
+}
+
+void Halo::update(std::vector<std::uint8_t> &flags)
+{
+  for (Neighbour &neighbour : neighbours) {
+    neighbour.out.clear();
+    for (const std::int32_t row : neighbour.sent)
+      neighbour.out.push_back(flags[row]);
+    neighbour.in.resize(neighbour.received.size());
+  }
+  exchange(tag_flags);
+  for (const Neighbour &neighbour : neighbours)
+    for (std::size_t k = 0; k < neighbour.received.size(); ++k)
+      flags[neighbour.received[k]] = static_cast<std::uint8_t>(neighbour.in[k]);
 }
 
 void Halo::update(ParticleArrays &particles)
@@ -112,8 +145,10 @@ void Halo::update(ParticleArrays &particles)
   if (neighbours.empty())
     return;
   for (Neighbour &neighbour : neighbours) {
+    neighbour.out.resize(update_size * neighbour.sent_awake.size());
+    neighbour.in.resize(update_size * neighbour.received_awake.size());
     double *out = neighbour.out.data();
-    for (const std::int32_t row : neighbour.sent)
+    for (const std::int32_t row : neighbour.sent_awake)
       for (const Quad *q :
            {&particles.position[row], &particles.velocity[row], &particles.spin[row]}) {
         *out++ = q->x;
@@ -124,7 +159,7 @@ void Halo::update(ParticleArrays &particles)
   exchange(tag_update);
   for (const Neighbour &neighbour : neighbours) {
     const double *in = neighbour.in.data();
-    for (const std::int32_t row : neighbour.received)
+    for (const std::int32_t row : neighbour.received_awake)
       for (Quad *q : {&particles.position[row], &particles.velocity[row], &particles.spin[row]}) {
         q->x = *in++;
         q->y = *in++;

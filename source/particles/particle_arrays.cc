@@ -11,10 +11,19 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
     array->resize(size());
   id.resize(size());
   type.resize(size());
+  awake.clear();
+  awake_rows.clear();
   reference.resize(owned);
   extra.resize(n_extra);
   for (auto &component : extra)
     component.resize(owned);
+}
+
+void ParticleArrays::clear_forces_on_sleepers()
+{
+  for (std::size_t row = 0; row < n_owned; ++row)
+    if (awake[row] == 0)
+      force[row] = torque[row] = Quad();
 }
 
 } // namespace eunoe

@@ -54,9 +54,9 @@ struct ParticleStore::Implementation
 {
   using Handler = dealii::Particles::ParticleHandler<3>;
 
-  Implementation(Domain &domain, unsigned int n_extra)
+  Implementation(Domain &domain, unsigned int n_extra, int asleep)
       : domain(domain), triangulation(domain.mesh().triangulation), n_extra(n_extra),
-        handler(triangulation, *domain.mesh().mapping, property::extra + n_extra)
+        asleep(asleep), handler(triangulation, *domain.mesh().mapping, property::extra + n_extra)
   {
     MPI_Comm_rank(domain.communicator(), &rank);
     find_ranks_near_cells();
@@ -64,9 +64,22 @@ struct ParticleStore::Implementation
 
   void find_ranks_near_cells();
 
+  /// Cost of particles, as they were when they were last written.
+  template <typename Range>
+  double weight(const Range &particles, const LoadBalancingParameters &p) const
+  {
+    double sum = 0.;
+    for (const auto &particle : particles)
+      sum += asleep >= 0 && particle.get_properties()[property::extra + asleep] != 0.
+                 ? p.inactive_factor
+                 : p.active_factor;
+    return sum * p.particle_weight;
+  }
+
   Domain &domain;
   dealii::parallel::distributed::Triangulation<3> &triangulation;
   const unsigned int n_extra;
+  const int asleep;
   Handler handler;
   int rank;
 
@@ -105,8 +118,8 @@ void ParticleStore::Implementation::find_ranks_near_cells()
     }
 }
 
-ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra)
-    : implementation(std::make_unique<Implementation>(domain, n_extra))
+ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra, const int asleep)
+    : implementation(std::make_unique<Implementation>(domain, n_extra, asleep))
 {
 }
 
@@ -223,7 +236,7 @@ void ParticleStore::repartition(const LoadBalancingParameters &parameters)
   Implementation &impl = *implementation;
   const auto connection = compat::connect_weight(impl.triangulation, [&](const auto &cell) {
     return parameters.cell_weight +
-           parameters.particle_weight * impl.handler.n_particles_in_cell(cell);
+           static_cast<unsigned int>(impl.weight(impl.handler.particles_in_cell(cell), parameters));
   });
   impl.handler.prepare_for_coarsening_and_refinement();
   impl.triangulation.repartition();
@@ -236,10 +249,9 @@ void ParticleStore::repartition(const LoadBalancingParameters &parameters)
 double ParticleStore::imbalance(const LoadBalancingParameters &parameters) const
 {
   const Implementation &impl = *implementation;
-  const double load =
-      static_cast<double>(parameters.cell_weight) *
-          impl.triangulation.n_locally_owned_active_cells() +
-      static_cast<double>(parameters.particle_weight) * impl.handler.n_locally_owned_particles();
+  const double load = static_cast<double>(parameters.cell_weight) *
+                          impl.triangulation.n_locally_owned_active_cells() +
+                      impl.weight(impl.handler, parameters);
   const auto loads = dealii::Utilities::MPI::min_max_avg(load, impl.domain.communicator());
   return (loads.max - loads.min) / loads.avg;
 }

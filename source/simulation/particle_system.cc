@@ -8,10 +8,10 @@
 namespace eunoe {
 
 ParticleSystem::ParticleSystem(Domain &domain, const ContactModel &model,
-                               const unsigned int n_extra, const double skin,
+                               const unsigned int n_extra, const int asleep, const double skin,
                                const double largest_diameter, Ledger &ledger, Timers &timers)
     : domain(domain), model(model), skin(skin), ledger(ledger), timers(timers),
-      store(domain, n_extra), halo(domain.communicator()),
+      store(domain, n_extra, asleep), halo(domain.communicator()),
       grid(domain.lower(), domain.upper(), domain.periods(),
            largest_diameter + skin + model.range()),
       pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
@@ -29,6 +29,27 @@ void ParticleSystem::add_contact_forces(const std::vector<Solid> &solids, const 
   }
   const Timers::Scope scope(timers, Section::solids);
   solid_contacts.add_forces(particles, solids, time, dt, loads);
+}
+
+void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)
+{
+  sparse.update(particles, pairs, solid_contacts, halo, stirring);
+  // All ghosts, those too who have just fallen asleep.
+  halo.include_all();
+  halo.update(particles);
+  leave_out_sleepers();
+}
+
+void ParticleSystem::leave_out_sleepers()
+{
+  halo.leave_out_sleepers(particles);
+  pairs.some_sleep = !particles.awake.empty();
+  pairs.awake.clear();
+  if (!pairs.some_sleep)
+    return;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if ((particles.awake[pairs.i[k]] | particles.awake[pairs.j[k]]) != 0)
+      pairs.awake.push_back(static_cast<std::int32_t>(k));
 }
 
 ContactRows ParticleSystem::contact_rows() const

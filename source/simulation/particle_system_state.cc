@@ -75,7 +75,7 @@ void ParticleSystem::save(CheckpointWriter &writer) const
 }
 
 void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
-                          const LoadBalancingParameters &balancing)
+                          const LoadBalancingParameters &balancing, const SparseContacts &sparse)
 {
   MPI_Comm comm = domain.communicator();
   int rank;
@@ -118,6 +118,10 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   }
   ContactRows(model.history_size(), contacts).attach(particles, pairs, solid_contacts);
   halo.update(particles);
+  if (sparse.is_enabled()) {
+    sparse.recall(particles, halo);
+    leave_out_sleepers();
+  }
 }
 
 } // namespace eunoe

@@ -92,12 +92,18 @@ void Simulation::write_summary()
   summary["steps"] = step;
   summary["first_step"] = first_step;
   summary["ranks"] = n_ranks;
+  std::uint64_t ghosts = system.particles.n_ghosts;
+  MPI_Allreduce(MPI_IN_PLACE, &ghosts, 1, MPI_UINT64_T, MPI_SUM, comm);
+  summary["ghosts"] = ghosts;
   summary["time_step"] = parameters.control.time_step;
   summary["simulated_time"] = present_time;
   summary["particle_steps"] = particle_steps;
   summary["particle_steps_per_second"] = loop_seconds > 0. ? particle_steps / loop_seconds : 0.;
   summary["loop_seconds"] = loop_seconds;
   summary["wall_seconds"] = MPI_Wtime() - start_of_run;
+  double slept = sleeping_steps;
+  MPI_Allreduce(MPI_IN_PLACE, &slept, 1, MPI_DOUBLE, MPI_SUM, comm);
+  summary["share_asleep"] = particle_steps > 0. ? slept / particle_steps : 0.;
   summary["contact_searches"] = system.n_searches();
   summary["load_balances"] = system.n_balances();
 

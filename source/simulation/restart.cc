@@ -91,6 +91,12 @@ void Simulation::save(CheckpointWriter &writer)
   head["solids_at_search"] = Json::array();
   for (const RigidState &state : solids_at_search)
     head["solids_at_search"].push_back(to_json(state));
+  if (sparse.is_enabled()) {
+    Json &look = head["last_look"];
+    look["time"] = last_look.time;
+    for (const RigidState &state : last_look.solids)
+      look["solids"].push_back(to_json(state));
+  }
   system.save(writer);
   if (const Process *const process = parameters.process())
     process->save(writer);
@@ -120,7 +126,12 @@ void Simulation::resume()
     solids_at_search.push_back(to_state(head.at("solids_at_search").at(s)));
     solids[s].state = solids_at_search[s];
   }
-  system.load(*checkpoint, solids, parameters.model.load_balancing);
+  if (sparse.is_enabled()) {
+    last_look.time = head.at("last_look").at("time");
+    for (const auto &state : head.at("last_look").at("solids"))
+      last_look.solids.push_back(to_state(state));
+  }
+  system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
   n_particles = system.n_global();
   if (Process *const process = parameters.process())
     process->resume(*this, *checkpoint);

@@ -16,20 +16,24 @@ ObservableRegistry &observables()
 
 namespace {
 
-unsigned int count_components(const std::vector<Process::Field> &fields)
-{
-  unsigned int n = 0;
-  for (const Process::Field &field : fields)
-    n += field.n_components;
-  return n;
-}
-
 /// Prepares the parameters that a process decides, before anything is built from them.
 Parameters &prepare(Parameters &parameters)
 {
   if (Process *const process = parameters.process())
     process->prepare(parameters);
   return parameters;
+}
+
+/// Extra doubles of the particles: the process's, then those that tell who sleeps.
+std::vector<Process::Field> make_fields(const Parameters &parameters)
+{
+  std::vector<Process::Field> fields;
+  if (const Process *const process = parameters.process())
+    fields = process->fields();
+  if (parameters.model.sparse_contacts.enabled)
+    for (const Process::Field &field : SparseContacts::fields())
+      fields.push_back(field);
+  return fields;
 }
 
 /// Null for a process, which makes its own.
@@ -52,10 +56,10 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
-      ledger(domain.outlets()),
-      system(domain, model,
-             parameters.process() ? count_components(parameters.process()->fields()) : 0, skin,
-             largest_diameter, ledger, timers),
+      fields(make_fields(parameters)),
+      sparse(parameters.model.sparse_contacts, fields, parameters.control.time_step),
+      ledger(domain.outlets()), system(domain, model, Process::n_components(fields), sparse.flag(),
+                                       skin, largest_diameter, ledger, timers),
       integrator(integrators().make(parameters.model.integration_method)),
       output(parameters.control.output_path, comm),
       checkpoints(parameters.control.output_path, parameters.restart.filename,
@@ -80,12 +84,11 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
     const std::size_t n_given = solids.size();
     append(process->make_solids(parameters));
     check_crossings(solids, n_given, problems);
-    fields = process->fields();
-    std::vector<double> defaults;
-    for (const Process::Field &field : fields)
-      defaults.insert(defaults.end(), field.n_components, field.initial);
-    system.set_extra_defaults(defaults);
   }
+  std::vector<double> defaults;
+  for (const Process::Field &field : fields)
+    defaults.insert(defaults.end(), field.n_components, field.initial);
+  system.set_extra_defaults(defaults);
   check_speeds(problems);
   if (!problems.empty())
     throw UserError(problems);
@@ -190,21 +193,26 @@ void Simulation::advance()
     const Timers::Scope scope(timers, Section::integration);
     moved2 = integrator->begin_step(system.particles, dt);
   }
-  if (search_is_due(moved2)) {
+  const bool searches = search_is_due(moved2);
+  const bool looks = sparse.is_enabled() && (searches || step % sparse.frequency() == 0);
+  if (searches) {
     const Timers::Scope scope(timers, Section::search);
     const std::vector<std::size_t> lost = inspect();
     system.search(solids, balance_if_due(), lost);
     for (std::size_t s = 0; s < solids.size(); ++s)
       solids_at_search[s] = solids[s].state;
     n_particles = system.n_global();
-  } else {
+  } else if (!looks) {
     const Timers::Scope scope(timers, Section::ghosts);
     system.update_ghosts();
   }
+  if (looks)
+    update_sleep(false);
 
   compute_forces(dt);
   integrator->end_step();
   particle_steps += static_cast<double>(n_particles);
+  sleeping_steps += static_cast<double>(system.particles.n_owned - system.particles.n_awake());
 }
 
 void Simulation::move_solids()
@@ -294,6 +302,8 @@ void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_
   for (const Solid &solid : solids)
     solids_at_search.push_back(solid.state);
   n_particles = system.n_global();
+  if (sparse.is_enabled())
+    update_sleep(true);
   system.add_forces_on_new(first_new, loads, solids, present_time);
 }
 

@@ -6,6 +6,7 @@ Usage: restart.py path/to/eunoe-particles folder
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import shutil
@@ -25,6 +26,10 @@ FREQUENT = (BALANCING + "load balance method = frequent", BALANCING + "frequency
 DYNAMIC = (BALANCING + "load balance method = dynamic", BALANCING + "threshold = 0.1",
            BALANCING + "dynamic check frequency = 200")
 OTHER_MESH = ("mesh/grid arguments = 3, 2, 1 : 0, 0, 0 : 10e-3, 8e-3, 4e-3 : true",)
+SPARSE = "model parameters/adaptive sparse contacts/"
+# Far too easily put to sleep for physics, so that there is much of it.
+SLEEPY = (SPARSE + "enable adaptive sparse contacts = true", SPARSE + "rest time = 2e-4",
+          SPARSE + "granular temperature threshold = 0.2", SPARSE + "check frequency = 20")
 failures = 0
 
 
@@ -77,6 +82,23 @@ def write_failure(reference: Case, folder: Path) -> None:
     compare(reference, other, "After a checkpoint that could not be written")
 
 
+def sleeping(program: str, folder: Path) -> None:
+    """The same bits with particles that sleep and wake."""
+    reference = Case(program, CASE, folder / "reference", list(SLEEPY))
+    reference.run(1)
+    share = json.loads((reference.results / "summary.json").read_text())["share_asleep"]
+    if not 0.1 < share < 0.9:
+        raise Failure(f"A share of {share} slept, so little is tried.")
+    for ranks, settings in ((2, FREQUENT), (4, OTHER_MESH), (8, DYNAMIC)):
+        other = Case(program, CASE, folder / str(ranks), list(SLEEPY))
+        other.run(ranks, *settings)
+        compare(reference, other, f"With sleep, on {ranks} ranks")
+    other = Case(program, CASE, folder / "restarted", list(SLEEPY))
+    other.run(2, *EVERY, "simulation control/iteration end = 11111")
+    other.run(4, *EVERY, "restart/restart = true")
+    compare(reference, other, "With sleep, restarted")
+
+
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 100000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
@@ -99,6 +121,7 @@ def main(program: str, folder: Path) -> int:
     check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
     check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
     check("write failure", lambda: write_failure(reference, folder / "full"))
+    check("sleep", lambda: sleeping(reference.program, folder / "sleep"))
     check("kill", lambda: killed(reference.program, folder / "killed"))
     return 1 if failures else 0
 

@@ -17,7 +17,17 @@ struct LoadBalancingParameters
   /// When the first particles are there, sharing out by their number costs little.
   static constexpr double threshold_at_start = 0.1;
   unsigned int particle_weight = 2000;
+  double active_factor = 1., inactive_factor = 0.1; ///< on the weight of who is awake or sleeps
   unsigned int cell_weight = 1000;
+};
+
+/// Who sleeps, so that contacts at rest cost nothing: `subsection adaptive sparse contacts`.
+struct SparseContactParameters
+{
+  bool enabled = false;
+  double temperature = 1e-7; ///< square of the speed below which a particle is at rest (m2/s2)
+  double rest_time = 2e-3;   ///< for which a particle must have been at rest (s)
+  unsigned int frequency = 50;
 };
 
 /// `subsection model parameters`.
@@ -39,6 +49,7 @@ struct ModelParameters : public ParameterSection
   double largest_overlap = 0.5;        ///< over the radius of the smaller particle; 0: any
 
   LoadBalancingParameters load_balancing;
+  SparseContactParameters sparse_contacts;
 
   /// The laws behind the names of the input file.
   ContactModelNames laws() const;

@@ -21,6 +21,9 @@ struct PairList
   std::vector<std::int32_t> record;
   /// Oriented from i to j.
   ContactMemory memory;
+  /// Whether some pairs are of two sleepers; `awake` are the places of all others, ascending.
+  bool some_sleep = false;
+  std::vector<std::int32_t> awake;
 
   std::size_t size() const { return i.size(); }
 
@@ -30,6 +33,8 @@ struct PairList
     j.clear();
     record.clear();
     memory.clear(n_history);
+    some_sleep = false;
+    awake.clear();
   }
 
   void push_back(std::int32_t a, std::int32_t b)

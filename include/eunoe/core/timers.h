@@ -12,6 +12,7 @@ enum class Section : unsigned int
 {
   integration,
   search,
+  sleep,
   ghosts,
   pairs,
   solids,
@@ -45,9 +46,9 @@ public:
   static constexpr unsigned int n = static_cast<unsigned int>(Section::n);
   static std::string name(unsigned int section)
   {
-    static const std::array<std::string, n> names = {{"integration", "contact search", "ghosts",
-                                                      "particle contacts", "solid contacts",
-                                                      "loads", "output", "process"}};
+    static const std::array<std::string, n> names = {
+        {"integration", "contact search", "sleep", "ghosts", "particle contacts", "solid contacts",
+         "loads", "output", "process"}};
     return names[section];
   }
 

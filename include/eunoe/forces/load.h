@@ -16,9 +16,13 @@ class Load
 public:
   virtual ~Load() = default;
 
-  /// Adds to force and torque of the owned particles.
+  /// Adds to force and torque of the owned particles that are awake.
   /// @param time at which the forces are computed (s)
   virtual void add(ParticleArrays &particles, double time) const = 0;
+
+  /// Whether particles at rest feel another load at the end of a span of time than at its
+  /// beginning, so that those who sleep must wake.
+  virtual bool changes(double /*begin*/, double /*end*/) const { return false; }
 };
 
 /// Loads by name; a maker returns null where its load does not act.

@@ -20,12 +20,22 @@ public:
   /// Brings position, velocity and spin of the ghosts up to date; collective.
   void update(ParticleArrays &particles);
 
+  /// Gives the ghosts the flags of their originals, one a particle; collective.
+  void update(std::vector<std::uint8_t> &flags);
+
+  /// From now on takes in all again.
+  void include_all();
+  /// From now on leaves out those who sleep, whose state does not change.
+  void leave_out_sleepers(const ParticleArrays &particles);
+
 private:
   struct Neighbour
   {
     int rank;
     std::vector<std::int32_t> sent;     ///< rows of owned particles
     std::vector<std::int32_t> received; ///< rows of ghosts
+    /// Those that are awake.
+    std::vector<std::int32_t> sent_awake, received_awake;
     std::vector<double> out, in;
   };
 

@@ -26,6 +26,14 @@ struct ParticleArrays
   std::vector<ParticleId> id;
   std::vector<std::int32_t> type; ///< particle type, which is its material
 
+  /// @name Who is awake (see SparseContacts)
+  ///@{
+  std::vector<std::uint8_t> awake;      ///< a flag each, ghosts too; empty while all are awake
+  std::vector<std::int32_t> awake_rows; ///< of owned particles, ascending; empty while all are
+  bool is_awake(std::size_t row) const { return awake.empty() || awake[row] != 0; }
+  std::size_t n_awake() const { return awake.empty() ? n_owned : awake_rows.size(); }
+  ///@}
+
   /// @name Owned particles only
   ///@{
   std::vector<Vec3> reference; ///< position at the last search
@@ -35,7 +43,23 @@ struct ParticleArrays
 
   std::size_t size() const { return n_owned + n_ghosts; }
 
+  /// All are awake afterwards.
   void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
+
+  /// Forces on those who sleep have no meaning, and must not pile up.
+  void clear_forces_on_sleepers();
+
+  /// Calls `action(row)` for every owned particle that is awake.
+  template <typename Action>
+  void for_each_awake(const Action &action) const
+  {
+    if (awake.empty())
+      for (std::size_t row = 0; row < n_owned; ++row)
+        action(row);
+    else
+      for (const std::int32_t row : awake_rows)
+        action(static_cast<std::size_t>(row));
+  }
 };
 
 } // namespace eunoe

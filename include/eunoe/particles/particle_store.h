@@ -19,7 +19,8 @@ class ParticleStore
 {
 public:
   /// @param n_extra doubles a particle beside the ones of the engine
-  ParticleStore(Domain &domain, unsigned int n_extra);
+  /// @param asleep place among them of the flag that is not 0 for sleepers; -1: nobody sleeps
+  ParticleStore(Domain &domain, unsigned int n_extra, int asleep = -1);
   ~ParticleStore();
 
   /// Number of particles of all ranks.

@@ -46,6 +46,13 @@ public:
     double initial;
   };
   virtual std::vector<Field> fields() const { return {}; }
+  static unsigned int n_components(const std::vector<Field> &fields)
+  {
+    unsigned int n = 0;
+    for (const Field &field : fields)
+      n += field.n_components;
+    return n;
+  }
 
   /// Solids of the process.
   virtual std::vector<Solid> make_solids(const Parameters &parameters) = 0;

@@ -10,6 +10,7 @@
 #include <eunoe/particles/particle_store.h>
 #include <eunoe/simulation/ledger.h>
 #include <eunoe/simulation/particle_guard.h>
+#include <eunoe/simulation/sparse_contacts.h>
 
 namespace eunoe {
 
@@ -30,10 +31,11 @@ struct Delivery
 class ParticleSystem
 {
 public:
+  /// @param asleep place of the sleepers' flag among the extra doubles, -1 if nobody sleeps
   /// @param skin gap up to which pairs are listed (m)
   /// @param largest_diameter of all particles ever (m)
-  ParticleSystem(Domain &domain, const ContactModel &model, unsigned int n_extra, double skin,
-                 double largest_diameter, Ledger &ledger, Timers &timers);
+  ParticleSystem(Domain &domain, const ContactModel &model, unsigned int n_extra, int asleep,
+                 double skin, double largest_diameter, Ledger &ledger, Timers &timers);
 
   /// Sets the initial values of the extra doubles of particles to come.
   void set_extra_defaults(const std::vector<double> &values) { extra_defaults = values; }
@@ -65,6 +67,9 @@ public:
   /// Brings the ghosts up to date; collective.
   void update_ghosts() { halo.update(particles); }
 
+  /// Puts to sleep and wakes, then brings the ghosts up to date; collective.
+  void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
+
   /// Adds the forces of all contacts and advances their memory by @p dt (s).
   /// @param loads if not null: forces on the solids, one a solid
   void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,
@@ -82,8 +87,9 @@ public:
   /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
   /// last search had left them; collective.
   /// @param solids in their places at that search
+  /// @param sparse knows who slept
   void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
-            const LoadBalancingParameters &balancing);
+            const LoadBalancingParameters &balancing, const SparseContacts &sparse);
 
   /// Memory of all contacts by owned particle.
   ContactRows contact_rows() const;
@@ -102,6 +108,8 @@ public:
 
 private:
   std::vector<std::size_t> find_leaving();
+  /// Sorts out the pairs of two sleepers and the ghosts that sleep.
+  void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept

@@ -100,6 +100,8 @@ private:
   void compare_time_step(double stiffest);
   [[noreturn]] void stop_for(const std::string &first, std::uint64_t number);
   const LoadBalancingParameters *balance_if_due();
+  /// Looks at who sleeps from now on.
+  void update_sleep(bool wake_all);
   void insert_if_due();
   void do_what_is_due();
   void report_progress(bool at_end);
@@ -116,16 +118,23 @@ private:
   Domain domain;
   const ContactModel model;
   const ParticleGuard guard;
+  const std::vector<Process::Field> fields;
+  const SparseContacts sparse;
   Ledger ledger;
   Timers timers;
   ParticleSystem system;
   std::vector<Solid> solids;
   std::vector<RigidState> solids_at_search;
+  /// When it was decided who sleeps, and where the solids were then.
+  struct
+  {
+    double time = 0.;
+    std::vector<RigidState> solids;
+  } last_look;
   std::vector<std::unique_ptr<Load>> loads;
   std::unique_ptr<Integrator> integrator;
   std::vector<std::unique_ptr<Observable>> observable_list;
   std::vector<SolidLoad> solid_loads;
-  std::vector<Process::Field> fields;
   OutputFolder output;
   std::shared_ptr<PictureSeries> particle_pictures, solid_pictures;
   CheckpointStore checkpoints;
@@ -144,7 +153,8 @@ private:
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;
-  double share_before = -1.; ///< of the run that was done before this part, once it is known
+  double share_before = -1.;  ///< of the run that was done before this part, once it is known
+  double sleeping_steps = 0.; ///< steps that this rank's particles have slept, summed
   double particle_steps = 0., loop_seconds = 0., last_report = 0., reported_particle_steps = 0.;
 };
 

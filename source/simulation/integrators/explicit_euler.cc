@@ -11,7 +11,7 @@ public:
   {
     // The largest of numbers forgets what is no number; this sum does not.
     double largest = 0., poison = 0.;
-    for (std::size_t k = 0; k < p.n_owned; ++k) {
+    p.for_each_awake([&](const std::size_t k) {
       p.position[k].add(dt * p.velocity[k].vec());
       p.velocity[k].add(dt / p.velocity[k].w * p.force[k].vec());
       p.spin[k].add(dt / p.spin[k].w * p.torque[k].vec());
@@ -19,7 +19,9 @@ public:
       largest = std::max(largest, moved2);
       poison += 0. * moved2;
       p.force[k] = p.torque[k] = Quad();
-    }
+    });
+    if (!p.awake.empty())
+      p.clear_forces_on_sleepers();
     return largest + poison;
   }
 

@@ -21,10 +21,10 @@ EUNOE_ALWAYS_INLINE void kick(Quad &velocity, const Quad &force, const double dt
 
 EUNOE_MULTIVERSION void half_kick(ParticleArrays &p, const double half_dt)
 {
-  for (std::size_t k = 0; k < p.n_owned; ++k) {
+  p.for_each_awake([&](const std::size_t k) {
     kick(p.velocity[k], p.force[k], half_dt);
     kick(p.spin[k], p.torque[k], half_dt);
-  }
+  });
 }
 
 template <bool twice>
@@ -33,7 +33,7 @@ EUNOE_ALWAYS_INLINE double kick_and_drift(ParticleArrays &p, const double dt)
   const double half_dt = 0.5 * dt;
   // The largest of numbers forgets what is no number; this sum does not.
   double largest = 0., poison = 0.;
-  for (std::size_t k = 0; k < p.n_owned; ++k) {
+  p.for_each_awake([&](const std::size_t k) {
     Quad &v = p.velocity[k], &w = p.spin[k], &x = p.position[k];
     if (twice) {
       kick(v, p.force[k], half_dt);
@@ -49,7 +49,9 @@ EUNOE_ALWAYS_INLINE double kick_and_drift(ParticleArrays &p, const double dt)
     largest = moved2 > largest ? moved2 : largest;
     poison += 0. * moved2;
     p.force[k] = p.torque[k] = Quad();
-  }
+  });
+  if (!p.awake.empty())
+    p.clear_forces_on_sleepers();
   return largest + poison;
 }
 

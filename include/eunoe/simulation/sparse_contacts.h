@@ -1,0 +1,67 @@
+#ifndef eunoe_simulation_sparse_contacts_h
+#define eunoe_simulation_sparse_contacts_h
+
+#include <eunoe/contact/model_parameters.h>
+#include <eunoe/contact/pair_list.h>
+#include <eunoe/contact/solid_contacts.h>
+#include <eunoe/particles/halo.h>
+#include <eunoe/processes/process.h>
+
+namespace eunoe {
+
+/// What has happened outside the particles since the last look at who sleeps.
+struct Stirring
+{
+  unsigned long long step = 0;
+  std::vector<bool> solid_moves; ///< one a solid
+  bool everything = false;       ///< particles came or went, or a load has changed
+};
+
+/// Puts particles to sleep and wakes them (adaptive sparse contacts).
+///
+/// A particle is *restless* while it moves, for some time after, and while a solid that moves is
+/// near. Awake are the restless and their neighbours, and the neighbours of these, over the list of
+/// pairs that can touch. All others sleep: they have no velocity and feel nothing, but are
+/// obstacles for those who are awake; their contacts remember. So nothing that moves ever meets a
+/// sleeper, and a front of waking particles runs ahead of what stirs them.
+///
+/// All decisions follow from what each particle has done and from lists that do not depend on the
+/// distribution over ranks, so they are the same on any number of ranks.
+class SparseContacts
+{
+public:
+  /// @param fields of the particles; its own are the last ones
+  /// @param time_step (s)
+  SparseContacts(const SparseContactParameters &parameters,
+                 const std::vector<Process::Field> &fields, double time_step);
+
+  /// What it keeps of every particle.
+  static std::vector<Process::Field> fields()
+  {
+    return {{"asleep", 1, 0.}, {"last_moved_step", 1, -1.}};
+  }
+
+  /// Place of the flag of sleepers among the extra doubles, -1 if nobody sleeps.
+  int flag() const { return parameters.enabled ? static_cast<int>(asleep) : -1; }
+  bool is_enabled() const { return parameters.enabled; }
+  unsigned int frequency() const { return parameters.frequency; }
+
+  /// Decides who sleeps from now on; collective.
+  void update(ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids,
+              Halo &halo, const Stirring &stirring) const;
+
+  /// Lets those sleep who slept when their fields were saved; collective.
+  void recall(ParticleArrays &particles, Halo &halo) const;
+
+private:
+  std::vector<std::uint8_t> find_restless(ParticleArrays &particles, const SolidContacts &solids,
+                                          const Stirring &stirring) const;
+
+  const SparseContactParameters &parameters;
+  const unsigned int last_moved, asleep; ///< places of the fields among the extra doubles
+  const double rest_steps;
+};
+
+} // namespace eunoe
+
+#endif
