@@ -33,7 +33,8 @@ void Halo::exchange(const int tag)
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
-void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid)
+void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
+                 const double gap)
 {
   int n_ranks;
   MPI_Comm_size(comm, &n_ranks);
@@ -42,9 +43,17 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     return;
 
   std::map<int, std::vector<std::int32_t>> rows;
+  double largest_radius = 0.;
   for (std::size_t row = 0; row < particles.n_owned; ++row)
-    for (const int rank : store.ranks_near(row))
+    largest_radius = std::max(largest_radius, particles.position[row].w);
+  MPI_Allreduce(MPI_IN_PLACE, &largest_radius, 1, MPI_DOUBLE, MPI_MAX, comm);
+  std::vector<int> ranks;
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    const Quad &x = particles.position[row];
+    store.ranks_near(row, x.vec(), 1.0001 * (x.w + largest_radius + gap), ranks);
+    for (const int rank : ranks)
       rows[rank].push_back(static_cast<std::int32_t>(row));
+  }
   std::vector<int> n_sent(n_ranks, 0), n_received(n_ranks, 0);
   for (const auto &[rank, list] : rows)
     n_sent[rank] = static_cast<int>(list.size());

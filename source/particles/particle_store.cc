@@ -59,10 +59,10 @@ struct ParticleStore::Implementation
         asleep(asleep), handler(triangulation, *domain.mesh().mapping, property::extra + n_extra)
   {
     MPI_Comm_rank(domain.communicator(), &rank);
-    find_ranks_near_cells();
+    find_foreign_neighbours();
   }
 
-  void find_ranks_near_cells();
+  void find_foreign_neighbours();
 
   /// Cost of particles, as they were when they were last written.
   template <typename Range>
@@ -83,14 +83,20 @@ struct ParticleStore::Implementation
   Handler handler;
   int rank;
 
-  /// Ranks that own a neighbour of a cell, by active cell index.
-  std::vector<std::vector<int>> ranks_near_cell;
+  /// A cell of another rank: its owner and its box.
+  struct ForeignCell
+  {
+    int rank;
+    Vec3 centre, half;
+  };
+  /// Neighbours of a cell that others own, ordered by rank, by active cell index.
+  std::vector<std::vector<ForeignCell>> near_cell;
   /// The particles of the last read and their cells, in the order of the arrays.
   std::vector<Handler::particle_iterator> particles;
   std::vector<unsigned int> cells;
 };
 
-void ParticleStore::Implementation::find_ranks_near_cells()
+void ParticleStore::Implementation::find_foreign_neighbours()
 {
   // Vertices that coincide, also across periodic faces, count as one.
   std::map<unsigned int, std::vector<unsigned int>> groups;
@@ -100,21 +106,34 @@ void ParticleStore::Implementation::find_ranks_near_cells()
     const auto it = group_of.find(v);
     return it == group_of.end() ? v : groups.at(it->second).front();
   };
-  std::vector<std::set<int>> ranks_at(triangulation.n_vertices());
+  std::vector<std::set<unsigned int>> foreign_at(triangulation.n_vertices());
   for (const auto &cell : triangulation.active_cell_iterators())
     if (cell->is_ghost())
       for (const unsigned int v : cell->vertex_indices())
-        ranks_at[representative(cell->vertex_index(v))].insert(
-            static_cast<int>(cell->subdomain_id()));
-  ranks_near_cell.assign(triangulation.n_active_cells(), {});
+        foreign_at[representative(cell->vertex_index(v))].insert(cell->active_cell_index());
+  std::vector<ForeignCell> foreign(triangulation.n_active_cells());
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_ghost()) {
+      const dealii::BoundingBox<3> box = cell->bounding_box();
+      const auto &corners = box.get_boundary_points();
+      const Vec3 lower = to_vec3(corners.first), upper = to_vec3(corners.second);
+      foreign[cell->active_cell_index()] = {static_cast<int>(cell->subdomain_id()),
+                                            0.5 * (lower + upper), 0.5 * (upper - lower)};
+    }
+  near_cell.assign(triangulation.n_active_cells(), {});
   for (const auto &cell : triangulation.active_cell_iterators())
     if (cell->is_locally_owned()) {
-      std::set<int> ranks;
+      std::set<unsigned int> cells_around;
       for (const unsigned int v : cell->vertex_indices()) {
-        const auto &at = ranks_at[representative(cell->vertex_index(v))];
-        ranks.insert(at.begin(), at.end());
+        const auto &at = foreign_at[representative(cell->vertex_index(v))];
+        cells_around.insert(at.begin(), at.end());
       }
-      ranks_near_cell[cell->active_cell_index()].assign(ranks.begin(), ranks.end());
+      std::vector<ForeignCell> &near = near_cell[cell->active_cell_index()];
+      for (const unsigned int c : cells_around)
+        near.push_back(foreign[c]);
+      std::stable_sort(
+          near.begin(), near.end(),
+          [](const ForeignCell &one, const ForeignCell &two) { return one.rank < two.rank; });
     }
 }
 
@@ -242,7 +261,7 @@ void ParticleStore::repartition(const LoadBalancingParameters &parameters)
   impl.triangulation.repartition();
   impl.handler.unpack_after_coarsening_and_refinement();
   connection.disconnect();
-  impl.find_ranks_near_cells();
+  impl.find_foreign_neighbours();
   impl.particles.clear();
 }
 
@@ -303,9 +322,23 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   }
 }
 
-const std::vector<int> &ParticleStore::ranks_near(const std::size_t row) const
+void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, const double reach,
+                               std::vector<int> &ranks) const
 {
-  return implementation->ranks_near_cell[implementation->cells[row]];
+  const PeriodicBox &box = implementation->domain.periods();
+  ranks.clear();
+  for (const auto &cell : implementation->near_cell[implementation->cells[row]]) {
+    if (!ranks.empty() && ranks.back() == cell.rank)
+      continue;
+    const Vec3 away = box.shortest(position - cell.centre);
+    double distance2 = 0.;
+    for (unsigned int d = 0; d < 3; ++d) {
+      const double outside = std::max(0., std::abs(away[d]) - cell.half[d]);
+      distance2 += outside * outside;
+    }
+    if (distance2 <= reach * reach)
+      ranks.push_back(cell.rank);
+  }
 }
 
 } // namespace eunoe

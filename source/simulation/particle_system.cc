@@ -167,7 +167,7 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
 {
   std::vector<Origin> origins;
   store.read(particles, grid, origins);
-  halo.build(particles, store, grid);
+  halo.build(particles, store, grid, skin + model.range());
   pairs.clear(model.history_size());
   grid.find_pairs(particles, skin + model.range(), pairs);
   solid_contacts.search(particles, solids, skin + model.range());

@@ -15,7 +15,9 @@ public:
   explicit Halo(MPI_Comm comm) : comm(comm) {}
 
   /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
-  void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid);
+  /// @param gap up to which pairs are listed (m)
+  void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
+             double gap);
 
   /// Brings position, velocity and spin of the ghosts up to date; collective.
   void update(ParticleArrays &particles);

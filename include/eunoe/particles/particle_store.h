@@ -56,8 +56,12 @@ public:
   void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &origins);
 
   /// Ranks that need a copy of an owned particle by its row in the last `read`: those that own a
-  /// neighbour of its cell, across periodic faces too.
-  const std::vector<int> &ranks_near(std::size_t row) const;
+  /// neighbour of its cell, across periodic faces too, within reach.
+  /// @param position of the particle as it was read
+  /// @param reach distance up to which it can meet the centres of others (m)
+  /// @param ranks ascending
+  void ranks_near(std::size_t row, const Vec3 &position, double reach,
+                  std::vector<int> &ranks) const;
 
 private:
   struct Implementation;
