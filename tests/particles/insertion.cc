@@ -77,7 +77,7 @@ void test_single_particle()
                         " set list diameters = 1e-3"));
   single.run();
   const auto all = particle_table(*single);
-  check("a single particle", all.size() == 1 && all[0][c_id] == 0. && all[0][c_z] == -2e-3);
+  check("a single particle", all.size() == 1 && all[0][c_id] == 1. && all[0][c_z] == -2e-3);
 }
 
 /// A file may hold larger particles than the types' sizes; contacts between them must be found.
