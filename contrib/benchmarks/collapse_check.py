@@ -39,11 +39,10 @@ PHYSICS = ("model parameters/particle particle contact force method = hertz_mind
 QUANTITIES = {"mean_x": "centre of mass in x (mm)", "front": "run-out: 99 % lie before (mm)",
               "mean_y": "centre of mass in y (mm)", "top": "height: 99 % lie below (mm)",
               "kinetic": "kinetic energy (nJ)", "rotational": "energy of rotation (nJ)"}
-# A difference of the means in units of its standard error. Of six quantities at twenty moments,
-# which hang together, the largest exceeds this by chance in about one comparison in a hundred.
+# Accepted difference of the means in units of its standard error. Few seeds tell their own scatter
+# poorly, and the largest of some hundred values is looked at, so the margin is wide.
 LIMIT = 6.
-# Below this share of a quantity's largest value a difference is not looked at: fewer seeds than a
-# dozen do not tell their own scatter well.
+# Differences below this share of the largest value of a quantity count as agreement.
 RESOLUTION = 0.01
 
 

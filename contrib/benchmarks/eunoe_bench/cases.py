@@ -35,11 +35,17 @@ class Case:
     def collapse(self) -> bool:
         return self.length > bed.LENGTH
 
-    def mesh(self, length: float | None = None) -> str:
-        """Arguments of Eunoe's background mesh: cells of 1/6 mm, as in settled_bed.prm."""
-        length = length or self.length
-        cells = f"{round(length * 6e3)}, 37, {round(self.depth * 6e3)}"
-        return f"{cells} : 0, 0, 0 : {length}, {bed.HEIGHT}, {self.depth} : true"
+    def mesh(self) -> tuple[str, int]:
+        """Arguments of Eunoe's background mesh and how often it is refined: cells of about 1/6 mm.
+
+        Large beds need a coarse mesh of few cells, as every rank holds and orders all of these.
+        """
+        corners = f"0, 0, 0 : {self.length}, {bed.HEIGHT}, {self.depth} : true"
+        refinement = 2 if self.copies % 2 == 0 else 0
+        cells = [round(size * 6e3) >> refinement for size in (self.length, bed.HEIGHT, self.depth)]
+        if refinement == 0:
+            cells[1] = 37  # as in settled_bed.prm
+        return f"{cells[0]}, {cells[1]}, {cells[2]} : {corners}", refinement
 
 
 CASES = {case.name: case for case in (

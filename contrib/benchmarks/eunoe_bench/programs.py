@@ -76,8 +76,10 @@ class Eunoe:
             if particles is None:
                 particles = bed.read(case.copies)
             bed.write_for_eunoe(folder / "bed.csv", particles)
+            arguments, refinement = case.mesh()
             settings += (f"insertion info/list of input files = {folder / 'bed.csv'}",
-                         f"mesh/grid arguments = {case.mesh()}",
+                         f"mesh/grid arguments = {arguments}",
+                         f"mesh/initial refinement = {refinement}",
                          f"simulation control/iteration end = {steps}")
         options = [word for setting in settings for word in ("--set", setting)]
         command = [sys.executable, str(HERE / "measure_rss.py"), str(folder / "rss"), self.path,
