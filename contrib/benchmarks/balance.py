@@ -3,7 +3,7 @@
 the sharing out costs.
 
 Usage: contrib/benchmarks/balance.py [case.prm] [--program build/release/eunoe-particles] [--ranks 2]
-           [--every 20000] [--cell-weights 1000,100] [--set ENTRY=VALUE ...]
+           [--every 20000] [--cell-weights 1000,20] [--set ENTRY=VALUE ...]
 
 The case (prm/benchmarks/two_passes.prm) runs with the methods none, frequent (every so many steps)
 and dynamic; dynamic with each cell weight. Pictures every so many steps tell how many particles each
@@ -65,7 +65,7 @@ def main() -> int:
     parser.add_argument("--program", default=str(ROOT / "build/release/eunoe-particles"))
     parser.add_argument("--ranks", type=int, default=2)
     parser.add_argument("--every", type=int, default=20000)
-    parser.add_argument("--cell-weights", default="1000,100")
+    parser.add_argument("--cell-weights", default="1000,20")
     parser.add_argument("--set", action="append", default=[])
     options = parser.parse_args()
     eunoe = Eunoe(options.program)
