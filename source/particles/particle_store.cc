@@ -19,7 +19,7 @@ namespace {
 /// Places of a particle's data among its properties in the handler.
 namespace property {
 constexpr unsigned int velocity = 0, spin = 3, force = 6, torque = 9, radius = 12, mass = 13,
-                       type = 14, origin = 15, extra = 16;
+                       type = 14, origin = 15, id = 16, extra = 17;
 } // namespace property
 
 void store(const Vec3 &v, double *values)
@@ -156,7 +156,6 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
   MPI_Comm comm = impl.domain.communicator();
   std::vector<dealii::Point<3>> positions;
   std::vector<std::vector<double>> properties;
-  std::vector<dealii::types::particle_index> ids;
   for (std::size_t k = 0; k < particles.size(); ++k) {
     const NewParticle &p = particles[k];
     positions.push_back(to_point(impl.domain.periods().wrap(p.position)));
@@ -167,9 +166,9 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
     values[property::mass] = p.mass;
     values[property::type] = p.type;
     values[property::origin] = encode(origins.empty() ? Origin() : origins[k]);
+    values[property::id] = p.id;
     values.insert(values.end(), extra.begin(), extra.end());
     properties.push_back(values);
-    ids.push_back(p.id);
   }
 
   // Refused here, as the search for the cells of such points does not come back.
@@ -188,8 +187,13 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
           impl.triangulation,
           std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned));
   const std::uint64_t before = n_global();
+  // Ids go with the properties: given apart, they are exchanged only among ranks that have
+  // particles to insert, and these wait for the others forever (deal.II 9.4).
   impl.handler.insert_global_particles(positions, dealii::Utilities::MPI::all_gather(comm, boxes),
-                                       properties, ids);
+                                       properties);
+  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
+    particle->set_id(
+        static_cast<dealii::types::particle_index>(particle->get_properties()[property::id]));
   const std::uint64_t expected =
       before + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
   if (n_global() != expected)

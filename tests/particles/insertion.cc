@@ -69,6 +69,17 @@ void test_list_and_file()
   });
 }
 
+/// Fewer particles than ranks: some ranks have nothing to insert.
+void test_single_particle()
+{
+  Case single(case_with(" set insertion method = list\n set list x = 1e-3\n set list y = 0\n"
+                        " set list z = -2e-3\n set list velocity y = 0.5\n"
+                        " set list diameters = 1e-3"));
+  single.run();
+  const auto all = particle_table(*single);
+  check("a single particle", all.size() == 1 && all[0][c_id] == 1. && all[0][c_z] == -2e-3);
+}
+
 /// A file may hold larger particles than the types' sizes; contacts between them must be found.
 void test_large_particles_of_a_file()
 {
@@ -151,6 +162,7 @@ int main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_volume();
   test_list_and_file();
+  test_single_particle();
   test_large_particles_of_a_file();
   test_types();
   test_errors();

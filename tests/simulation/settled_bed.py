@@ -2,8 +2,7 @@
 less than a particle's size and loses nobody.
 
 Usage: settled_bed.py path/to/eunoe-particles bed.csv.gz folder
-The bed has the columns id, diameter, x, y, z (m). Exit code 77 if it is missing, for a test that is
-skipped.
+The bed has the columns diameter, x, y, z (um).
 """
 
 import csv
@@ -19,11 +18,10 @@ STEPS = 2000
 
 def main() -> int:
     program, bed, folder = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3])
-    if not bed.exists():
-        return 77
     folder.mkdir(parents=True, exist_ok=True)
     with gzip.open(bed, "rt") as file:
-        before = list(csv.DictReader(file))
+        before = [{name: 1e-6 * float(value) for name, value in row.items()}
+                  for row in csv.DictReader(file)]
     with open(folder / "bed.csv", "w", encoding="utf-8") as file:
         file.write("p_x; p_y; p_z; diameters;\n")
         for row in before:

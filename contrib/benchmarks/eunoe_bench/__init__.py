@@ -1,0 +1,1 @@
+"""Benchmarks of Eunoe beside LAMMPS and LIGGGHTS on the same bed of particles."""

@@ -1,0 +1,147 @@
+#!/usr/bin/python3
+"""Predicts how a case would be shared out over many ranks, and what its steps would take.
+
+Usage: contrib/utilities/predict_scaling.py output/my_run/spreading_00042.vtu [--ranks 64,128,...]
+       contrib/utilities/predict_scaling.py --length-factor 0.5714 --depth 2e-3 --layers 20
+           [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
+           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.2] [--search 4] [--interval 60]
+           [--cell-weight 1000] [--particle-weight 2000] [--compare] [--json FILE]
+
+The particles are those of a picture of a run, or of the paper's apparatus with W1 to W4 times the
+length factor. The mesh is cut as the program cuts it. doc/performance.md explains the columns and
+the costs.
+
+--steps    of the whole run: adds core-hours
+--compare  instead shows what each piece (rank) of the picture really holds beside the prediction for
+           that number of ranks
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+try:
+    import numpy as np
+    from scaling import apparatus, snapshot
+    from scaling.cost import Costs, Prediction, predict
+    from scaling.mesh import Failure, Mesh
+    from scaling.partition import Partition, divide
+except ImportError as error:
+    sys.exit(f"{error}. This tool needs Python 3 with numpy.")
+
+
+def arguments() -> argparse.Namespace:
+    costs = Costs()
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("picture", nargs="?", type=Path)
+    parser.add_argument("--length-factor", type=float)
+    parser.add_argument("--depth", type=float, default=2e-3)
+    parser.add_argument("--layers", type=int, default=20)
+    parser.add_argument("--ranks", default="1,2,4,8,16,32,64,128,256,512,1024,2048,4096")
+    parser.add_argument("--steps", type=float)
+    for name in ("latency", "bandwidth", "copy", "ghost", "search", "interval"):
+        parser.add_argument(f"--{name}", type=float, default=getattr(costs, name))
+    parser.add_argument("--ranks-per-node", type=int, default=costs.ranks_per_node)
+    parser.add_argument("--speeds", default=",".join(f"{n:g}:{s:g}" for n, s in costs.speeds))
+    parser.add_argument("--cell-weight", type=int, default=1000)
+    parser.add_argument("--particle-weight", type=int, default=2000)
+    parser.add_argument("--compare", action="store_true")
+    parser.add_argument("--json", type=Path)
+    options = parser.parse_args()
+    if (options.picture is None) == (options.length_factor is None):
+        raise Failure("Name a picture (.vtu) of a run, or give --length-factor.")
+    if options.compare and options.picture is None:
+        raise Failure("--compare needs a picture of a run.")
+    return options
+
+
+def costs_of(options: argparse.Namespace) -> Costs:
+    try:
+        speeds = tuple(sorted(tuple(float(v) for v in pair.split(":"))
+                              for pair in options.speeds.split(",")))
+        if any(len(pair) != 2 or min(pair) <= 0. for pair in speeds):
+            raise ValueError
+    except ValueError:
+        raise Failure(f"--speeds {options.speeds}: give particles:speed pairs, as in "
+                      "2e4:10.5e6,2e5:7.3e6.") from None
+    return replace(Costs(), speeds=speeds, ghost=options.ghost, search=options.search,
+                   interval=options.interval, latency=options.latency,
+                   bandwidth=options.bandwidth, copy=options.copy, ranks_per_node=options.ranks_per_node)
+
+
+def rank_numbers(text: str) -> list[int]:
+    try:
+        ranks = [int(word) for word in text.split(",")]
+    except ValueError:
+        ranks = [0]
+    if min(ranks) < 1:
+        raise Failure(f"--ranks {text}: give whole numbers above 0, as in 64,128.")
+    return ranks
+
+
+def row(p: Prediction, part: Partition, steps: float | None) -> str:
+    slowest = ", ".join(f"{name} {100. * value / p.seconds:.0f} %" for name, value in
+                        p.parts.items() if value > 0.005 * p.seconds)
+    hours = f"{p.n_ranks * p.seconds * steps / 3600.:11.0f}" if steps else ""
+    return (f"{p.n_ranks:6d} {part.owned.mean():11.0f} {100. * part.imbalance:9.1f} % "
+            f"{part.ghost_fraction:7.2f} {part.neighbours.max():6d} {1e-3 * p.mean_bytes:9.1f} "
+            f"{1e-3 * p.largest_bytes:9.1f} {1e6 * p.seconds:11.1f} {100. * p.efficiency:9.0f} % "
+            f"{p.memory / 2**20:8.0f}{hours}  {slowest}")
+
+
+def compare(picture: Path, mesh: Mesh, counts: np.ndarray, options: argparse.Namespace) -> None:
+    real = [int(piece.get("NumberOfPoints", 0)) for piece in
+            ElementTree.parse(picture).getroot().iter("Piece")]
+    part = divide(mesh, counts, mesh.curve(), len(real), options.cell_weight,
+                  options.particle_weight)
+    print("rank  owned  predicted  ghosts predicted")
+    for rank, number in enumerate(real):
+        print(f"{rank:4d} {number:6d} {part.owned[rank]:10d} {part.ghosts[rank]:17d}")
+
+
+def main() -> int:
+    options = arguments()
+    costs, ranks = costs_of(options), rank_numbers(options.ranks)
+    if options.picture is not None:
+        mesh, points = snapshot.read(options.picture)
+    else:
+        place = apparatus.apparatus(options.length_factor, options.depth)
+        mesh, points = apparatus.mesh_of(place), apparatus.powder(place, options.layers)
+    counts = mesh.count(points)
+    occupied = np.count_nonzero(counts)
+    print(f"{len(points)} particles; mesh of {' x '.join(map(str, mesh.cells))} cells, refined "
+          f"{mesh.refinement} times from {int(np.prod(mesh.trees))}; {occupied} cells with particles,"
+          f" {len(points) / occupied:.1f} in each")
+    if options.compare:
+        compare(options.picture, mesh, counts, options)
+        return 0
+    curve = mesh.curve()
+    print(f"{'':6s} {'particles':>11s} {'':>11s} {'ghosts':>7s} {'most':>6s} {'kB a step':>9s} "
+          f"{'':>9s} {'':>11s} {'':>11s} {'MiB of':>8s}" + (f"{'core-':>11s}" if options.steps else ""))
+    print(f"{'ranks':>6s} {'a rank':>11s} {'imbalance':>11s} {'/ own':>7s} {'neigh.':>6s} "
+          f"{'mean':>9s} {'most':>9s} {'us a step':>11s} {'efficiency':>11s} {'a rank':>8s}"
+          + (f"{'hours':>11s}" if options.steps else "") + "  of the slowest rank's time")
+    records = []
+    for n in ranks:
+        part = divide(mesh, counts, curve, n, options.cell_weight, options.particle_weight)
+        prediction = predict(part, int(np.prod(mesh.trees)), costs)
+        print(row(prediction, part, options.steps), flush=True)
+        records.append({**asdict(prediction), "imbalance": part.imbalance,
+                        "ghost_fraction": part.ghost_fraction,
+                        "owned": part.owned.tolist(), "ghosts": part.ghosts.tolist()})
+    if options.json:
+        options.json.write_text(json.dumps({"costs": asdict(costs), "ranks": records}, indent=1)
+                                + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except Failure as failure:
+        sys.exit(str(failure))

@@ -1,0 +1,1 @@
+"""How a case would be shared out over many ranks, and what its steps would take."""

@@ -1,0 +1,104 @@
+"""What a step takes, from costs that were measured on one core and figures of a network."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import ceil, log2
+
+import numpy as np
+
+from .partition import Partition
+
+GHOST_BYTES = 9 * 8  # position, velocity and spin of a ghost at every step
+
+
+@dataclass(frozen=True)
+class Costs:
+    """Seconds and bytes; doc/performance.md says how they were measured.
+
+    `speeds`: particle-steps/s of a core by the particles that it owns, as fewer fit better into its
+    caches. `ghost`: work for a ghost over that for an own particle. `search`: what a search costs
+    in steps of the same particles; `interval`: steps between searches; `collectives`: operations
+    among all ranks in a search. `step_allreduces`: those in every step. `bandwidth` is that of a
+    node to others, in each direction, shared by its ranks; `copy` that of a rank to another one of
+    its node.
+    """
+
+    speeds: tuple[tuple[float, float], ...] = ((2e4, 10.5e6), (2e5, 7.3e6))
+    ghost: float = 0.2
+    search: float = 4.
+    interval: float = 60.
+    collectives: int = 40
+    step_allreduces: int = 1
+    latency: float = 1.5e-6
+    bandwidth: float = 12e9
+    copy: float = 4e9
+    ranks_per_node: int = 64
+    bytes_rank: float = 170e6
+    bytes_cell: float = 2.1e3
+    bytes_particle: float = 1.1e3
+
+    def seconds_per_particle(self, owned: np.ndarray) -> np.ndarray:
+        """Of a step, between the given sizes by their logarithm, beyond them constant."""
+        sizes, speeds = np.array(self.speeds).T
+        return 1. / np.interp(np.log(np.maximum(owned, 1)), np.log(sizes), speeds)
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Of a number of ranks: seconds of a step (in all, and what each part adds on the rank for
+    which the whole is longest), efficiency, bytes that a rank sends in a step (mean, largest),
+    memory of the largest rank (bytes)."""
+
+    n_ranks: int
+    seconds: float
+    parts: dict[str, float] = field(default_factory=dict)
+    efficiency: float = 0.
+    mean_bytes: float = 0.
+    largest_bytes: float = 0.
+    memory: float = 0.
+
+
+def message_seconds(partition: Partition, costs: Costs) -> np.ndarray:
+    """Of the exchange of ghosts in a step, shape (n_ranks): a latency for each neighbour, copies
+    within the node, and the node's traffic with others, for which all its ranks wait."""
+    sender, receiver, number = partition.messages.T
+    n_ranks, per_node = len(partition.owned), costs.ranks_per_node
+    inside = sender // per_node == receiver // per_node
+    seconds = costs.latency * partition.neighbours.astype(float)
+    for end in (sender, receiver):
+        copied = np.bincount(end[inside], number[inside], n_ranks)
+        seconds += 0.5 * GHOST_BYTES * copied / costs.copy
+    n_nodes = -(-n_ranks // per_node)
+    traffic = np.maximum(*(np.bincount(end[~inside] // per_node, number[~inside], n_nodes)
+                           for end in (sender, receiver)))
+    return seconds + GHOST_BYTES * traffic[np.arange(n_ranks) // per_node] / costs.bandwidth
+
+
+def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
+    """The efficiency is against one core that has all particles, as if it had room for them."""
+    owned, n_ranks = partition.owned, len(partition.owned)
+    per_particle = costs.seconds_per_particle(owned)
+    rounds = ceil(log2(n_ranks)) if n_ranks > 1 else 0
+    searches = costs.search / costs.interval
+    # The table of who sends how much to whom is exchanged among all ranks in every search.
+    table = 4. * n_ranks * min(n_ranks, costs.ranks_per_node) / costs.bandwidth * rounds / 2.
+    waiting = costs.latency * rounds * (costs.step_allreduces + costs.collectives / costs.interval)
+    parts = {
+        "particles": owned * per_particle,
+        "ghosts": costs.ghost * partition.ghosts * per_particle,
+        "search": searches * (owned + costs.ghost * partition.ghosts) * per_particle,
+        "messages": message_seconds(partition, costs),
+        "collectives": np.full(n_ranks, waiting + table / costs.interval),
+    }
+    total = sum(parts.values())
+    slowest = int(np.argmax(total))
+    everything = owned.sum()
+    alone = float(everything * costs.seconds_per_particle(np.array([everything]))[0])
+    memory = (costs.bytes_rank + costs.bytes_cell * (n_trees + partition.cells)
+              + costs.bytes_particle * (owned + partition.ghosts))
+    return Prediction(n_ranks, float(total[slowest]),
+                      {name: float(values[slowest]) for name, values in parts.items()},
+                      alone * (1. + searches) / (n_ranks * float(total[slowest])),
+                      GHOST_BYTES * float(partition.sent.mean()),
+                      GHOST_BYTES * float(partition.sent.max()), float(memory.max()))

@@ -1,0 +1,109 @@
+"""Who owns which cells, and which particles each rank needs as ghosts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from .mesh import Mesh
+
+
+def cut(weights: np.ndarray, n_ranks: int, family: int = 1) -> np.ndarray:
+    """Starts of the ranks' parts of a curve of cells, with the end: shape (n_ranks + 1).
+
+    Rank p begins where p/n_ranks of the weight are behind it, at the next cell. Cells of the same
+    parent, `family` of them in a row, stay together, as they could not be united again else.
+    """
+    behind = np.concatenate(([0], np.cumsum(weights, dtype=np.int64)))
+    wanted = (int(behind[-1]) * np.arange(n_ranks + 1)) // n_ranks
+    starts = np.searchsorted(behind, wanted, side="left")
+    starts = family * ((starts + (family - 1) // 2) // family)
+    starts[0], starts[-1] = 0, len(weights)
+    return np.maximum.accumulate(starts)
+
+
+@dataclass(frozen=True)
+class Partition:
+    """What each rank has, shape (n_ranks): own cells, own particles; and what is sent as ghosts,
+    one row (sender, receiver, particles) for each message, shape (n_messages, 3)."""
+
+    cells: np.ndarray
+    owned: np.ndarray
+    messages: np.ndarray
+
+    def _sum(self, column: int) -> np.ndarray:
+        totals = np.bincount(self.messages[:, column], self.messages[:, 2], len(self.owned))
+        return totals.astype(np.int64)
+
+    @property
+    def sent(self) -> np.ndarray:
+        """Particles that each rank sends, counted once for each receiver."""
+        return self._sum(0)
+
+    @property
+    def ghosts(self) -> np.ndarray:
+        return self._sum(1)
+
+    @property
+    def neighbours(self) -> np.ndarray:
+        """Ranks with which each rank exchanges messages, which go both ways."""
+        there = self.messages[:, :2]
+        both = np.unique(np.concatenate((there, there[:, ::-1])), axis=0)
+        return np.bincount(both[:, 0], minlength=len(self.owned))
+
+    @property
+    def imbalance(self) -> float:
+        """Largest number of own particles over the mean, less 1."""
+        return float(self.owned.max() / self.owned.mean() - 1.)
+
+    @property
+    def ghost_fraction(self) -> float:
+        return float(self.ghosts.sum() / self.owned.sum())
+
+
+def shifted(array: np.ndarray, offset: tuple[int, ...], periodic: tuple[bool, ...]) -> np.ndarray:
+    """The value at each cell's neighbour at `offset`; -1 where there is none."""
+    result = array
+    for axis, (step, wraps) in enumerate(zip(offset, periodic)):
+        if step == 0:
+            continue
+        result = np.roll(result, -step, axis)
+        if not wraps:
+            edge = [slice(None)] * 3
+            edge[axis] = slice(-1, None) if step > 0 else slice(0, 1)
+            result[tuple(edge)] = -1
+    return result
+
+
+def divide(mesh: Mesh, counts: np.ndarray, curve: np.ndarray, n_ranks: int,
+           cell_weight: int = 1000, particle_weight: int = 2000) -> Partition:
+    """Shares out the cells with their particles, `counts` of the shape of the mesh.
+
+    A particle is a ghost of every other rank that owns a cell around its own, empty or not: over
+    faces, edges and corners, also across periodic faces.
+    """
+    weights = cell_weight + particle_weight * counts.ravel()[curve].astype(np.int64)
+    starts = cut(weights, n_ranks, 8 if mesh.refinement > 0 else 1)
+    owner = np.empty(counts.size, np.int32)
+    owner[curve] = np.repeat(np.arange(n_ranks, dtype=np.int32), np.diff(starts))
+    owner = owner.reshape(counts.shape)
+
+    # Only cells at a border have receivers: one column for each direction.
+    around = np.stack([shifted(owner, offset, mesh.periodic).ravel()
+                       for offset in product((-1, 0, 1), repeat=3) if offset != (0, 0, 0)])
+    border = np.flatnonzero(((around != owner.ravel()) & (around >= 0)).any(axis=0))
+    near = np.sort(around[:, border], axis=0)
+    own = owner.ravel()[border]
+    is_new = (near >= 0) & (near != own)
+    is_new[1:] &= near[1:] != near[:-1]
+    row, column = np.nonzero(is_new)
+    receiver, sender = near[row, column], own[column]
+    number = counts.ravel()[border][column]
+    pair = sender.astype(np.int64) * n_ranks + receiver
+    links, place = np.unique(pair[number > 0], return_inverse=True)
+    amount = np.bincount(place, number[number > 0], len(links)).astype(np.int64)
+    return Partition(cells=np.diff(starts),
+                     owned=np.bincount(owner.ravel(), counts.ravel(), n_ranks).astype(np.int64),
+                     messages=np.column_stack((links // n_ranks, links % n_ranks, amount)))

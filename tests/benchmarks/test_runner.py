@@ -1,0 +1,163 @@
+"""The runner of the benchmarks: medians, ratios and tables from known numbers, the decks' input, and,
+with the path of the program, runs of a few steps with the programs that are installed.
+
+Usage: test_runner.py [path/to/eunoe-particles]
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is missing")
+    sys.exit(77)
+
+FOLDER = Path(__file__).resolve().parents[2] / "contrib" / "benchmarks"
+sys.path.insert(0, str(FOLDER))
+from eunoe_bench import bed, blade, table  # noqa: E402
+from eunoe_bench.cases import CASES  # noqa: E402
+from eunoe_bench.programs import Failure, Lammps, Liggghts, Peer, loop_seconds  # noqa: E402
+
+PROGRAM = sys.argv.pop() if len(sys.argv) > 1 else None
+LOG = """Step Atoms KinEng
+       0    20000            0
+Loop time of 9.5 on 1 procs for 10 steps with 20000 atoms
+Loop time of 2.5 on 2 procs for 100 steps with 20000 atoms
+Pair    | 1.2
+"""
+SUMMARY = {"loop_seconds": 10., "seconds_integration": 1., "seconds_contact_search": 0.5,
+           "seconds_ghosts": 0.25, "seconds_particle_contacts": 7., "seconds_solid_contacts": 0.75,
+           "seconds_loads": 0.1, "seconds_output": 0., "seconds_process": 0.2,
+           "seconds_particle_contacts_slowest_rank": 8.4}
+
+
+class Tables(unittest.TestCase):
+    row = table.Row("bed", 2, {"Eunoe": [9e6, 12e6, 10e6], "LAMMPS": [3e6, 2e6, 2.5e6],
+                               "LIGGGHTS": [4e6, 3.5e6, 9e6]})
+
+    def test_the_ratio_is_of_medians_to_the_faster_peer(self):
+        self.assertAlmostEqual(self.row.ratio(), 10. / 4.)
+
+    def test_no_ratio_without_a_peer(self):
+        self.assertIsNone(table.Row("bed", 1, {"Eunoe": [1e6]}).ratio())
+
+    def test_cells(self):
+        cells = table.cells([self.row], ["Eunoe", "LAMMPS", "LIGGGHTS"])
+        self.assertEqual(cells[1], ["bed", "2", "10.00 (9.00 to 12.00)", "2.50 (2.00 to 3.00)",
+                                    "4.00 (3.50 to 9.00)", "2.50"])
+        self.assertEqual(table.as_markdown(cells[:1]).splitlines()[1], "|---|---|---|---|---|---|")
+        self.assertEqual(len(table.as_text(cells).splitlines()), 2)
+
+    def test_shares_add_up(self):
+        shares = table.shares(SUMMARY)
+        self.assertAlmostEqual(sum(shares.values()), 1.)
+        self.assertAlmostEqual(shares["contact_search"], 0.05)
+        self.assertAlmostEqual(shares["other"], 0.02)
+        cells = table.share_cells([("bed", 2, [SUMMARY])])
+        self.assertEqual(cells[1][-2:], ["2.0 %", "1.20"])
+
+
+class Logs(unittest.TestCase):
+    def test_the_last_loop_counts(self):
+        self.assertEqual(loop_seconds(LOG, "LAMMPS"), 2.5)
+
+    def test_speed_from_a_log(self):
+        class Canned(Peer):
+            name = "Canned"
+
+            def start(self, case, particles, ranks, variables, folder):
+                return LOG
+
+        run = Canned().run(CASES["bed_20k"], 1, 100, Path("."))
+        self.assertAlmostEqual(run.speed, 20000 * 100 / 2.5)
+
+    def test_a_log_without_a_loop_is_refused(self):
+        with self.assertRaises(Failure):
+            loop_seconds("ERROR: Lost atoms", "LAMMPS")
+
+
+class Bed(unittest.TestCase):
+    def test_copies_lie_behind_each_other_and_do_not_overlap(self):
+        two = bed.read(2)
+        self.assertEqual(two.shape, (40000, 4))
+        np.testing.assert_allclose(two[20000:, 3] - two[:20000, 3], bed.PERIOD)
+        # Gently pressed together at most: the seam is that of the period.
+        near = two[(two[:, 3] > 0.9e-3) & (two[:, 3] < 1.1e-3) & (two[:, 1] < 0.5e-3)]
+        distance = np.linalg.norm(near[:, None, 1:] - near[None, :, 1:], axis=2)
+        overlap = 0.5 * (near[:, None, 0] + near[None, :, 0]) - distance
+        np.fill_diagonal(overlap, 0.)
+        self.assertLess(overlap.max(), 0.5e-6)
+
+    def test_seeds_differ_by_little(self):
+        column = bed.narrow(bed.read(), 1e-3)
+        self.assertLess((column[:, 1] + 0.5 * column[:, 0]).max(), 1e-3)
+        self.assertIs(bed.jittered(column, 0), column)
+        moved = bed.jittered(column, 1) - column
+        self.assertTrue(0. < np.abs(moved).max() <= 1e-8 and not moved[:, 0].any())
+
+    def test_data_files(self):
+        particles = bed.read()[:2]
+        with tempfile.TemporaryDirectory() as folder:
+            bed.write_for_peer(Path(folder) / "data", particles, (4e-3, 6e-3, 1e-3), "Atoms")
+            lines = (Path(folder) / "data").read_text().splitlines()
+            bed.write_for_eunoe(Path(folder) / "csv", particles)
+            table_lines = (Path(folder) / "csv").read_text().splitlines()
+        self.assertIn("2 atoms", lines)
+        last = [float(word) for word in lines[-1].split()]
+        np.testing.assert_allclose(last, [2, 1, particles[1, 0], 4386., *particles[1, 1:]])
+        self.assertEqual(table_lines[0], "p_x; p_y; p_z; diameters")
+        self.assertEqual(len(table_lines), 3)
+
+    def test_the_blade_is_a_half_round(self):
+        corners = blade.triangles(1e-3).reshape(-1, 3)
+        distance = np.hypot(corners[:, 0] - blade.TIP_X, corners[:, 1] - blade.TIP_Y - blade.RADIUS)
+        np.testing.assert_allclose(distance, blade.RADIUS)
+        self.assertAlmostEqual(corners[:, 1].min(), blade.TIP_Y)
+        self.assertEqual(len(corners), 3 * 2 * blade.FACETS)
+
+
+@unittest.skipIf(PROGRAM is None, "no program is given")
+class Runs(unittest.TestCase):
+    def run_it(self, *arguments):
+        environment = dict(os.environ)
+        return subprocess.run([sys.executable, "-B", str(FOLDER / "run.py"), "--program", PROGRAM,
+                               *arguments], capture_output=True, text=True, check=False,
+                              env=environment)
+
+    def test_a_few_steps_of_all_that_are_installed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results = Path(folder) / "results.json"
+            page = Path(folder) / "results.md"
+            done = self.run_it("--cases", "bed_20k,collapse,plough", "--ranks", "1", "--repeats",
+                               "1", "--steps", "3", "--shares", "--json", str(results),
+                               "--markdown", str(page))
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            data = json.loads(results.read_text())
+            self.assertIn("| case | ranks | Eunoe |", page.read_text())
+        installed = {peer.name for peer in (Lammps(), Liggghts()) if peer.path}
+        self.assertEqual(len(data["speeds"]), 3)
+        for row in data["speeds"]:
+            self.assertEqual(set(row["speeds"]), installed | {"Eunoe"})
+            self.assertEqual(row["ratio"] is None, not installed)
+            self.assertTrue(all(speed > 0. for values in row["speeds"].values() for speed in values))
+        self.assertEqual(data["summaries"][0]["runs"][0]["particles"], 20000)
+        self.assertEqual(data["summaries"][0]["runs"][0]["steps"], 3)
+
+    def test_bad_arguments_are_answered_with_a_sentence(self):
+        for arguments, what in ((["--cases", "bedd"], "There is no case 'bedd'."),
+                                (["--ranks", "0"], "give whole numbers above 0"),
+                                (["--program", "nowhere"], "is not a program")):
+            done = self.run_it(*arguments)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn(what, done.stderr)
+            self.assertNotIn("Traceback", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,173 @@
+"""The prediction of scaling: order of the cells, cuts, ghosts and costs, against answers by hand.
+
+Usage: test_scaling.py
+"""
+
+import sys
+import unittest
+from itertools import product
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    print("skipped: numpy is missing")
+    sys.exit(77)
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib" / "utilities"))
+from scaling.apparatus import apparatus, mesh_of, powder  # noqa: E402
+from scaling.cost import GHOST_BYTES, Costs, message_seconds, predict  # noqa: E402
+from scaling.mesh import Failure, Mesh  # noqa: E402
+from scaling.partition import cut, divide  # noqa: E402
+
+
+def box(trees, refinement=0, periodic=(False, False, False)):
+    cells = [n << refinement for n in trees]
+    return Mesh(tuple(trees), (0., 0., 0.), tuple(float(n) for n in cells), refinement, periodic)
+
+
+class Order(unittest.TestCase):
+    def test_z_order_within_a_tree(self):
+        curve = box((1, 1, 1), 1).curve()
+        cells = [tuple(int(v) for v in np.unravel_index(c, (2, 2, 2))) for c in curve]
+        self.assertEqual(cells, [(x, y, z) for z, y, x in product((0, 1), repeat=3)])
+
+    def test_the_curve_visits_every_cell_once_and_trees_as_wholes(self):
+        mesh = box((5, 3, 2), 2)
+        curve = mesh.curve()
+        self.assertEqual(sorted(curve), list(range(30 * 64)))
+        trees = np.array(np.unravel_index(curve, mesh.cells)).T >> 2
+        for k in range(30):
+            self.assertEqual(len(np.unique(trees[64 * k:64 * (k + 1)], axis=0)), 1)
+
+    def test_a_row_of_trees_is_followed_from_its_end(self):
+        place = box((9, 1, 1)).tree_order()[:, 0, 0]
+        np.testing.assert_array_equal(place, np.arange(9))
+
+    def test_too_many_trees_are_refused(self):
+        with self.assertRaises(Failure):
+            box((1000, 100, 1)).tree_order()
+
+
+class Cuts(unittest.TestCase):
+    def test_even_weights(self):
+        self.assertEqual(cut(np.ones(12, int), 4).tolist(), [0, 3, 6, 9, 12])
+
+    def test_a_cut_within_a_cell_moves_to_its_end(self):
+        # Half of 14 is reached within the third cell.
+        self.assertEqual(cut(np.array([3, 3, 5, 3]), 2).tolist(), [0, 3, 4])
+
+    def test_families_stay_together(self):
+        starts = cut(np.ones(32, int), 3, 8)
+        self.assertEqual(starts.tolist(), [0, 8, 24, 32])
+
+    def test_more_ranks_than_cells(self):
+        starts = cut(np.ones(3, int), 5)
+        self.assertEqual((starts[0], starts[-1]), (0, 3))
+        self.assertTrue((np.diff(starts) >= 0).all())
+
+
+class Ghosts(unittest.TestCase):
+    def test_a_row_of_cells(self):
+        # 6 cells with 1 ... 6 particles; without a weight of cells 21 particles: 2 x 7 and the rest.
+        mesh, counts = box((6, 1, 1)), np.arange(1, 7).reshape(6, 1, 1)
+        part = divide(mesh, counts, mesh.curve(), 3, cell_weight=0, particle_weight=1)
+        self.assertEqual(part.owned.tolist(), [10, 5, 6])
+        self.assertEqual(part.ghosts.tolist(), [5, 4 + 6, 5])
+        self.assertEqual(part.sent.tolist(), [4, 5 + 5, 6])
+        self.assertEqual(part.neighbours.tolist(), [1, 2, 1])
+        self.assertAlmostEqual(part.imbalance, 10. / 7. - 1.)
+        self.assertAlmostEqual(part.ghost_fraction, 20. / 21.)
+
+    def test_a_period_makes_the_ends_neighbours(self):
+        mesh = box((6, 1, 1), periodic=(True, False, False))
+        part = divide(mesh, np.ones((6, 1, 1), int), mesh.curve(), 3)
+        self.assertEqual(part.ghosts.tolist(), [2, 2, 2])
+        self.assertEqual(part.neighbours.tolist(), [2, 2, 2])
+
+    def test_against_the_definition(self):
+        mesh = box((3, 2, 1), 2, (False, False, True))
+        counts = np.random.default_rng(3).integers(0, 5, mesh.cells)
+        curve, n_ranks = mesh.curve(), 7
+        part = divide(mesh, counts, curve, n_ranks)
+        starts = cut(1000 + 2000 * counts.ravel()[curve], n_ranks, 8)
+        owner = np.empty(counts.size, int)
+        for rank in range(n_ranks):
+            owner[curve[starts[rank]:starts[rank + 1]]] = rank
+        owner = owner.reshape(mesh.cells)
+        ghosts = np.zeros(n_ranks, int)
+        for cell in product(*(range(n) for n in mesh.cells)):
+            receivers = set()
+            for step in product((-1, 0, 1), repeat=3):
+                x, y, z = (c + s for c, s in zip(cell, step))
+                z %= mesh.cells[2]
+                if 0 <= x < mesh.cells[0] and 0 <= y < mesh.cells[1]:
+                    receivers.add(owner[x, y, z])
+            for rank in receivers - {owner[cell]}:
+                ghosts[rank] += counts[cell]
+        np.testing.assert_array_equal(part.ghosts, ghosts)
+        self.assertEqual(int(part.owned.sum()), int(counts.sum()))
+
+    def test_count_puts_points_into_their_cells(self):
+        counts = box((2, 2, 2)).count(np.array([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [1.9, 0.1, 0.1]]))
+        self.assertEqual((counts[0, 0, 0], counts[1, 0, 0], counts.sum()), (1, 2, 3))
+
+
+class Cost(unittest.TestCase):
+    def setUp(self):
+        self.mesh = box((6, 1, 1))
+        self.counts = np.full((6, 1, 1), 100)
+
+    def part(self, n_ranks):
+        return divide(self.mesh, self.counts, self.mesh.curve(), n_ranks)
+
+    def test_one_rank_is_the_measure(self):
+        costs = Costs(speeds=((1., 1e6),))
+        one = predict(self.part(1), 6, costs)
+        self.assertAlmostEqual(one.efficiency, 1.)
+        self.assertAlmostEqual(one.seconds, 600e-6 * (1. + costs.search / costs.interval))
+
+    def test_two_ranks_without_a_network_pay_for_ghosts_alone(self):
+        costs = Costs(speeds=((1., 1e6),), ghost=0.3, search=0., latency=0., bandwidth=1e30,
+                      copy=1e30)
+        two = predict(self.part(2), 6, costs)
+        self.assertAlmostEqual(two.seconds, (300. + 0.3 * 100.) * 1e-6)
+        self.assertAlmostEqual(two.efficiency, 600. / 660.)
+
+    def test_messages_on_a_node_and_between_nodes(self):
+        part = self.part(2)
+        inside = message_seconds(part, Costs(ranks_per_node=2, latency=1., copy=1., bandwidth=1e30))
+        between = message_seconds(part, Costs(ranks_per_node=1, latency=1., copy=1e30,
+                                              bandwidth=2.))
+        np.testing.assert_allclose(inside, 1. + 100. * GHOST_BYTES)
+        np.testing.assert_allclose(between, 1. + 100. * GHOST_BYTES / 2.)
+
+    def test_speed_between_the_measured_sizes(self):
+        costs = Costs(speeds=((1e4, 10e6), (1e6, 6e6)))
+        speeds = 1. / costs.seconds_per_particle(np.array([1e3, 1e4, 1e5, 1e6, 1e7]))
+        np.testing.assert_allclose(speeds, [10e6, 10e6, 8e6, 6e6, 6e6])
+
+
+class Plate(unittest.TestCase):
+    def test_the_powder_lies_in_the_mesh_and_grows_with_the_layers(self):
+        place = apparatus(1. / 7., 2e-3)
+        mesh = mesh_of(place)
+        few, many = powder(place, 1), powder(place, 20)
+        for points in (few, many):
+            self.assertTrue((points >= np.array(mesh.lower)).all())
+            self.assertTrue((points <= np.array(mesh.upper)).all())
+        # 19 layers of 73/7 mm x 2 mm x 0.1 mm, 55 % full, of grains of 1.71e-13 m3 in the mean.
+        self.assertAlmostEqual((len(many) - len(few)) / (19 * 73e-3 / 7. * 2e-3 * 1e-4 * 0.55
+                                                         / self.mean_volume()), 1., delta=0.01)
+
+    @staticmethod
+    def mean_volume():
+        diameters = np.array([52.622, 57.7666, 63.4141, 69.6138, 76.4196, 83.8907, 92.0923,
+                              101.096]) * 1e-6
+        shares = np.array([0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927,
+                           0.050544])
+        return shares.sum() / (shares / (np.pi / 6. * diameters**3)).sum()
+
+
+if __name__ == "__main__":
+    unittest.main()
