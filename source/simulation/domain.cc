@@ -52,7 +52,7 @@ double count_coarse_cells(const MeshParameters &mesh)
 void check_size(const MeshParameters &mesh)
 {
   // Every rank holds the coarse cells, about a kilobyte each.
-  constexpr double most_coarse = 1e7, most = 1e10;
+  constexpr double most_coarse = 1e7, most = 1e9;
   const double coarse = count_coarse_cells(mesh);
   const double cells = coarse * std::pow(8., mesh.refinement);
   if (coarse > most_coarse || cells > most)

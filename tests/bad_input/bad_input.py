@@ -23,7 +23,7 @@ if os.geteuid() == 0:
     TWO_RANKS.append("--allow-run-as-root")
 # Texts on which a reader may choke by their length alone, and their sentences.
 LONG = {
-    "many_blanks": ("subsection simulation control\nset time step = 1" + 400000 * " " + "2\nend\n",
+    "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
                     "which does not fit. Give a number of at least 0."),
     "long_name": ("set " + 2000000 * "a" + " = 1\n", "' is unknown."),
     "deeply_nested": (40000 * "subsection a\n", "more than 20 subsections are open."),
