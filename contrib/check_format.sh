@@ -7,5 +7,5 @@ mode=(--dry-run --Werror)
 if [ "${1:-}" = --fix ]; then
   mode=(-i)
 fi
-find include source applications tests -name '*.h' -o -name '*.cc' | sort |
+find include source applications tests contrib -name '*.h' -o -name '*.cc' | sort |
   xargs clang-format --style=file "${mode[@]}"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what Eunoe needs and this machine lacks, from Debian's packages. Every dependency is
 # named here, once.
+# Usage: contrib/install_dependencies.sh [fuzzing]    with what contrib/fuzzing/run.sh needs, too
 set -euo pipefail
 
 build=(
@@ -21,9 +22,17 @@ checks=(
   perl         # deal.II's test driver
   clang-format # layout of the code
 )
+fuzzing=(
+  clang              # compiler with libFuzzer
+  libclang-rt-14-dev # run-time libraries of the sanitizers and of libFuzzer
+)
 
+wanted=("${build[@]}" "${report[@]}" "${checks[@]}")
+if [ "${1:-}" = fuzzing ]; then
+  wanted+=("${fuzzing[@]}")
+fi
 missing=()
-for package in "${build[@]}" "${report[@]}" "${checks[@]}"; do
+for package in "${wanted[@]}"; do
   if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
     missing+=("$package")
   fi

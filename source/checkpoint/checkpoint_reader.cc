@@ -1,4 +1,5 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/checkpoint/head_values.h>
 
 #include "format.h"
 
@@ -64,13 +65,30 @@ struct Checkpoint::File
     std::uint64_t length;
     read(&length, sizeof length);
     verify(mend);
-    if (length > size)
+    if (length > size - title.size() - version.size() - 1 - 2 * sizeof(std::uint64_t))
       refuse("is damaged: its head does not fit into it." + mend);
     std::string text(length, ' ');
     std::fseek(stream, static_cast<long>(title.size() + version.size() + 1 + sizeof length),
                SEEK_SET);
     read(text.data(), length);
     return text;
+  }
+
+  /// Notes the places of the sections, which begin at @p begin and must fill the file.
+  void find_sections(const nlohmann::ordered_json &list, std::uint64_t begin)
+  {
+    for (const auto &section : list) {
+      const std::uint64_t n_rows = count_in(section.at("rows"));
+      const std::uint64_t n_values = count_in(section.at("values"));
+      const std::uint64_t left = size - sizeof(std::uint64_t) - begin;
+      if (n_rows > left / sizeof(std::uint32_t) ||
+          n_values > (left - n_rows * sizeof(std::uint32_t)) / sizeof(double))
+        refuse("is damaged: its sections do not fit into it.");
+      sections[section.at("name")] = {begin, n_rows, n_values};
+      begin += n_rows * sizeof(std::uint32_t) + n_values * sizeof(double);
+    }
+    if (begin + sizeof(std::uint64_t) != size)
+      refuse("is damaged: its sections do not fill it.");
   }
 
   /// Reads everything once for the checksum.
@@ -105,19 +123,13 @@ Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm) : path(path), com
     try {
       file = std::make_unique<File>(path);
       text = file->open();
-      auto begin = static_cast<std::uint64_t>(std::ftell(file->stream));
-      head = nlohmann::ordered_json::parse(text);
-      for (const auto &section : head["sections"]) {
-        const std::uint64_t n_rows = section["rows"], n_values = section["values"];
-        file->sections[section["name"]] = {begin, n_rows, n_values};
-        begin += n_rows * sizeof(std::uint32_t) + n_values * sizeof(double);
-      }
-      if (begin + sizeof(std::uint64_t) != file->size)
-        file->refuse("is damaged: its sections do not fill it.");
-    } catch (const nlohmann::json::exception &) {
-      error = "The checkpoint " + path + " is damaged: its head is not understood.";
+      const auto begin = static_cast<std::uint64_t>(std::ftell(file->stream));
+      file->find_sections(nlohmann::ordered_json::parse(text).at("sections"), begin);
     } catch (const UserError &problem) {
       error = problem.what();
+    } catch (const std::exception &) {
+      // Of JSON, or of a value in it.
+      error = damaged("its head is not understood.").what();
     }
   agree(error, comm);
   std::uint64_t length = text.size();
@@ -129,13 +141,27 @@ Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm) : path(path), com
 
 Checkpoint::~Checkpoint() = default;
 
+UserError Checkpoint::damaged(const std::string &what) const
+{
+  return UserError("The checkpoint " + path + " is damaged: " + what +
+                   " Take an older checkpoint, or start anew with 'restart = false'.");
+}
+
+void Checkpoint::require(const bool ok, const std::string &what) const
+{
+  int all = ok ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_INT, MPI_MIN, comm);
+  if (all == 0)
+    throw damaged(what);
+}
+
 Rows Checkpoint::rows(const std::string &name) const
 {
   const int n_ranks = size_of(comm), rank = rank_in(comm);
   std::uint64_t n_rows = 0;
-  for (const auto &section : head["sections"])
-    if (section["name"] == name)
-      n_rows = section["rows"];
+  for (const auto &section : head.at("sections"))
+    if (section.at("name") == name)
+      n_rows = section.at("rows");
   const auto share = [&](int r) {
     return first_of(n_rows, r + 1, n_ranks) - first_of(n_rows, r, n_ranks);
   };

@@ -121,8 +121,17 @@ ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox
 {
   const Vec3 extent = upper - lower;
   std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
+  // Wider cells find the same pairs; so many that they fill the memory are no use.
+  constexpr double most = 1 << 27;
+  std::array<double, 3> number;
+  for (unsigned int d = 0; d < 3; ++d)
+    number[d] = std::min(std::max(1., std::floor(extent[axis[d]] / cell_size)), most);
+  while (number[0] * number[1] * number[2] > most) {
+    double &largest = *std::max_element(number.begin(), number.end());
+    largest = std::ceil(0.5 * largest);
+  }
   for (unsigned int d = 0; d < 3; ++d) {
-    n[d] = std::max(1, static_cast<int>(std::floor(extent[axis[d]] / cell_size)));
+    n[d] = static_cast<int>(number[d]);
     inverse_width[d] = n[d] / extent[axis[d]];
   }
 }

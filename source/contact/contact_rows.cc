@@ -1,4 +1,5 @@
 #include <eunoe/contact/contact_rows.h>
+#include <eunoe/particles/new_particle.h>
 
 #include <algorithm>
 #include <numeric>
@@ -30,6 +31,19 @@ std::vector<ContactRows::Record> ContactRows::records(const std::size_t row) con
     at += length(r);
   }
   return list;
+}
+
+bool ContactRows::are_records(const double *begin, const double *const end,
+                              const unsigned int n_history)
+{
+  while (begin != end) {
+    const bool with_solid = begin[0] != 0.;
+    const std::ptrdiff_t length = (with_solid ? 5 : 2) + static_cast<std::ptrdiff_t>(n_history);
+    if (end - begin < length || !is_number_below(begin[1], with_solid ? 0x1p31 : 0x1p32))
+      return false;
+    begin += length;
+  }
+  return true;
 }
 
 void ContactRows::collect(const ParticleArrays &particles, const PairList &pairs,

@@ -79,6 +79,12 @@ ExactSum ExactSum::from_words(const std::vector<std::int64_t> &words)
   ExactSum sum;
   if (words.size() < 2 || words[1] < 0 || words[1] + words.size() - 2 > n_digits)
     throw std::invalid_argument("these are no words of an exact sum");
+  const auto is_digit = [](std::int64_t word) { return word >= 0 && word < base; };
+  // Only the highest digit has a sign, and it stays far from its limits.
+  const bool has_top = words[1] + words.size() - 2 == n_digits && words.size() > 2;
+  if (!std::all_of(words.begin() + 2, words.end() - (has_top ? 1 : 0), is_digit) ||
+      (has_top && !is_digit(words.back()) && !is_digit(-(words.back() + 1))))
+    throw std::invalid_argument("these are no words of an exact sum");
   sum.finite = words[0] != 0;
   std::copy(words.begin() + 2, words.end(), sum.digits.begin() + words[1]);
   return sum;

@@ -62,6 +62,9 @@ std::string nearest_name(const std::string &word, const std::vector<std::string>
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
   for (const std::string &candidate : candidates) {
+    // Of long words, the lengths alone tell.
+    if (word.size() > candidate.size() + best_distance)
+      continue;
     const std::size_t d = distance(word, candidate);
     if (d < best_distance) {
       best = candidate;
@@ -124,7 +127,13 @@ private:
   {
     const std::string word = statement.substr(0, statement.find_first_of(" \t"));
     const std::string rest = trimmed_words(statement.substr(word.size()));
+    constexpr std::size_t deepest = 20;
+    if (path.size() > deepest && word != "end")
+      return;
     if (word == "subsection" && !rest.empty()) {
+      if (path.size() == deepest)
+        problems.add(where + ":", "more than " + std::to_string(deepest) + " subsections are open.",
+                     "Add the missing 'end's.");
       path.push_back(rest);
       InputEntry opening;
       opening.path = path;
@@ -155,12 +164,16 @@ private:
 
   void include(const std::string &name, const std::string &file, const std::string &where)
   {
-    constexpr unsigned int deepest = 10;
-    if (depth == deepest) {
-      problems.add(where + ":", "files include each other without end.",
-                   "Remove one of the includes.");
+    constexpr unsigned int deepest = 10, most = 1000;
+    if (depth == deepest || n_included == most) {
+      // Said once: files that include each other twice would do so a million times.
+      if (n_included < most)
+        problems.add(where + ":", "files include each other without end.",
+                     "Remove one of the includes.");
+      n_included = most;
       return;
     }
+    ++n_included;
     const auto folder = std::filesystem::path(file).parent_path();
     const std::string included = (folder / name).lexically_normal().string();
     ++depth;
@@ -176,7 +189,7 @@ private:
   const FileLoader &load;
   std::vector<std::string> path;
   std::size_t open_at_start = 0; ///< number of open subsections at the start of this file
-  unsigned int depth = 0;
+  unsigned int depth = 0, n_included = 0;
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/simulation/control_parameters.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace eunoe {
@@ -47,9 +48,11 @@ void ControlParameters::check(const ParameterCheck &check) const
 
 unsigned long long ControlParameters::n_steps() const
 {
-  return end_control == "iteration"
-             ? iteration_end
-             : static_cast<unsigned long long>(std::ceil(time_end / time_step - 1e-9));
+  // No run does more steps than this, and it is the same number as a double.
+  constexpr double most = 0x1p63;
+  return end_control == "iteration" ? iteration_end
+                                    : static_cast<unsigned long long>(
+                                          std::min(std::ceil(time_end / time_step - 1e-9), most));
 }
 
 } // namespace eunoe

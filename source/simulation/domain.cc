@@ -9,8 +9,11 @@
 #include "mesh.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 namespace eunoe {
 
@@ -32,8 +35,36 @@ std::string first_line_of_message(const std::exception &error)
   return begin == std::string::npos ? "unknown reason" : line.substr(begin);
 }
 
+/// Number of cells of a mesh before its refinement as far as it can be known beforehand, else 1.
+double count_coarse_cells(const MeshParameters &mesh)
+{
+  if (mesh.type == "gmsh" || mesh.grid_type.compare(0, 11, "subdivided_") != 0)
+    return 1.;
+  std::istringstream stream(mesh.grid_arguments.substr(0, mesh.grid_arguments.find(':')));
+  double product = 1.;
+  unsigned int n_numbers = 0;
+  for (std::string word; std::getline(stream, word, ','); ++n_numbers)
+    product *= std::strtod(word.c_str(), nullptr);
+  return n_numbers == 1 ? std::pow(product, 3) : product;
+}
+
+/// Refuses what would fill the memory before anything else could be said of it.
+void check_size(const MeshParameters &mesh)
+{
+  // Every rank holds the coarse cells, about a kilobyte each.
+  constexpr double most_coarse = 1e7, most = 1e9;
+  const double coarse = count_coarse_cells(mesh);
+  const double cells = coarse * std::pow(8., mesh.refinement);
+  if (coarse > most_coarse || cells > most)
+    throw UserError("subsection 'mesh': the mesh would have " + format(cells) + " cells, " +
+                    format(coarse) + " of them before the refinement. Give at most " +
+                    format(most) + " and " + format(most_coarse) +
+                    "; 8 to 10 particles a cell are best.");
+}
+
 void create(Triangulation &triangulation, const MeshParameters &mesh)
 {
+  check_size(mesh);
   try {
     if (mesh.type == "gmsh") {
       std::ifstream stream(mesh.file);

@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/simulation/output_folder.h>
 
 #include <nlohmann/json.hpp>
@@ -37,7 +38,8 @@ nlohmann::ordered_json OutputFolder::save() const
 
 void OutputFolder::resume(const nlohmann::ordered_json &saved)
 {
-  sizes_before = saved.at("tables").get<std::map<std::string, std::uint64_t>>();
+  for (const auto &[name, size] : saved.at("tables").items())
+    sizes_before[name] = count_in(size);
   files_before = saved.at("pictures").get<std::map<std::string, PictureSeries::Files>>();
 }
 

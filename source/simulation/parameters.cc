@@ -3,6 +3,8 @@
 
 #include <boost/property_tree/json_parser.hpp>
 
+#include <algorithm>
+#include <cctype>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -72,13 +74,19 @@ struct Level
   std::vector<std::string> entries, subsections;
 };
 
-Level look_at(dealii::ParameterHandler &prm, const Path &path)
+/// What is declared, by subsections.
+boost::property_tree::ptree tree_of(const dealii::ParameterHandler &prm)
 {
   std::ostringstream json;
   prm.print_parameters(json, dealii::ParameterHandler::JSON);
   std::istringstream stream(json.str());
   boost::property_tree::ptree tree;
   boost::property_tree::read_json(stream, tree);
+  return tree;
+}
+
+Level look_at(const boost::property_tree::ptree &tree, const Path &path)
+{
   const boost::property_tree::ptree *node = &tree;
   for (const std::string &name : path)
     for (const auto &child : *node)
@@ -139,7 +147,12 @@ std::string in_words(const std::string &pattern)
 /// In words, what an entry wants whose value deal.II refused with @p message.
 std::string wanted_by(std::string message)
 {
-  message = std::regex_replace(message, std::regex(R"(\s+)"), " ");
+  // By hand: a regular expression recurses once for each blank, and the value may have many.
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return std::isspace(c) != 0; }, ' ');
+  message.erase(std::unique(message.begin(), message.end(),
+                            [](char a, char b) { return a == ' ' && b == ' '; }),
+                message.end());
   const std::size_t begin = message.find('<', message.rfind("given pattern"));
   const std::size_t end = message.find("]>.", begin);
   if (begin == std::string::npos || end == std::string::npos)
@@ -188,6 +201,12 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   dealii::ParameterHandler prm;
   declare(prm);
   std::set<Path> reported;
+  boost::property_tree::ptree tree; // made when the first name is unknown
+  const auto known_at = [&](const Path &path) {
+    if (tree.empty())
+      tree = tree_of(prm);
+    return look_at(tree, path);
+  };
   const std::string default_input = complete_text(prm);
   for (InputEntry &entry : entries) {
     Path known;
@@ -199,7 +218,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
         exists = false;
         if (!reported.insert(next).second)
           break;
-        std::string mend = suggestion(name, look_at(prm, known).subsections);
+        std::string mend = suggestion(name, known_at(known).subsections);
         for (const Repeated &r : repeated_sections())
           if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
             mend = "Raise '" + r.entry + "', or remove the subsection.";
@@ -226,7 +245,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
     for (std::size_t k = 0; k < entry.path.size(); ++k)
       prm.leave_subsection();
     if (!declared)
-      problems.add(place, "is unknown.", suggestion(entry.name, look_at(prm, entry.path).entries));
+      problems.add(place, "is unknown.", suggestion(entry.name, known_at(entry.path).entries));
   }
   complete_input = complete_text(prm);
   const EntryValues before = values_in(default_input), after = values_in(complete_input);

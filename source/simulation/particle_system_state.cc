@@ -82,6 +82,13 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   MPI_Comm_rank(comm, &rank);
   const Rows share = checkpoint.rows("particles");
   const std::size_t n_fixed = n_places + extra_defaults.size();
+  bool ok = true;
+  for (std::size_t k = 0; k < share.size(); ++k)
+    ok = ok && share.length(k) >= n_fixed &&
+         are_of_particle(share[k] + id, model.get_materials().size() - 1) &&
+         ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
+                                  model.history_size());
+  checkpoint.require(ok, "its particles are not those of the case.");
   std::vector<NewParticle> list;
   std::vector<Origin> kept;
   for (std::size_t k = 0; k < share.size(); ++k) {

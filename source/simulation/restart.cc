@@ -4,6 +4,7 @@
 // where they were at the last search, on which the order of all lists depends. So writing one
 // changes nothing, and a run that continues goes on with the same bits.
 
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/checkpoint/input_differences.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/simulation.h>
@@ -24,12 +25,11 @@ Tally to_tally(const Json &json, MPI_Comm comm)
 {
   int rank;
   MPI_Comm_rank(comm, &rank);
+  // All ranks read it, so that all find what is wrong with it.
   Tally tally;
-  if (rank == 0) {
-    tally.number = json.at("number");
-    tally.mass = ExactSum::from_words(json.at("mass"));
-  }
-  return tally;
+  tally.number = count_in(json.at("number"));
+  tally.mass = exact_sum_in(json.at("mass"));
+  return rank == 0 ? tally : Tally();
 }
 
 Json to_json(const RigidState &s)
@@ -49,8 +49,22 @@ RigidState to_state(const Json &json)
   for (Vec3 *const v :
        {&s.centre, &s.rotation.x, &s.rotation.y, &s.rotation.z, &s.velocity, &s.angular_velocity})
     for (unsigned int d = 0; d < 3; ++d)
-      (*v)[d] = json.at(k++);
+      (*v)[d] = number_in(json.at(k++));
   return s;
+}
+
+/// Lets @p action read the head, which is the same on every rank, and refuses the checkpoint if it
+/// is not what it should be.
+template <typename Action>
+void understand(const Checkpoint &checkpoint, const Action &action)
+{
+  try {
+    action(checkpoint.head);
+  } catch (const nlohmann::json::exception &) {
+    throw checkpoint.damaged("its head lacks what the case needs.");
+  } catch (const std::invalid_argument &) {
+    throw checkpoint.damaged("a number in its head is none.");
+  }
 }
 
 } // namespace
@@ -71,7 +85,10 @@ void Simulation::find_checkpoint(Problems &problems)
     return;
   }
   checkpoint = std::make_unique<Checkpoint>(path, comm);
-  find_input_differences(parameters.as_input_file(), checkpoint->head.at("input"), path, problems);
+  const Json &head = checkpoint->head;
+  if (!head.contains("input") || !head["input"].is_string())
+    throw checkpoint->damaged("it does not hold the input of its run.");
+  find_input_differences(parameters.as_input_file(), head["input"], path, problems);
 }
 
 void Simulation::save(CheckpointWriter &writer)
@@ -102,17 +119,41 @@ void Simulation::save(CheckpointWriter &writer)
     process->save(writer);
 }
 
+void Simulation::resume_output()
+{
+  understand(*checkpoint, [&](const Json &head) { output.resume(head.at("output")); });
+}
+
 void Simulation::resume()
 {
-  const Json &head = checkpoint->head;
   checkpoints.go_on();
-  step = first_step = head.at("step");
+  understand(*checkpoint, [&](const Json &head) {
+    take_over(head);
+    system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
+    n_particles = system.n_global();
+    if (Process *const process = parameters.process())
+      process->resume(*this, *checkpoint);
+  });
+  move_solids();
+  log.line("Continuing from " + checkpoint->path + ": step " + std::to_string(step) +
+           ", t = " + format(present_time) + " s, " + std::to_string(n_particles) + " particles");
+  checkpoint.reset();
+}
+
+void Simulation::take_over(const Json &head)
+{
+  step = first_step = count_in(head.at("step"));
+  const unsigned long long last = parameters.control.n_steps();
+  if (step > last)
+    throw UserError("The checkpoint " + checkpoint->path + " is of step " + std::to_string(step) +
+                    ", and the run ends at step " + std::to_string(last) +
+                    ". Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
   present_time = static_cast<double>(step) * parameters.control.time_step;
-  next_id = head.at("next_id");
-  next_output = head.at("next_output");
-  n_insertions = head.at("insertions");
+  next_id = count_in<ParticleId>(head.at("next_id"));
+  next_output = number_in(head.at("next_output"));
+  n_insertions = count_in(head.at("insertions"));
   balanced_once = head.at("balanced_once");
-  last_balance = head.at("last_balance");
+  last_balance = count_in(head.at("last_balance"));
   ledger.inserted = to_tally(head.at("inserted"), comm);
   ledger.taken_out = to_tally(head.at("taken_out"), comm);
   ledger.lost = to_tally(head.at("lost"), comm);
@@ -127,18 +168,10 @@ void Simulation::resume()
     solids[s].state = solids_at_search[s];
   }
   if (sparse.is_enabled()) {
-    last_look.time = head.at("last_look").at("time");
-    for (const auto &state : head.at("last_look").at("solids"))
-      last_look.solids.push_back(to_state(state));
+    last_look.time = number_in(head.at("last_look").at("time"));
+    for (std::size_t s = 0; s < solids.size(); ++s)
+      last_look.solids.push_back(to_state(head.at("last_look").at("solids").at(s)));
   }
-  system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
-  n_particles = system.n_global();
-  if (Process *const process = parameters.process())
-    process->resume(*this, *checkpoint);
-  move_solids();
-  log.line("Continuing from " + checkpoint->path + ": step " + std::to_string(step) +
-           ", t = " + format(present_time) + " s, " + std::to_string(n_particles) + " particles");
-  checkpoint.reset();
 }
 
 void Simulation::dump(const std::string &path)

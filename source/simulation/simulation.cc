@@ -121,7 +121,7 @@ void Simulation::open_output()
     // One of an earlier run would make this one look finished.
     remove_file(output_file("summary.json"));
   if (checkpoint)
-    output.resume(checkpoint->head.at("output"));
+    resume_output();
   particle_pictures = output.pictures(parameters.control.output_name);
   solid_pictures = output.pictures(parameters.control.output_name + "_solids");
   for (const std::string &name : eunoe::observables().list())

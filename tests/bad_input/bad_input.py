@@ -15,10 +15,21 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from forged import FORGERIES, assembled, forged
+
 HERE = Path(__file__).resolve().parent
 TWO_RANKS = ["mpirun", "-np", "2", "--oversubscribe", "--bind-to", "none"]
 if os.geteuid() == 0:
     TWO_RANKS.append("--allow-run-as-root")
+# Texts on which a reader may choke by their length alone, and their sentences.
+LONG = {
+    "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
+                    "which does not fit. Give a number of at least 0."),
+    "long_name": ("set " + 2000000 * "a" + " = 1\n", "' is unknown."),
+    "deeply_nested": (40000 * "subsection a\n", "more than 20 subsections are open."),
+    "many_unknown_names": ("".join(f"set unknown{k} = 1\n" for k in range(3000)),
+                           "entry 'unknown2999' is unknown."),
+}
 failures = 0
 
 
@@ -33,7 +44,8 @@ def contents(folder: Path) -> dict[str, bytes]:
             for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str) -> None:
+def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
+           codes: tuple[int, ...] = (2,)) -> None:
     options = [word for setting in settings for word in ("--set", setting)]
     for launch in ([], TWO_RANKS):
         place = f"{case} on {2 if launch else 1} rank(s)"
@@ -44,7 +56,7 @@ def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str)
             fail(f"{place}: it hangs")
             continue
         errors = run.stderr.decode(errors="replace")
-        if run.returncode != 2:
+        if run.returncode not in codes:
             fail(f"{place}: exit code {run.returncode}\n{errors}")
         elif errors.count(sentence) != 1:
             fail(f"{place}: no '{sentence}' in\n{errors}")
@@ -74,6 +86,13 @@ def spoil_checkpoints(program: str, folder: Path) -> None:
         original.write_bytes(broken)
         print(name, end="; ")
         refuse(program, "checkpointed", sentence, folder, again)
+    for name, change, sentence in FORGERIES:
+        original.write_bytes(forged(data, change))
+        print(name, end="; ")
+        # Some is found when the results are open already.
+        refuse(program, "checkpointed", sentence, folder, again, codes=(1, 2))
+    original.write_bytes(assembled(b"[]", b""))
+    refuse(program, "checkpointed", "is damaged: its head is not understood.", folder, again)
     original.unlink()
     refuse(program, "checkpointed", "cannot be read: No such file", folder, again)
 
@@ -89,6 +108,9 @@ def main(program: str, folder: Path) -> int:
     unknown = {path.stem for path in HERE.glob("*.prm")} ^ (sentences.keys() | {"checkpointed"})
     if unknown:
         fail(f"sentences.txt and the folder differ: {sorted(unknown)}")
+    for case, (text, sentence) in LONG.items():
+        (folder / f"{case}.prm").write_text(text)
+        sentences[case] = sentence
     results = folder / "output"
     results.mkdir()
     (results / "summary.json").write_text("of an earlier run")
@@ -101,7 +123,7 @@ def main(program: str, folder: Path) -> int:
     if contents(folder) != before:
         fail(f"files have changed: {set(contents(folder)) ^ set(before)}")
     spoil_checkpoints(program, folder)
-    print(f"{len(sentences) + 8} broken inputs")
+    print(f"{len(sentences) + len(FORGERIES) + 9} broken inputs")
     return 1 if failures else 0
 
 

@@ -1,6 +1,7 @@
 #ifndef eunoe_checkpoint_checkpoint_file_h
 #define eunoe_checkpoint_checkpoint_file_h
 
+#include <eunoe/core/problems.h>
 #include <eunoe/core/rows.h>
 
 #include <nlohmann/json.hpp>
@@ -61,6 +62,13 @@ public:
 
   /// This rank's share of a section, in the order of the keys; collective.
   Rows rows(const std::string &name) const;
+
+  /// Throws a UserError on every rank unless @p ok on all; collective.
+  /// @param what is wrong with the checkpoint otherwise, after "is damaged: "
+  void require(bool ok, const std::string &what) const;
+
+  /// How a checkpoint is refused that is whole and yet not what it should be.
+  UserError damaged(const std::string &what) const;
 
 private:
   struct File;

@@ -43,6 +43,8 @@ public:
     const double *history; ///< with particles: oriented from the lower to the higher id
   };
   std::vector<Record> records(std::size_t row) const;
+  /// Whether numbers from a file are the records of a row.
+  static bool are_records(const double *begin, const double *end, unsigned int n_history);
   void start_row() { rows.starts.push_back(rows.values.size()); }
   void add(const Record &record);
   ///@}

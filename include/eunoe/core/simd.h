@@ -3,13 +3,12 @@
 
 #include <eunoe/core/vec3.h>
 
-/// Compiles a kernel for several instruction sets and picks one when the program starts.
-/// All of them round every operation alike (the project is built without contraction of
-/// multiply-add), so the choice changes the speed of a run and never its bits.
-/// Sanitizers cannot run before the picking does, hence the escape.
-#if defined(__x86_64__) && !defined(EUNOE_SINGLE_VERSION) && !defined(__SANITIZE_ADDRESS__)
-#define EUNOE_MULTIVERSION                                                                         \
-  __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+/// Compiles a kernel for several instruction sets (the option EUNOE_INSTRUCTION_SETS of CMake) and
+/// picks one when the program starts. All of them round every operation alike (the project is built
+/// without contraction of multiply-add), so the choice changes the speed of a run and never its
+/// bits; tests/restart compares them.
+#if defined(__x86_64__) && defined(EUNOE_INSTRUCTION_SETS)
+#define EUNOE_MULTIVERSION __attribute__((target_clones(EUNOE_INSTRUCTION_SETS)))
 #else
 #define EUNOE_MULTIVERSION
 #endif

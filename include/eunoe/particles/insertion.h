@@ -77,6 +77,10 @@ struct VolumeGrid
   std::size_t capacity() const;
   /// The k-th point, shifted by draws that depend on (seed, id).
   Vec3 point(std::size_t k, unsigned int seed, ParticleId id) const;
+
+private:
+  /// Number of points in direction @p d, a whole number.
+  double points_along(unsigned int d) const;
 };
 
 } // namespace eunoe

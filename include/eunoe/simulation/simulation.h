@@ -81,7 +81,10 @@ private:
   void start();
   void find_checkpoint(Problems &problems);
   void save(CheckpointWriter &writer);
+  void resume_output();
   void resume();
+  /// Takes over what the head of a checkpoint holds, without the process.
+  void take_over(const nlohmann::ordered_json &head);
   /// Writes a checkpoint if it is time or if the run was asked to stop.
   void checkpoint_if_due();
   void advance();

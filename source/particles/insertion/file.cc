@@ -30,10 +30,13 @@ public:
 
   std::size_t supply(const std::size_t n_events) const override
   {
-    std::size_t n = 0;
-    for (std::size_t event = 0; event < (repeats ? n_events : 1); ++event)
-      n += files[event % files.size()].n;
-    return n;
+    const std::size_t events = repeats ? n_events : 1, rest = events % files.size();
+    std::size_t round = 0, last_round = 0;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      round += files[k].n;
+      last_round += k < rest ? files[k].n : 0;
+    }
+    return events / files.size() * round + last_round;
   }
 
   std::vector<Vec3> known_places() const override

@@ -6,19 +6,27 @@
 
 namespace eunoe {
 
+namespace {
+/// More than any run can have ids for, and whole as a double.
+constexpr double many = 0x1p32;
+} // namespace
+
+double VolumeGrid::points_along(const unsigned int d) const
+{
+  return std::clamp(std::floor((upper[d] - lower[d]) / pitch + 1e-9), 0., many);
+}
+
 std::size_t VolumeGrid::capacity() const
 {
-  std::size_t n = 1;
-  for (unsigned int d = 0; d < 3; ++d)
-    n *= static_cast<std::size_t>(std::max(0., std::floor((upper[d] - lower[d]) / pitch + 1e-9)));
-  return n;
+  return static_cast<std::size_t>(
+      std::min(points_along(0) * points_along(1) * points_along(2), many));
 }
 
 Vec3 VolumeGrid::point(std::size_t k, const unsigned int seed, const ParticleId id) const
 {
   Vec3 x;
   for (const int d : order) {
-    const auto n = static_cast<std::size_t>(std::floor((upper[d] - lower[d]) / pitch + 1e-9));
+    const auto n = static_cast<std::size_t>(points_along(static_cast<unsigned int>(d)));
     const double slack = pitch - offset;
     x[d] = lower[d] + (k % n) * pitch + 0.5 * slack +
            offset * uniform(seed, Draw::offset, id, static_cast<std::uint32_t>(d));
@@ -71,7 +79,9 @@ public:
 
   std::size_t supply(const std::size_t n_events) const override
   {
-    return std::min(n_remaining(), n_events * std::min(of_next_event(), grid.capacity()));
+    const std::size_t of_event = std::min(of_next_event(), grid.capacity());
+    const bool all = of_event > 0 && n_events >= n_remaining() / of_event + 1;
+    return all ? n_remaining() : std::min(n_remaining(), n_events * of_event);
   }
 
   void skip(std::size_t n_events) override { take(supply(n_events)); }

@@ -1,4 +1,5 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 
@@ -158,8 +159,14 @@ void FeedBed::save(CheckpointWriter &writer) const
 void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
 {
   constexpr std::size_t n_fixed = 13;
-  depth = checkpoint.head.at("bed_depth");
+  const unsigned int n_history = simulation.contact_model().history_size();
+  depth = number_in(checkpoint.head.at("bed_depth"));
   const Rows all = checkpoint.rows("feed bed");
+  bool ok = true;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    ok = ok && all.length(k) >= n_fixed && are_of_particle(all[k], 1.) &&
+         ContactRows::are_records(all[k] + n_fixed, all[k] + all.length(k), n_history);
+  checkpoint.require(ok, "its feedstock is not that of the case.");
   particles.clear();
   Rows contacts;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -175,7 +182,7 @@ void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
     particles.push_back(p);
     contacts.append(row + n_fixed, row + all.length(k));
   }
-  rows = ContactRows(simulation.contact_model().history_size(), std::move(contacts));
+  rows = ContactRows(n_history, std::move(contacts));
   unsigned long long n = particles.size();
   MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
   n_global = n;

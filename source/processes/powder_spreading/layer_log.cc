@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/processes/powder_spreading/layer_log.h>
 
 #include <limits>
@@ -148,14 +149,14 @@ nlohmann::ordered_json LayerLog::save() const
 
 void LayerLog::load(const nlohmann::ordered_json &saved)
 {
-  last_present = ExactSum::from_words(saved.at("last_present"));
-  first_mass = saved.at("first_mass");
-  last_plate_height = saved.at("last_plate_height");
-  last_out.gap = ExactSum::from_words(saved.at("last_to_gap"));
-  last_out.collector = ExactSum::from_words(saved.at("last_to_collector"));
-  force_sum = saved.at("force_sum");
-  force_max = saved.at("force_max");
-  n_forces = saved.at("n_forces");
+  last_present = exact_sum_in(saved.at("last_present"));
+  first_mass = number_in(saved.at("first_mass"));
+  last_plate_height = number_in(saved.at("last_plate_height"));
+  last_out.gap = exact_sum_in(saved.at("last_to_gap"));
+  last_out.collector = exact_sum_in(saved.at("last_to_collector"));
+  force_sum = number_in(saved.at("force_sum"));
+  force_max = number_in(saved.at("force_max"));
+  n_forces = count_in<unsigned int>(saved.at("n_forces"));
 }
 
 } // namespace eunoe::spreading

@@ -1,4 +1,5 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/files.h>
 #include <eunoe/processes/powder_spreading/powder_spreading.h>
 
@@ -59,8 +60,10 @@ void PowderSpreading::prepare(Parameters &parameters)
   const double width = std::max(1.5 * largest, reach);
   const double lengths[3] = {a.x_end, a.y_top - a.y_bottom, a.depth};
   unsigned int cells[3];
-  for (unsigned int d = 0; d < 3; ++d)
-    cells[d] = std::max(1u, static_cast<unsigned int>(lengths[d] / width));
+  for (unsigned int d = 0; d < 3; ++d) {
+    const double number = lengths[d] / width;
+    cells[d] = number >= 1. ? static_cast<unsigned int>(std::min(number, 1e9)) : 1;
+  }
   const unsigned int fewest = *std::min_element(cells, cells + 3);
   unsigned int refinement = 0;
   while ((2u << refinement) <= fewest && refinement < 4)
@@ -153,16 +156,25 @@ void PowderSpreading::save(CheckpointWriter &writer) const
 void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoint)
 {
   const auto &saved = checkpoint.head.at("powder spreading");
-  phase = static_cast<Phase>(saved.at("phase").get<int>());
-  phase_start = saved.at("phase_start");
-  n_fillings = saved.at("fillings");
-  if (saved.at("lowering") >= 0.)
-    lower_platform(saved.at("lowering"));
-  if (saved.at("beginning") >= 0.)
-    schedule_passes(saved.at("beginning"));
-  next_feed = saved.at("next_feed");
-  next_weighing = saved.at("next_weighing");
-  pass_over_plate = saved.at("pass_over_plate");
+  const auto phase_number = count_in<unsigned int>(saved.at("phase"));
+  phase_start = number_in(saved.at("phase_start"));
+  n_fillings = count_in<unsigned int>(saved.at("fillings"));
+  const double down = number_in(saved.at("lowering")), begin = number_in(saved.at("beginning"));
+  if (down >= 0.)
+    lower_platform(down);
+  if (begin >= 0.)
+    schedule_passes(begin);
+  next_feed = count_in(saved.at("next_feed"));
+  next_weighing = count_in(saved.at("next_weighing"));
+  const double over_plate = number_in(saved.at("pass_over_plate"));
+  if (phase_number > static_cast<unsigned int>(Phase::done) || next_feed > passes.size() ||
+      next_weighing > passes.size() ||
+      (phase_number == static_cast<unsigned int>(Phase::passes) &&
+       next_weighing == passes.size()) ||
+      over_plate < -1. || over_plate > static_cast<double>(passes.size()))
+    throw checkpoint.damaged("its passes are not those of the case.");
+  phase = static_cast<Phase>(phase_number);
+  pass_over_plate = static_cast<int>(over_plate);
   layers = std::make_unique<LayerLog>(simulation, p, *apparatus);
   layers->load(saved.at("layers"));
   bed.load(simulation, checkpoint);

@@ -56,9 +56,11 @@ double ShapeArguments::number()
 unsigned int ShapeArguments::count()
 {
   const double value = number();
-  if (value < 1. || value > 1e6 || value != std::floor(value))
+  if (!(value >= 1. && value == std::floor(value)))
     throw std::invalid_argument("argument " + std::to_string(taken) +
                                 " is no positive whole number");
+  if (value > 1e5)
+    throw std::invalid_argument("argument " + std::to_string(taken) + " is more than 100000");
   return static_cast<unsigned int>(value);
 }
 

@@ -1,0 +1,55 @@
+// Any text as an input file, as far as --check goes: everything is built from what was read.
+
+#include <eunoe/processes/process.h>
+#include <eunoe/simulation/simulation.h>
+
+#include "fuzzing.h"
+#include "input_mutator.h"
+
+namespace {
+
+/// Whether the mesh has so many cells that its making takes seconds.
+bool is_large(const eunoe::MeshParameters &mesh)
+{
+  double n[3] = {1., 1., 1.};
+  std::sscanf(mesh.grid_arguments.c_str(), "%lf ,%lf ,%lf", n, n + 1, n + 2);
+  return mesh.grid_type == "subdivided_hyper_rectangle" && n[0] * n[1] * n[2] > 1e4 &&
+         n[0] * n[1] * n[2] < 1e7;
+}
+
+/// Whether a case reads other files, which have their own fuzzers, or takes a mesh that deal.II
+/// makes of other pieces than boxes, or one of many cells, which is the user's right.
+bool is_out_of_scope(const eunoe::Parameters &parameters)
+{
+  const auto &mesh = parameters.mesh;
+  if (parameters.process_name == "none" &&
+      (mesh.type == "gmsh" || mesh.refinement > 1 ||
+       mesh.grid_type.find("hyper_rectangle") == std::string::npos ||
+       parameters.insertion.method == "file"))
+    return true;
+  for (const auto &object : parameters.solids.objects)
+    if (object.type == "gmsh")
+      return true;
+  return parameters.restart.restart != "false";
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+{
+  eunoe::Problems problems;
+  eunoe::Parameters parameters = fuzzing::read(std::string(data, data + size), problems);
+  if (!problems.empty() || is_out_of_scope(parameters))
+    return 0;
+  if (eunoe::Process *const process = parameters.process())
+    process->prepare(parameters);
+  if (is_large(parameters.mesh) || parameters.mesh.refinement > 4)
+    return 0;
+  eunoe::Log log(MPI_COMM_WORLD, true);
+  try {
+    const eunoe::Simulation simulation(parameters, MPI_COMM_WORLD, log);
+    (void)simulation.estimate();
+  } catch (const eunoe::UserError &) {
+  }
+  return 0;
+}
