@@ -112,7 +112,7 @@ void CheckpointWriter::add_rows(const std::string &name, const std::vector<std::
   for (std::uint64_t k = first_of(all.size(), rank, n_ranks);
        k < first_of(all.size(), rank + 1, n_ranks); ++k)
     mine.push_back(places[k].origin);
-  Section section{name, all.size(), 0, fetch_rows(rows, mine, comm)};
+  Section section{name, all.size(), 0, fetch_rows(rows, mine, comm).copy()};
   section.n_values = section.part.values.size();
   MPI_Allreduce(MPI_IN_PLACE, &section.n_values, 1, MPI_UINT64_T, MPI_SUM, comm);
   sections.push_back(std::move(section));

@@ -1,4 +1,5 @@
 #include <eunoe/contact/contact_grid.h>
+#include <eunoe/core/simd.h>
 
 #include <algorithm>
 #include <numeric>
@@ -113,6 +114,57 @@ private:
   std::vector<std::int32_t> start;
 };
 
+/// Places and radii in the order of cells, one array a component.
+class Spheres
+{
+public:
+  /// Behind the last there is room for a whole batch.
+  static constexpr unsigned int batch = 32;
+
+  Spheres(const ParticleArrays &p, const std::vector<std::int32_t> &rows)
+  {
+    for (auto *component : {&x, &y, &z, &radius})
+      component->assign(rows.size() + batch, 0.);
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const Quad &q = p.position[rows[k]];
+      x[k] = q.x;
+      y[k] = q.y;
+      z[k] = q.z;
+      radius[k] = q.w;
+    }
+  }
+
+  /// Whether each of the spheres [first, first + batch) has a gap of less than @p reach to sphere
+  /// @p a.
+  void find_near(const std::size_t a, const std::size_t first, const double reach,
+                 const Vec3 &period, const Vec3 &half, bool *near) const
+  {
+    compare({x[a], y[a], z[a]}, radius[a], reach, &x[first], &y[first], &z[first], &radius[first],
+            period, half, near);
+  }
+
+private:
+  EUNOE_MULTIVERSION static void compare(const Vec3 &a, const double radius_a, const double reach,
+                                         const double *x, const double *y, const double *z,
+                                         const double *radius, const Vec3 &period, const Vec3 &half,
+                                         bool *near)
+  {
+    alignas(64) double excess[batch];
+#pragma omp simd
+    for (unsigned int k = 0; k < batch; ++k) {
+      const double dx = shortest_image(x[k] - a.x, half.x, period.x);
+      const double dy = shortest_image(y[k] - a.y, half.y, period.y);
+      const double dz = shortest_image(z[k] - a.z, half.z, period.z);
+      const double distance = radius_a + radius[k] + reach;
+      excess[k] = dx * dx + dy * dy + dz * dz - distance * distance;
+    }
+    for (unsigned int k = 0; k < batch; ++k)
+      near[k] = excess[k] < 0.;
+  }
+
+  std::vector<double> x, y, z, radius;
+};
+
 } // namespace
 
 ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
@@ -160,6 +212,8 @@ void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairLi
   for (std::size_t row = 0; row < p.size(); ++row)
     cells[row] = cell(p.position[row].vec());
   const CellOrder order(cells, p, n);
+  const Spheres spheres(p, order.rows);
+  const Vec3 half = box.half();
   const std::array<bool, 3> periodic = {box.is_periodic(axis[0]), box.is_periodic(axis[1]),
                                         box.is_periodic(axis[2])};
 
@@ -173,17 +227,18 @@ void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairLi
       n_runs = order.runs_around(cells[a], periodic, runs.data());
       run_cell = &cells[a];
     }
-    const Quad &pa = p.position[a];
     for (unsigned int r = 0; r < n_runs; ++r)
-      for (auto b_place = std::max<std::int32_t>(runs[r].begin, a_place + 1); b_place < runs[r].end;
-           ++b_place)
+      for (auto first = std::max<std::int32_t>(runs[r].begin, a_place + 1); first < runs[r].end;
+           first += Spheres::batch)
       {
-        const std::int32_t b = order.rows[b_place];
-        const Quad &pb = p.position[b];
-        const double near = pa.w + pb.w + reach;
-        if ((a < n_owned || b < n_owned) &&
-            norm_square(box.shortest(pb.vec() - pa.vec())) < near * near)
-          p.id[a] < p.id[b] ? pairs.push_back(a, b) : pairs.push_back(b, a);
+        bool near[Spheres::batch];
+        spheres.find_near(a_place, first, reach, box.length, half, near);
+        const auto count = std::min<std::int32_t>(Spheres::batch, runs[r].end - first);
+        for (std::int32_t k = 0; k < count; ++k) {
+          const std::int32_t b = order.rows[first + k];
+          if (near[k] && (a < n_owned || b < n_owned))
+            p.id[a] < p.id[b] ? pairs.push_back(a, b) : pairs.push_back(b, a);
+        }
       }
   }
 }

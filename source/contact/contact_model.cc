@@ -45,10 +45,7 @@ void ContactModel::mirror(double *history, const unsigned int axis) const
 
 void ContactModel::apply(PairBlock &block, const double dt) const
 {
-  for (double *lanes :
-       {block.stiffness, block.contact_force, block.cohesion, block.shear_x, block.shear_y,
-        block.shear_z, block.torque_x, block.torque_y, block.torque_z})
-    std::memset(lanes, 0, sizeof(PairBlock::Lanes));
+  std::memset(static_cast<ContactForces *>(&block), 0, sizeof(ContactForces));
   for (std::size_t l = 0; l < laws.size(); ++l)
     laws[l]->apply(block, first_history[l], dt);
 }

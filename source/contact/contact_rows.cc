@@ -89,32 +89,25 @@ void ContactRows::collect(const ParticleArrays &particles, const PairList &pairs
     }
 }
 
-void ContactRows::attach(const ParticleArrays &particles, PairList &pairs,
+void ContactRows::attach(const RowViews &views, const ParticleArrays &particles, PairList &pairs,
                          SolidContacts &solids) const
 {
-  const auto &[starts, values] = rows;
   const auto n_owned = static_cast<std::int32_t>(particles.n_owned);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const bool has_i = pairs.i[k] < n_owned;
     const std::int32_t row = has_i ? pairs.i[k] : pairs.j[k];
     const auto partner = static_cast<double>(particles.id[has_i ? pairs.j[k] : pairs.i[k]]);
-    for (std::size_t at = starts[row]; at < starts[row + 1]; at += length(&values[at]))
-      if (values[at] == 0. && values[at + 1] == partner) {
+    for (const double *r = views[row]; r != views.end(row); r += length(r))
+      if (r[0] == 0. && r[1] == partner) {
         pairs.record[k] = pairs.memory.create();
-        std::copy_n(&values[at + 2], n_history, pairs.memory[pairs.record[k]]);
+        std::copy_n(r + 2, n_history, pairs.memory[pairs.record[k]]);
         break;
       }
   }
   for (std::int32_t row = 0; row < n_owned; ++row)
-    for (std::size_t at = starts[row]; at < starts[row + 1]; at += length(&values[at]))
-      if (values[at] != 0.)
-        solids.restore(row, static_cast<std::int32_t>(values[at + 1]),
-                       {values[at + 2], values[at + 3], values[at + 4]}, &values[at + 5]);
-}
-
-ContactRows ContactRows::fetch(const std::vector<Origin> &origins, MPI_Comm comm) const
-{
-  return {n_history, fetch_rows(rows, origins, comm)};
+    for (const double *r = views[row]; r != views.end(row); r += length(r))
+      if (r[0] != 0.)
+        solids.restore(row, static_cast<std::int32_t>(r[1]), {r[2], r[3], r[4]}, r + 5);
 }
 
 } // namespace eunoe

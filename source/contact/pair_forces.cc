@@ -14,12 +14,6 @@ struct Period
   Vec3 length, half;
 };
 
-EUNOE_ALWAYS_INLINE double shortest(double d, double half, double length)
-{
-  d = d > half ? d - length : d;
-  return d < -half ? d + length : d;
-}
-
 /// Writes the components of quads[rows[0..B)] to x, y, z, w.
 EUNOE_ALWAYS_INLINE void gather(const Quad *quads, const std::int32_t *rows, double *x, double *y,
                                 double *z, double *w)
@@ -84,9 +78,9 @@ EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidate
   gather(position, candidates.j, xj, yj, zj, rj);
 #pragma omp simd
   for (unsigned int k = 0; k < B; ++k) {
-    const double dx = shortest(xj[k] - xi[k], period.half.x, period.length.x);
-    const double dy = shortest(yj[k] - yi[k], period.half.y, period.length.y);
-    const double dz = shortest(zj[k] - zi[k], period.half.z, period.length.z);
+    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
+    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
+    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
     const double reach = ri[k] + rj[k] + range;
     excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
   }
@@ -118,9 +112,9 @@ EUNOE_MULTIVERSION void describe(PairBlock &b, const ParticleArrays &p, const st
   gather(p.spin.data(), j, wxj, wyj, wzj, inertia_j);
 #pragma omp simd
   for (unsigned int k = 0; k < B; ++k) {
-    const double dx = shortest(xj[k] - xi[k], period.half.x, period.length.x);
-    const double dy = shortest(yj[k] - yi[k], period.half.y, period.length.y);
-    const double dz = shortest(zj[k] - zi[k], period.half.z, period.length.z);
+    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
+    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
+    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
     const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
     // Divided, not multiplied by an inverse: a normal along an axis has length one exactly.
     const double nx = dx / distance, ny = dy / distance, nz = dz / distance;

@@ -1,6 +1,8 @@
 #include <eunoe/contact/solid_contacts.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace eunoe {
 
@@ -18,8 +20,11 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
   normals.clear();
   memory.clear(model.history_size());
   std::vector<Box> boxes;
-  for (const Solid &solid : solids)
+  solids_at_search.clear();
+  for (const Solid &solid : solids) {
     boxes.push_back(solid.shape->bounding_box());
+    solids_at_search.push_back(solid.state);
+  }
   for (std::size_t p = 0; p < particles.n_owned; ++p)
     for (std::size_t s = 0; s < solids.size(); ++s) {
       const Vec3 centre = solids[s].to_own_frame(particles.position[p].vec());
@@ -30,7 +35,9 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
       candidate.particle = static_cast<std::int32_t>(p);
       candidate.solid = static_cast<std::int32_t>(s);
       candidate.first_facet = static_cast<std::int32_t>(facets.size());
-      solids[s].shape->find_facets(centre, near, facets);
+      const double gap =
+          solids[s].shape->find_facets(centre, near, facets) - particles.position[p].w;
+      candidate.gap = std::nextafter(static_cast<float>(gap), -std::numeric_limits<float>::max());
       candidate.n_facets = static_cast<std::int32_t>(facets.size()) - candidate.first_facet;
       if (candidate.n_facets > 0)
         candidates.push_back(candidate);
@@ -85,9 +92,18 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
                                const double time, const double dt, std::vector<SolidLoad> *loads)
 {
   block->n = 0;
+  std::vector<double> way(solids.size());
+  for (std::size_t s = 0; s < solids.size(); ++s)
+    way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
   for (Candidate &candidate : candidates) {
     // Sleepers weigh on solids, too, but feel nothing.
     if (loads == nullptr && !particles.is_awake(candidate.particle))
+      continue;
+    // Too far for a contact, as long as both together have not gone the gap that there was.
+    const double spare = candidate.gap - model.range() - way[candidate.solid];
+    if (spare > 0. && candidate.n_living == 0 &&
+        norm_square(particles.position[candidate.particle].vec() -
+                    particles.reference[candidate.particle]) < spare * spare)
       continue;
     const Solid &solid = solids[candidate.solid];
     const Quad &position = particles.position[candidate.particle];

@@ -4,7 +4,7 @@
 
 namespace eunoe {
 
-Rows fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm)
+RowViews fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm)
 {
   int rank, n_ranks;
   MPI_Comm_rank(comm, &rank);
@@ -67,20 +67,22 @@ Rows fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm c
   }
   wait();
 
-  Rows rows;
-  rows.starts.reserve(origins.size() + 1);
-  std::vector<std::size_t> next_row(n_ranks, 0), next_value(n_ranks, 0);
+  RowViews rows;
+  rows.reserve(origins.size());
+  std::vector<std::size_t> next_row(n_ranks, 0);
+  std::vector<const double *> next_value(n_ranks);
+  for (int r = 0; r < n_ranks; ++r)
+    next_value[r] = rows.own(std::move(values_in[r])).data();
   for (const Origin &origin : origins) {
     const int r = origin.rank;
     if (r == rank)
-      rows.append(kept[origin.row], kept[origin.row] + kept.length(origin.row));
+      rows.add(kept[origin.row], kept.length(origin.row));
     else if (r >= 0) {
-      const double *const begin = values_in[r].data() + next_value[r];
       const int n = lengths_in[r][next_row[r]++];
-      rows.append(begin, begin + n);
+      rows.add(next_value[r], n);
       next_value[r] += n;
     } else
-      rows.append(nullptr, nullptr);
+      rows.add(nullptr, 0);
   }
   return rows;
 }

@@ -159,7 +159,8 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
     ++balances;
   }
   const std::vector<Origin> origins = build_lists(solids);
-  rows.fetch(origins, domain.communicator()).attach(particles, pairs, solid_contacts);
+  rows.attach(fetch_rows(rows.get_rows(), origins, domain.communicator()), particles, pairs,
+              solid_contacts);
   ++searches;
 }
 

@@ -108,7 +108,7 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
     store.repartition(balancing);
     store.migrate();
   }
-  const Rows mine = fetch_rows(share, build_lists(solids), comm);
+  const RowViews mine = fetch_rows(share, build_lists(solids), comm);
 
   Rows contacts;
   ParticleArrays &p = particles;
@@ -123,7 +123,7 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
       p.extra[e][k] = row[n_places + e];
     contacts.append(row + n_fixed, row + mine.length(k));
   }
-  ContactRows(model.history_size(), contacts).attach(particles, pairs, solid_contacts);
+  ContactRows(model.history_size()).attach(RowViews(contacts), particles, pairs, solid_contacts);
   halo.update(particles);
   if (sparse.is_enabled()) {
     sparse.recall(particles, halo);

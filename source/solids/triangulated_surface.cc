@@ -217,18 +217,24 @@ std::vector<Vec3> TriangulatedSurface::triangles() const
   return corners;
 }
 
-void TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
-                                      std::vector<std::int32_t> &found) const
+double TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
+                                        std::vector<std::int32_t> &found) const
 {
+  double least = std::numeric_limits<double>::infinity();
   if (!box.contains(centre, reach))
-    return;
+    return least;
   const std::size_t first = found.size();
   const Vec3 margin = {reach, reach, reach};
   const auto query = bg::index::intersects(boost_box(centre - margin, centre + margin));
-  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it)
-    if (closest(centre, it->second).distance < reach)
+  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it) {
+    const double distance = closest(centre, it->second).distance;
+    if (distance < reach) {
       found.push_back(it->second);
+      least = std::min(least, distance);
+    }
+  }
   std::sort(found.begin() + first, found.end());
+  return least;
 }
 
 /// Distance of a point to a triangle by Voronoi regions (Ericson, Real-Time Collision Detection,

@@ -26,12 +26,10 @@ public:
   /// Collects the rows of all owned particles, in their order.
   void collect(const ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids);
 
-  /// Fetches the rows of particles that are now here from where they were collected; collective.
-  ContactRows fetch(const std::vector<Origin> &origins, MPI_Comm comm) const;
-
-  /// Gives the rows, which must be those of the owned particles in their order, back to freshly
-  /// built lists.
-  void attach(const ParticleArrays &particles, PairList &pairs, SolidContacts &solids) const;
+  /// Gives rows back to freshly built lists.
+  /// @param views of the owned particles' rows in their order
+  void attach(const RowViews &views, const ParticleArrays &particles, PairList &pairs,
+              SolidContacts &solids) const;
 
   /// @name Single records, for those who save, copy or transform rows
   ///@{

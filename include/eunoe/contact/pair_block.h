@@ -6,6 +6,19 @@
 
 namespace eunoe {
 
+/// What the laws of a batch of contacts write; all zero before the first.
+struct alignas(64) ContactForces
+{
+  static constexpr unsigned int size = 64;
+  using Lanes = double[size];
+
+  alignas(64) Lanes stiffness;     ///< normal secant stiffness k_n (N/m)
+  alignas(64) Lanes contact_force; ///< normal elastic + damping force, repulsion positive (N)
+  alignas(64) Lanes cohesion;      ///< attraction, positive (N)
+  alignas(64) Lanes shear_x, shear_y, shear_z;    ///< tangential force on j (N)
+  alignas(64) Lanes torque_x, torque_y, torque_z; ///< rolling-resistance torque on i (N m)
+};
+
 /// A batch of contacts, one array a quantity, on which every active law runs one vector loop.
 ///
 /// Body i is always a particle; body j is a particle or a piece of a solid surface (infinite
@@ -14,12 +27,9 @@ namespace eunoe {
 /// over the whole block with the same arithmetic for each pair.
 ///
 /// SI units throughout. Formulas and sign conventions: doc/physics.md.
-struct alignas(64) PairBlock
+struct alignas(64) PairBlock : ContactForces
 {
-  static constexpr unsigned int size = 64;
   static constexpr unsigned int max_history = 12;
-
-  using Lanes = double[size];
 
   /// Number of real contacts, the first ones.
   unsigned int n = 0;
@@ -38,15 +48,6 @@ struct alignas(64) PairBlock
   alignas(64) Lanes closing_speed; ///< normal velocity of i against j, positive in approach (m/s)
   alignas(64) Lanes slip_x, slip_y, slip_z; ///< tangential velocity of i's surface against j's
   alignas(64) Lanes roll_x, roll_y, roll_z; ///< spin of i less spin of j, without twist (rad/s)
-  ///@}
-
-  /// @name Written by the laws
-  ///@{
-  alignas(64) Lanes stiffness;     ///< normal secant stiffness k_n (N/m)
-  alignas(64) Lanes contact_force; ///< normal elastic + damping force, repulsion positive (N)
-  alignas(64) Lanes cohesion;      ///< attraction, positive (N)
-  alignas(64) Lanes shear_x, shear_y, shear_z;    ///< tangential force on j (N)
-  alignas(64) Lanes torque_x, torque_y, torque_z; ///< rolling-resistance torque on i (N m)
   ///@}
 
   /// What the contacts remember, `[component][contact]`; each law owns a range of components.

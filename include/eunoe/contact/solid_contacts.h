@@ -21,6 +21,7 @@ public:
     std::int32_t particle, solid;
     std::int32_t first_facet, n_facets;
     std::uint32_t n_living = 0;
+    float gap = 0.f; ///< least distance of the surfaces when they were searched (m), rounded down
     /// Records of the contacts that touched at the last step.
     std::array<std::int32_t, Shape::max_contacts> living;
   };
@@ -75,6 +76,7 @@ private:
   std::int32_t create(const Vec3 &normal);
 
   const ContactModel &model;
+  std::vector<RigidState> solids_at_search;
   std::vector<Candidate> candidates;
   std::vector<std::int32_t> facets;
   ContactMemory memory;

@@ -1,11 +1,19 @@
 #ifndef eunoe_core_periodic_box_h
 #define eunoe_core_periodic_box_h
 
-#include <eunoe/core/vec3.h>
+#include <eunoe/core/simd.h>
 
 #include <limits>
 
 namespace eunoe {
+
+/// The shortest image of one component of a difference, for vector code.
+/// @param half of the length, infinite without a period
+EUNOE_ALWAYS_INLINE double shortest_image(double d, double half, double length)
+{
+  d = d > half ? d - length : d;
+  return d < -half ? d + length : d;
+}
 
 /// The lengths after which space repeats. Positions stay as they are; the shift is applied to
 /// differences, so a periodic image gives the same bits as its original.
@@ -29,10 +37,8 @@ struct PeriodicBox
   Vec3 shortest(Vec3 d) const
   {
     const Vec3 h = half();
-    for (unsigned int c = 0; c < 3; ++c) {
-      d[c] = d[c] > h[c] ? d[c] - length[c] : d[c];
-      d[c] = d[c] < -h[c] ? d[c] + length[c] : d[c];
-    }
+    for (unsigned int c = 0; c < 3; ++c)
+      d[c] = shortest_image(d[c], h[c], length[c]);
     return d;
   }
 

@@ -2,6 +2,7 @@
 #define eunoe_core_rows_h
 
 #include <cstdint>
+#include <list>
 #include <mpi.h>
 #include <vector>
 
@@ -24,6 +25,50 @@ struct Rows
   }
 };
 
+/// Rows in an order of their own, wherever they lie.
+class RowViews
+{
+public:
+  RowViews() = default;
+  /// All rows, which must outlive the views.
+  explicit RowViews(const Rows &rows)
+  {
+    for (std::size_t row = 0; row < rows.size(); ++row)
+      add(rows[row], rows.length(row));
+  }
+
+  std::size_t size() const { return views.size(); }
+  std::size_t length(std::size_t row) const { return views[row].length; }
+  const double *operator[](std::size_t row) const { return views[row].begin; }
+  const double *end(std::size_t row) const { return views[row].begin + views[row].length; }
+
+  Rows copy() const
+  {
+    Rows rows;
+    for (std::size_t row = 0; row < size(); ++row)
+      rows.append((*this)[row], end(row));
+    return rows;
+  }
+
+  void reserve(std::size_t n) { views.reserve(n); }
+  void add(const double *begin, std::size_t length) { views.push_back({begin, length}); }
+  /// Keeps values to which views point.
+  const std::vector<double> &own(std::vector<double> &&values)
+  {
+    owned.push_back(std::move(values));
+    return owned.back();
+  }
+
+private:
+  struct View
+  {
+    const double *begin;
+    std::size_t length;
+  };
+  std::vector<View> views;
+  std::list<std::vector<double>> owned;
+};
+
 /// Where a row is kept among all ranks.
 struct Origin
 {
@@ -32,8 +77,8 @@ struct Origin
 };
 
 /// Fetches rows from where they are kept, in the order asked for; collective.
-/// @param kept this rank's rows
-Rows fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm);
+/// @param kept this rank's rows, which must outlive the result
+RowViews fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm);
 
 } // namespace eunoe
 

@@ -15,11 +15,14 @@ public:
   /// @param normal towards the particles, of any length but zero
   HalfSpace(const Vec3 &point, const Vec3 &normal) : point(point), normal(normal / norm(normal)) {}
 
-  void find_facets(const Vec3 &centre, double reach,
-                   std::vector<std::int32_t> &facets) const override
+  double find_facets(const Vec3 &centre, double reach,
+                     std::vector<std::int32_t> &facets) const override
   {
-    if (dot(centre - point, normal) < reach)
-      facets.push_back(0);
+    const double distance = dot(centre - point, normal);
+    if (distance >= reach)
+      return std::numeric_limits<double>::infinity();
+    facets.push_back(0);
+    return distance;
   }
 
   unsigned int find_contacts(const Vec3 &centre, double, double reach, const std::int32_t *,

@@ -38,8 +38,9 @@ public:
   virtual ~Shape() = default;
 
   /// Appends the numbers of all facets closer than @p reach to @p centre, ascending.
-  virtual void find_facets(const Vec3 &centre, double reach,
-                           std::vector<std::int32_t> &facets) const = 0;
+  /// @return least distance to one of them (m), infinite if there is none
+  virtual double find_facets(const Vec3 &centre, double reach,
+                             std::vector<std::int32_t> &facets) const = 0;
 
   /// The contacts, at most `max_contacts`, of a sphere with the facets [begin, end), which must
   /// hold all those closer than @p reach.

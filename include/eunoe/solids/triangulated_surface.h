@@ -37,8 +37,8 @@ public:
   explicit TriangulatedSurface(TriangleMesh mesh);
   ~TriangulatedSurface() override;
 
-  void find_facets(const Vec3 &centre, double reach,
-                   std::vector<std::int32_t> &facets) const override;
+  double find_facets(const Vec3 &centre, double reach,
+                     std::vector<std::int32_t> &facets) const override;
   unsigned int find_contacts(const Vec3 &centre, double radius, double reach,
                              const std::int32_t *begin, const std::int32_t *end,
                              SurfaceContact *contacts) const override;
