@@ -98,7 +98,7 @@ void examine_sphere()
   check_close("place of a sphere in the profile", moment / sum, 0.25e-3, 0.2e-6);
 }
 
-/// A cylinder that stands on half of the disc is grey where half of the views see it.
+/// A row of spheres is black where both views see it, and grey where one does.
 void examine_map()
 {
   Silhouettes views(D, 0., 2, 100, 20e-6);

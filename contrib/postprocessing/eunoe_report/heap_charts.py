@@ -18,6 +18,8 @@ from .heap_results import HeapMap, Profile, Views
 
 Fields = dict[str, np.ndarray]
 
+RIM_SHOWN = 0.2  # of the height of the disc's rim
+
 
 def _draw_disc(axes: Axes, disc: float, rim: float) -> None:
     axes.add_patch(Rectangle((-0.5 * MM * disc, -MM * rim), MM * disc, MM * rim,
@@ -35,7 +37,7 @@ def map_figure(heap: HeapMap, views: Views, disc: float, rim: float) -> Figure:
     """The mean of all views in shades of grey."""
     left, right, bottom, top = heap.extent
     top = max(top, 0.53 * disc * tan(radians(views.mean_angle)))
-    figure, panels = make_panels(Window(left, right, -0.5 * rim, top), 1)
+    figure, panels = make_panels(Window(left, right, -RIM_SHOWN * rim, top), 1)
     norm = Normalize(0., 100.)
     panels[0].imshow(100. * heap.share, cmap="Greys", norm=norm, origin="lower",
                      extent=[MM * value for value in heap.extent], interpolation="nearest",
@@ -43,7 +45,7 @@ def map_figure(heap: HeapMap, views: Views, disc: float, rim: float) -> Figure:
     _draw_disc(panels[0], disc, rim)
     _draw_triangle(panels[0], disc, views.mean_angle, color=style.VERMILLION, linewidth=1.)
     panels[0].set_xlim(MM * left, MM * right)
-    panels[0].set_ylim(-0.5 * MM * rim, MM * top)
+    panels[0].set_ylim(-RIM_SHOWN * MM * rim, MM * top)
     add_colour_bar(figure, panels, ScalarMappable(norm, "Greys"), "Seen in % of the views")
     return figure
 
@@ -82,7 +84,7 @@ def particles_figure(particles: Fields, height: float, disc: float,
     """The heap of a height seen along z, coloured by diameter; and the share of it drawn (m)."""
     x, y, z = particles["points"].T.astype(float)
     margin = 0.06 * disc + particles["diameter"].max(initial=0.)
-    window = Window(-0.5 * disc - margin, 0.5 * disc + margin, -0.5 * rim, height + margin)
+    window = Window(-0.5 * disc - margin, 0.5 * disc + margin, -RIM_SHOWN * rim, height + margin)
     figure, panels = make_panels(window, 1)
     _draw_disc(panels[0], disc, rim)
     rows, share = front_slice(window.shows(x, y, particles["diameter"]), z)
