@@ -21,8 +21,16 @@ except ImportError as error:
              "python3-matplotlib, and run this script with Debian's /usr/bin/python3.")
 
 from eunoe_report.general_report import general_report
-from eunoe_report.run_folder import ReportError, read_run
+from eunoe_report.heap_report import heap_report
+from eunoe_report.page import Page
+from eunoe_report.run_folder import ReportError, Run, read_run
 from eunoe_report.spreading_report import spreading_report
+
+
+def make_page(run: Run) -> Page:
+    if run.layers is not None:
+        return spreading_report(run, run.layers)
+    return heap_report(run) if run.is_heap else general_report(run)
 
 
 def main(arguments: list[str]) -> int:
@@ -36,8 +44,7 @@ def main(arguments: list[str]) -> int:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     target = options.out or options.folder / "report.html"
     try:
-        run = read_run(options.folder)
-        page = spreading_report(run, run.layers) if run.layers is not None else general_report(run)
+        page = make_page(read_run(options.folder))
         target.write_text(page.html(), encoding="utf-8")
         if options.figures:
             page.write_figures(target.parent / "figures", options.figures)

@@ -119,7 +119,7 @@ class Spheres
 {
 public:
   /// Behind the last there is room for a whole batch.
-  static constexpr unsigned int batch = 32;
+  static constexpr unsigned int batch = 16;
 
   Spheres(const ParticleArrays &p, const std::vector<std::int32_t> &rows)
   {

@@ -145,6 +145,9 @@ void Simulation::write_summary()
   summary["kinetic_energy"] = kinetic.value();
   summary["rotational_energy"] = rotational.value();
 
+  if (const Process *const process = parameters.process())
+    process->add_to_summary(summary);
+
   std::string shares;
   double known = 0.;
   for (unsigned int s = 0; s < Timers::n; ++s) {

@@ -70,12 +70,14 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
     prm.add_parameter("file name", object.file, "gmsh: the file.");
     declare::choice(prm, "grid type", object.shape, named_shapes().names(),
                     "shape: which one (see 'grid arguments').");
-    prm.add_parameter("grid arguments", object.arguments,
-                      "shape: its arguments (m). plane: corner : edge : edge. box: lower : upper. "
-                      "cylinder_shell: centre of one end : axis : radius : facets. half_round_bar: "
-                      "start of the lowest line : length in z : radius : height : facets. "
-                      "flat_blade: start of the front lower edge : length in z : thickness : "
-                      "height.");
+    prm.add_parameter(
+        "grid arguments", object.arguments,
+        "shape: its arguments (m). plane: corner : edge : edge. box: lower : upper. "
+        "cylinder_shell: centre of one end : axis : radius : facets. disc: centre of the "
+        "lower end of the rim : axis to the face : radius : facets. half_round_bar: "
+        "start of the lowest line : length in z : radius : height : facets. "
+        "flat_blade: start of the front lower edge : length in z : thickness : "
+        "height.");
     prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
     prm.add_parameter("scale", object.scale, "Factor on all coordinates.",
                       declare::Patterns::Double(0.));

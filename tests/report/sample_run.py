@@ -117,3 +117,31 @@ def write_run(folder: Path, layers: int = 3, pictures: bool = True, summary: boo
         entries.append((0.1 * (layer + 1), f"spreading_layers_{layer:05d}.vtu"))
         (folder / entries[-1][1]).write_text(vtu(piece(*bed(layer))))
     (folder / "spreading_layers.pvd").write_text(pvd(entries))
+
+
+HEAP = """\
+view,direction,projected_area,base_angle,height,base_angle_spread,mass_on_disc,mass_drained
+0,0,1.9e-07,37.235,0.0004,,,
+1,90,1.9e-07,37.235,0.0004,,,
+,,1.9e-07,37.235,0.0004,0,4.5e-07,1.35e-06
+"""
+
+
+def write_heap(folder: Path, inserted_mass: float = 1.8e-6) -> None:
+    """The folder of a run of the heap instrument with a disc of 1 mm."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "used.prm").write_text("set process = heap\n\nsubsection simulation control\n"
+                                     "  set output name = heap\nend\n")
+    (folder / "apparatus.json").write_text(json.dumps({"disc_diameter": 1e-3, "rim_height": 5e-4}))
+    (folder / "heap.csv").write_text(HEAP)
+    (folder / "heap_profile.csv").write_text("x,mean,spread,measured\n-4e-4,1e-4,1e-5,\n"
+                                             "0,4e-4,1e-5,4.1e-4\n4e-4,1e-4,1e-5,\n")
+    head = "P5\n# left edge at x = -0.0006 m, base line at the lower edge, pixel of 0.0004 m\n3 2\n255\n"
+    (folder / "heap_map.pgm").write_bytes(head.encode() + bytes([255, 0, 255, 0, 0, 102]))
+    summary = {**SUMMARY, "inserted_mass": inserted_mass, "heap_measured_base_angle": 40.,
+               "heap_profile_difference": 1e-5}
+    (folder / "summary.json").write_text(json.dumps(summary))
+    points, fields = bed(0)
+    points[:, 0] -= 2.85e-3
+    (folder / "heap_heap_00000.vtu").write_text(vtu(piece(points, fields)))
+    (folder / "heap_heap.pvd").write_text(pvd([(0.1, "heap_heap_00000.vtu")]))

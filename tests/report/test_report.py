@@ -25,6 +25,7 @@ sys.path[:0] = [str(POSTPROCESSING), str(HERE)]
 import report
 import sample_run
 from eunoe_report.apparatus import Apparatus
+from eunoe_report.heap_results import read_map
 from eunoe_report.layer_results import counting_noise, moved_over_plate
 from eunoe_report.measured import read_measured
 from eunoe_report.quantities import number
@@ -230,6 +231,41 @@ class Report(InFolder):
         self.file("heap.pvd", sample_run.pvd([(0.5, "heap_00000.vtu")]))
         self.assert_says("The last picture")
         self.assert_says("abc1234")
+
+    def test_heap(self) -> None:
+        sample_run.write_heap(self.folder)
+        page = self.page()
+        self.assertEqual(page.count("<figure>"), 3)
+        for text in ("37.2", "mean of 2 views", "450\u00a0µg of powder lie on the disc", "abc1234",
+                     "Black: the measured profile", "40.0\u00a0degrees; the heights differ by 10\u00a0µm",
+                     "not to be compared with the 37.5"):
+            self.assertTrue(text in page, f"The page lacks '{text}'.")
+        self.assertFalse("as a column" in page)
+
+    def test_heap_that_did_not_flow(self) -> None:
+        sample_run.write_heap(self.folder, inserted_mass=5e-7)
+        self.assert_says("90\u00a0% of the powder stayed on the disc")
+
+    def test_heap_without_picture(self) -> None:
+        sample_run.write_heap(self.folder)
+        (self.folder / "heap_heap.pvd").unlink()
+        self.assertEqual(self.page().count("<figure>"), 2)
+
+    def test_heap_with_broken_files(self) -> None:
+        for name, text in (("heap_map.pgm", "P5\n2 2\n255\n"), ("heap_profile.csv", "x,mean\n0,1\n"),
+                           ("heap.csv", "\n".join(sample_run.HEAP.splitlines()[:-1])),
+                           ("apparatus.json", "{}")):
+            sample_run.write_heap(self.folder)
+            self.file(name, text)
+            code, output, errors = self.make()
+            self.assertEqual((code, output), (2, ""))
+            self.assertRegex(errors, rf"^[^\n]*{name}[^\n]*\.\n$")
+
+    def test_map_of_a_heap(self) -> None:
+        sample_run.write_heap(self.folder)
+        found = read_map(self.folder / "heap_map.pgm")
+        np.testing.assert_allclose(found.share, [[1., 1., 0.6], [0., 1., 0.]])
+        np.testing.assert_allclose(found.extent, (-0.6e-3, 0.6e-3, 0., 0.8e-3))
 
     def test_other_place_of_the_page(self) -> None:
         sample_run.write_run(self.folder, layers=1, pictures=False)

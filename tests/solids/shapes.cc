@@ -91,6 +91,11 @@ int main(int argc, char **argv)
   check_relative("area of a tilted cylinder", area(tilted),
                  24 * 2. * 2. * std::sin(M_PI / 24.) * 5., 1e-13);
 
+  // The face is a polygon of 24 triangles, and only the lower edge of the rim is open.
+  examine("disc", "1e-3, -1e-3, 3e-3 : 0, 1e-3, 0 : 2e-3 : 24",
+          24 * facet * 1e-3 + 12. * R * R * std::sin(M_PI / 12.), 24 * facet,
+          {{-1e-3, -1e-3, 1e-3}, {3e-3, 0., 5e-3}});
+
   const double half_facet = 2. * 0.4e-3 * std::sin(M_PI / 2. / 32.), sides = 2. * (1e-3 - 0.4e-3);
   examine("half_round_bar", "1e-3, 0.1e-3, 0 : 2e-3 : 0.4e-3 : 1e-3 : 32",
           (32 * half_facet + sides) * 2e-3, 2. * (32 * half_facet + sides) + 2. * 2e-3,

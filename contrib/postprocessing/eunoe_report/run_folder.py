@@ -89,12 +89,16 @@ class Run:
     def name(self) -> str:
         return self.folder.resolve().name
 
+    @property
+    def is_heap(self) -> bool:
+        return (self.folder / "heap.csv").is_file()
+
     def _picture_index(self, ending: str) -> Path | None:
         """The .pvd file with this ending after the output name."""
         if self.parameters and "simulation control" in self.parameters.sections:
             output_name = self.parameters.section("simulation control").text("output name")
             return self.folder / f"{output_name}{ending}.pvd"
-        known = ("_layers", "_solids")
+        known = ("_layers", "_heap", "_solids")
         found = [path for path in sorted(self.folder.glob(f"*{ending}.pvd"))
                  if ending or not path.stem.endswith(known)]
         return found[0] if found else None

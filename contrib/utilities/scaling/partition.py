@@ -78,7 +78,7 @@ def shifted(array: np.ndarray, offset: tuple[int, ...], periodic: tuple[bool, ..
 
 
 def divide(mesh: Mesh, counts: np.ndarray, curve: np.ndarray, n_ranks: int,
-           cell_weight: int = 1000, particle_weight: int = 2000) -> Partition:
+           cell_weight: int = 20, particle_weight: int = 2000) -> Partition:
     """Shares out the cells with their particles, `counts` of the shape of the mesh.
 
     A particle is a ghost of every other rank that owns a cell around its own, empty or not: over

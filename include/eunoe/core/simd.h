@@ -8,7 +8,7 @@
 /// without contraction of multiply-add), so the choice changes the speed of a run and never its
 /// bits; tests/restart compares them.
 #if defined(__x86_64__) && defined(EUNOE_INSTRUCTION_SETS)
-#define EUNOE_MULTIVERSION __attribute__((target_clones(EUNOE_INSTRUCTION_SETS)))
+#define EUNOE_MULTIVERSION __attribute__((noinline, target_clones(EUNOE_INSTRUCTION_SETS)))
 #else
 #define EUNOE_MULTIVERSION
 #endif

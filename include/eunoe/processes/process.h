@@ -4,6 +4,8 @@
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -80,6 +82,9 @@ public:
 
   /// Whether all work is done.
   virtual bool finished() const = 0;
+
+  /// Adds what the process has found to the keys of summary.json.
+  virtual void add_to_summary(nlohmann::ordered_json &) const {}
 };
 
 using ProcessRegistry = Registry<std::unique_ptr<Process>>;

@@ -21,6 +21,11 @@ TriangleMesh box(const Vec3 &lower, const Vec3 &upper);
 TriangleMesh cylinder_shell(const Vec3 &base, const Vec3 &axis, double radius,
                             unsigned int n_facets);
 
+/// A round plate: a flat face at the end of the axis, and a rim down to its beginning.
+/// @param base centre of the lower end of the rim
+/// @param axis from there to the centre of the face
+TriangleMesh disc(const Vec3 &base, const Vec3 &axis, double radius, unsigned int n_facets);
+
 /// A spreader along z: the lower half of a cylinder, with vertical sides above it.
 /// @param tip start of its lowest line
 /// @param length in z

@@ -1,6 +1,7 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/files.h>
+#include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/powder_spreading.h>
 
 #include <algorithm>
@@ -55,30 +56,8 @@ void PowderSpreading::prepare(Parameters &parameters)
   apparatus = std::make_unique<Apparatus>(p, largest);
   const Apparatus &a = *apparatus;
 
-  // Background cells of 8 to 10 particles of a settled bed, in powers of two over a coarse mesh.
-  const double reach = 1.02 * (largest + parameters.model.skin(largest));
-  const double width = std::max(1.5 * largest, reach);
-  const double lengths[3] = {a.x_end, a.y_top - a.y_bottom, a.depth};
-  unsigned int cells[3];
-  for (unsigned int d = 0; d < 3; ++d) {
-    const double number = lengths[d] / width;
-    cells[d] = number >= 1. ? static_cast<unsigned int>(std::min(number, 1e9)) : 1;
-  }
-  const unsigned int fewest = *std::min_element(cells, cells + 3);
-  unsigned int refinement = 0;
-  while ((2u << refinement) <= fewest && refinement < 4)
-    ++refinement;
-  std::string counts;
-  for (unsigned int d = 0; d < 3; ++d)
-    counts += (d > 0 ? ", " : "") + std::to_string(std::max(1u, cells[d] >> refinement));
-
-  char corners[256];
-  std::snprintf(corners, sizeof corners, " : 0, %.17g, 0 : %.17g, %.17g, %.17g : true", a.y_bottom,
-                a.x_end, a.y_top, a.depth);
-  parameters.mesh.type = "dealii";
-  parameters.mesh.grid_type = "subdivided_hyper_rectangle";
-  parameters.mesh.grid_arguments = counts + corners;
-  parameters.mesh.refinement = refinement;
+  parameters.mesh = box_mesh({0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
+                             parameters.model.skin(largest));
 
   BoundaryCondition collector, bottom, period;
   collector.type = bottom.type = "outlet";

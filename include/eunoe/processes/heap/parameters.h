@@ -1,0 +1,37 @@
+#ifndef eunoe_processes_heap_parameters_h
+#define eunoe_processes_heap_parameters_h
+
+#include <eunoe/core/parameter_section.h>
+
+namespace eunoe::heap {
+
+/// `subsection heap`: the heap instrument and what it does. SI units.
+struct HeapParameters : public ParameterSection
+{
+  double tube_diameter = 10e-3, disc_diameter = 10e-3;
+  double gap = 0., rim_height = 0.;
+  unsigned int n_facets = 72;
+  double lifting_velocity = 0.05;
+
+  unsigned int n_particles = 0;
+  double mass = 0.;
+  double fill_ratio = 4.;
+  double insertion_speed = 0.2;
+  unsigned int seed = 1;
+
+  double rest_energy_share = 0.01, moving_share = 0.005;
+  unsigned long long rest_check_frequency = 200;
+  double rest_duration = 5e-3;
+  double longest_wait = 0.5;
+
+  unsigned int n_views = 16, n_bins = 100;
+  std::string measured_profile;
+  bool picture = true;
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+} // namespace eunoe::heap
+
+#endif

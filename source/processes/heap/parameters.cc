@@ -1,0 +1,111 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/processes/heap/parameters.h>
+
+namespace eunoe::heap {
+
+namespace {
+
+const std::string section = "heap";
+
+void declare_powder(dealii::ParameterHandler &prm, HeapParameters &p)
+{
+  using declare::positive;
+  declare::count(prm, "number of particles", p.n_particles,
+                 "Number of particles that are filled in; 0: 'mass' or 'fill ratio' rules.");
+  positive(prm, "mass", p.mass,
+           "Mass of powder that is filled in, to within the scatter of the sizes (kg); 0: 'number "
+           "of particles' or 'fill ratio' rules.");
+  positive(prm, "fill ratio", p.fill_ratio,
+           "Without number and mass: powder that is filled in over that of a heap with a base "
+           "angle of 37.5 degrees, so that discs of any size are filled alike.");
+  positive(prm, "insertion speed", p.insertion_speed,
+           "Speed at which the loose particles start to fall into the tube (m/s).");
+  declare::count(prm, "seed", p.seed, "Seed of the random places of the loose particles.");
+}
+
+void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
+{
+  using declare::positive;
+  positive(
+      prm, "rest energy share", p.rest_energy_share,
+      "A particle is calm when its kinetic energy of translation is below this share of m g d, "
+      "the energy that lifts it by its diameter.");
+  prm.add_parameter("moving share", p.moving_share,
+                    "Share of the particles that may still move in powder at rest.",
+                    declare::Patterns::Double(0., 1.));
+  declare::count(prm, "rest check frequency", p.rest_check_frequency,
+                 "Steps between two looks at the energies.", 1);
+  positive(
+      prm, "rest duration", p.rest_duration,
+      "Time for which all other particles must stay calm until the powder counts as at rest (s).");
+  positive(prm, "longest wait", p.longest_wait,
+           "Longest wait for rest, after the filling and after the lifting (s); the run then goes "
+           "on with a warning.");
+}
+
+} // namespace
+
+void HeapParameters::declare(dealii::ParameterHandler &prm)
+{
+  using declare::positive;
+  using declare::Patterns::Integer;
+  prm.enter_subsection(section);
+  positive(prm, "tube inner diameter", tube_diameter, "Inner diameter of the tube (m).");
+  positive(prm, "disc diameter", disc_diameter,
+           "Diameter of the disc on which the heap stands (m), at least that of the tube.");
+  positive(prm, "gap below the tube", gap,
+           "Height of the tube's lower end over the disc before it is lifted (m); 0: it stands on "
+           "the disc.");
+  positive(prm, "disc rim height", rim_height,
+           "Height of the disc's vertical rim, below which powder falls freely (m); 0: five of the "
+           "largest diameters.");
+  prm.add_parameter("facets", n_facets, "Number of flat facets around the tube and the disc.",
+                    Integer(25, 1000));
+  positive(prm, "lifting velocity", lifting_velocity, "Velocity at which the tube rises (m/s).");
+  declare_powder(prm, *this);
+  declare_rest(prm, *this);
+  prm.add_parameter("number of views", n_views,
+                    "Number of directions, evenly spread over 180 degrees, in which the heap is "
+                    "seen.",
+                    Integer(1, 1000));
+  prm.add_parameter("profile bins", n_bins,
+                    "Number of bins of the mean profile across the disc's diameter.",
+                    Integer(10, 10000));
+  prm.add_parameter(
+      "measured profile", measured_profile,
+      "File with a measured profile to compare with: a table with the columns 'x' and "
+      "'height' (m), x from the centre of the disc; empty: none.");
+  prm.add_parameter(
+      "heap picture", picture,
+      "Whether the particles are written when the heap is measured (<name>_heap.pvd).");
+  prm.leave_subsection();
+}
+
+void HeapParameters::check(const ParameterCheck &check) const
+{
+  const auto positive = [&](double value, const std::string &entry) {
+    check.require(value > 0., {section}, entry, "is " + format(value) + ".",
+                  "Give a positive value.");
+  };
+  positive(tube_diameter, "tube inner diameter");
+  positive(disc_diameter, "disc diameter");
+  positive(lifting_velocity, "lifting velocity");
+  positive(rest_energy_share, "rest energy share");
+  positive(rest_duration, "rest duration");
+  check.require(tube_diameter <= disc_diameter, {section}, "tube inner diameter",
+                "is " + format(tube_diameter) + " m, more than the disc's " +
+                    format(disc_diameter) + " m: the powder would fall past the disc.",
+                "Give a tube that is at most as wide as the disc.");
+  check.require(n_particles == 0 || mass == 0., {section}, "mass",
+                "is " + format(mass) + " kg, and 'number of particles' is set, too.",
+                "Give one of the two.");
+  check.require(n_particles > 0 || mass > 0. || fill_ratio > 0., {section}, "fill ratio",
+                "is 0, and neither is a number of particles or a mass given.",
+                "Give one of the three.");
+  check.require(longest_wait > rest_duration, {section}, "longest wait",
+                "is " + format(longest_wait) + " s, not more than the rest duration of " +
+                    format(rest_duration) + " s, so that the powder could never be found at rest.",
+                "Give a longer wait, 0.5 for example.");
+}
+
+} // namespace eunoe::heap

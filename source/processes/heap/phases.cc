@@ -1,0 +1,103 @@
+// The filling of the tube, its lifting, and when powder is at rest.
+
+#include <eunoe/core/random.h>
+#include <eunoe/processes/heap/heap.h>
+
+#include <algorithm>
+
+namespace eunoe::heap {
+
+void Heap::fill(Simulation &simulation)
+{
+  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  const auto sizes = type.sizes.make();
+  const auto [begin, end] = share_of(apparatus->n_particles, simulation.communicator());
+  Delivery delivery;
+  for (std::size_t k = begin; k < end; ++k) {
+    NewParticle particle;
+    particle.id = simulation.next_id + static_cast<ParticleId>(k);
+    particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
+    particle.mass = sphere_mass(particle.radius, type.density);
+    particle.position = apparatus->loose_place(k, particle.id);
+    particle.velocity = {0., -p.insertion_speed, 0.};
+    delivery.particles.push_back(particle);
+  }
+  simulation.next_id += apparatus->n_particles;
+  simulation.exchange(delivery, {});
+}
+
+bool Heap::is_at_rest(Simulation &simulation)
+{
+  if (simulation.step_number() % p.rest_check_frequency != 0)
+    return false;
+  const ParticleArrays &particles = simulation.complete_step();
+  const double tube_height = height_of_tube(simulation);
+  // Spin does not count: the contact laws have no torque against spin about a contact's normal. Nor
+  // does what swings at the tube, once it is lifted.
+  unsigned long long moving = 0, all = 0;
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    const double radius = particles.position[row].w;
+    if (phase == Phase::resting &&
+        apparatus->clings_to_tube(particles.position[row].y, radius, tube_height))
+      continue;
+    ++all;
+    if (0.5 * norm_square(particles.velocity[row].vec()) >
+        p.rest_energy_share * gravity * 2. * radius)
+      ++moving;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &moving, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
+                simulation.communicator());
+  MPI_Allreduce(MPI_IN_PLACE, &all, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
+  const double now = simulation.time();
+  if (static_cast<double>(moving) > p.moving_share * static_cast<double>(all))
+    calm_since = -1.;
+  else if (calm_since < 0.)
+    calm_since = now;
+  if (calm_since >= 0. && now - calm_since >= p.rest_duration)
+    return true;
+  if (now - phase_start < p.longest_wait)
+    return false;
+  simulation.get_log().warning("after the longest wait of " + format(p.longest_wait) + " s, " +
+                               std::to_string(moving) + " of " + std::to_string(all) +
+                               " particles still move; going on.");
+  return true;
+}
+
+void Heap::begin_lifting(Simulation &simulation)
+{
+  const ParticleArrays &particles = simulation.complete_step();
+  double top = 0.;
+  for (std::size_t row = 0; row < particles.n_owned; ++row)
+    top = std::max(top, particles.position[row].y + particles.position[row].w);
+  MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
+  phase = Phase::lifting;
+  phase_start = lift_start = simulation.time();
+  lift_way = top + apparatus->clearance() - p.gap;
+  apparatus->tube->begin(lift_start, lift_way);
+  simulation.renew_solids();
+  simulation.get_log().line("The powder is at rest in the tube after " + format(lift_start) +
+                            " s, " + format(top) + " m high; the tube rises by " +
+                            format(lift_way) + " m");
+}
+
+void Heap::finish(Simulation &simulation)
+{
+  results = measure(simulation, p, *apparatus, height_of_tube(simulation));
+  results["heap_rest_time"] = simulation.time();
+  phase = Phase::done;
+  simulation.get_log().line("The heap is at rest after " + format(simulation.time()) +
+                            " s: base angle " + format(results["heap_base_angle"]) +
+                            " degrees (standard deviation over the views " +
+                            format(results["heap_base_angle_spread"]) + "), " +
+                            std::to_string(results["heap_particles_on_disc"].get<std::uint64_t>()) +
+                            " particles on the disc");
+  if (p.picture) {
+    const std::string name = simulation.get_parameters().control.output_name + "_heap";
+    simulation.write_pictures(*simulation.output_folder().pictures(name));
+    simulation.output_folder()
+        .pictures(name + "_solids")
+        ->write(simulation.time(), simulation.get_solids());
+  }
+}
+
+} // namespace eunoe::heap

@@ -1,0 +1,152 @@
+"""A small heap from its input file to its results: the same tables and the same state on one rank and on
+two, and after an interruption in each phase; the mass adds up, and the outlines are what the picture of
+the particles shows.
+
+Usage: end_to_end.py path/to/eunoe-particles folder
+Exit code 77 if numpy is missing, for a test that is skipped.
+"""
+
+import csv
+import json
+import math
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+try:
+    import numpy as np
+except ImportError:
+    sys.exit(77)
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "contrib" / "postprocessing"))
+from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
+
+DISC, N_VIEWS = 0.6e-3, 16
+TABLES = ("heap.csv", "heap_map.pgm", "heap_profile.csv", "state.dump")
+
+
+def command(program: str, folder: Path, ranks: int, *settings: str) -> list[str]:
+    options = [word for setting in (f"simulation control/output path = {folder}", *settings)
+               for word in ("--set", setting)]
+    launch = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+    if launch and os.geteuid() == 0:
+        launch.append("--allow-run-as-root")
+    return [*launch, program, str(HERE / "tiny.prm"), *options, "--dump", f"{folder}/state.dump"]
+
+
+def run(program: str, folder: Path, ranks: int = 1, *settings: str) -> None:
+    subprocess.run(command(program, folder, ranks, *settings), check=True, stdout=subprocess.DEVNULL)
+
+
+def read(path: Path) -> list[dict[str, float]]:
+    with open(path, encoding="utf-8") as file:
+        return [{name: float(value) if value else math.nan for name, value in row.items()}
+                for row in csv.DictReader(file)]
+
+
+def summary(folder: Path) -> dict:
+    return json.loads((folder / "summary.json").read_text())
+
+
+def check_same(reference: Path, other: Path, names: tuple[str, ...] = TABLES) -> None:
+    for name in names:
+        assert (reference / name).read_bytes() == (other / name).read_bytes(), f"{name} of {other} differs"
+    keys = [key for key in summary(reference) if key.startswith("heap_")]
+    assert keys and all(summary(reference)[key] == summary(other)[key] for key in keys)
+
+
+def run_until(program: str, folder: Path, stage: str, *settings: str) -> None:
+    """Runs until the log tells of a stage, where the run is asked to stop and leaves a checkpoint."""
+    settings = ("restart/checkpoint = true", "simulation control/log frequency = 2000", *settings)
+    with subprocess.Popen(command(program, folder, 1, *settings), text=True,
+                          stdout=subprocess.PIPE) as process:
+        for line in process.stdout:
+            if line.rstrip().endswith(stage):
+                process.send_signal(signal.SIGTERM)
+                break
+        process.stdout.read()
+    assert process.returncode == 3, f"exit code {process.returncode} while {stage}"
+
+
+def check_interrupted(program: str, reference: Path, folder: Path) -> None:
+    run_until(program, folder, "filling the tube")
+    again = "restart/restart = true"
+    run_until(program, folder, "lifting the tube", again)
+    run_until(program, folder, "the heap comes to rest", again)
+    run(program, folder, 2, again)
+    assert summary(folder)["first_step"] > 0
+    check_same(reference, folder)
+
+
+def outline_area(points: np.ndarray, radius: np.ndarray, direction: float) -> float:
+    along = points[:, 0] * math.cos(direction) + points[:, 2] * math.sin(direction)
+    places = np.linspace(-0.7 * DISC, 0.7 * DISC, 4000)
+    chord = radius**2 - (places[:, None] - along)**2
+    heights = np.where(chord > 0., points[:, 1] + np.sqrt(np.maximum(chord, 0.)), 0.).max(axis=1)
+    return float(heights.sum() * (places[1] - places[0]))
+
+
+def check_results(folder: Path) -> None:
+    *views, mean = read(folder / "heap.csv")
+    results = summary(folder)
+    assert len(views) == N_VIEWS and math.isnan(mean["view"])
+    particles = read_vtu(read_pvd(folder / "heap_heap.pvd")[0].file, ["diameter", "mass"])
+    points, radius = (np.asarray(particles[name], dtype=float) for name in ("points", "diameter"))
+    radius = radius / 2.
+    # The tube has left the powder, and what clings to it hangs far above the heap.
+    on_disc = (points[:, 1] > 0.) & (np.hypot(points[:, 0], points[:, 2]) < DISC / 2. + radius)
+    if results["heap_mass_clinging"] > 0.:
+        on_disc &= points[:, 1] < 1.1 * mean["height"]
+    assert results["heap_particles_on_disc"] == np.count_nonzero(on_disc)
+    mass = float(particles["mass"][on_disc].sum(dtype=float))
+    assert math.isclose(mean["mass_on_disc"], mass, rel_tol=1e-5)
+    assert math.isclose(results["inserted_mass"], results["heap_mass_on_disc"]
+                        + results["heap_mass_drained"] + results["heap_mass_clinging"], rel_tol=1e-12)
+    assert results["mass_balance_error"] == 0.
+    for view in views:
+        area = outline_area(points[on_disc], radius[on_disc], math.radians(view["direction"]))
+        assert math.isclose(view["projected_area"], area, rel_tol=2e-3), (view, area)
+        assert math.isclose(view["base_angle"],
+                            math.degrees(math.atan(4. * view["projected_area"] / DISC**2)),
+                            rel_tol=1e-12)
+    angles = np.array([view["base_angle"] for view in views])
+    assert math.isclose(mean["base_angle"], angles.mean(), rel_tol=1e-12)
+    assert math.isclose(mean["base_angle_spread"], angles.std(ddof=1), rel_tol=1e-9)
+    assert results["heap_base_angle"] == mean["base_angle"]
+    assert 15. < mean["base_angle"] < 75., "an angle that no heap has"
+    assert results["heap_rest_time"] < 0.3, "the powder did not come to rest"
+
+
+def check_comparison(program: str, folder: Path, reference: Path) -> None:
+    """On two ranks the same heap; and against its own profile raised by 10 um, it differs by 10 um."""
+    rows = read(reference / "heap_profile.csv")
+    measured = folder.with_suffix(".csv")
+    measured.write_text("x,height\n" + "".join(f"{row['x']!r},{row['mean'] + 10e-6!r}\n"
+                                               for row in rows))
+    run(program, folder, 2, f"heap/measured profile = {measured}")
+    check_same(reference, folder, TABLES[:2])
+    assert math.isclose(summary(folder)["heap_profile_difference"], 10e-6, rel_tol=1e-6)
+    area = sum((a["mean"] + b["mean"] + 20e-6) / 2. * (b["x"] - a["x"])
+               for a, b in zip(rows, rows[1:]))
+    assert math.isclose(summary(folder)["heap_measured_base_angle"],
+                        math.degrees(math.atan(4. * area / DISC**2)), rel_tol=1e-9)
+
+
+def main() -> int:
+    program, folder = sys.argv[1], Path(sys.argv[2])
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    run(program, folder / "one")
+    check_results(folder / "one")
+    check_comparison(program, folder / "two", folder / "one")
+    check_interrupted(program, folder / "one", folder / "interrupted")
+    print("ok")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
