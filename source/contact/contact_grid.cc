@@ -36,7 +36,7 @@ public:
       : n_global(n_global)
   {
     first = n_global;
-    std::array<int, 3> last = {-1, -1, -1};
+    std::array<int, 3> last = {{-1, -1, -1}};
     for (const auto &c : cells)
       for (unsigned int d = 0; d < 3; ++d) {
         first[d] = std::min(first[d], c[d]);
@@ -77,7 +77,7 @@ public:
     const std::int32_t own = start[local(c)];
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
-        std::array<int, 3> column = {c[0] + dx, c[1] + dy, 0};
+        std::array<int, 3> column = {{c[0] + dx, c[1] + dy, 0}};
         if (!wrap(column, 0, periodic) || !wrap(column, 1, periodic))
           continue;
         const auto add = [&](int from, int to) {
@@ -85,7 +85,7 @@ public:
           to = std::min(to, first[2] + n[2] - 1);
           if (from > to)
             return;
-          const std::int64_t base = local({column[0], column[1], 0});
+          const std::int64_t base = local({{column[0], column[1], 0}});
           const Run run = {std::max(own, start[base + from]), start[base + to + 1]};
           if (run.begin < run.end)
             runs[count++] = run;
@@ -169,7 +169,7 @@ private:
 
 ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
                          const double cell_size)
-    : lower(lower), box(box), axis({0, 1, 2})
+    : lower(lower), box(box), axis({{0, 1, 2}})
 {
   const Vec3 extent = upper - lower;
   std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
@@ -214,8 +214,8 @@ void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairLi
   const CellOrder order(cells, p, n);
   const Spheres spheres(p, order.rows);
   const Vec3 half = box.half();
-  const std::array<bool, 3> periodic = {box.is_periodic(axis[0]), box.is_periodic(axis[1]),
-                                        box.is_periodic(axis[2])};
+  const std::array<bool, 3> periodic = {
+      {box.is_periodic(axis[0]), box.is_periodic(axis[1]), box.is_periodic(axis[2])}};
 
   const auto n_owned = static_cast<std::int32_t>(p.n_owned);
   std::array<Run, 27> runs;

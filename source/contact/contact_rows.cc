@@ -61,6 +61,11 @@ void ContactRows::collect(const ParticleArrays &particles, const PairList &pairs
   for (const auto &candidate : solids.get_candidates())
     starts[candidate.particle + 1] += candidate.n_living * solid_length;
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  if (starts.back() > values.capacity()) {
+    // What would grow by itself would double, and keep what is about to be written over.
+    values = {};
+    values.reserve(starts.back() + starts.back() / 16);
+  }
   values.resize(starts.back());
 
   std::vector<std::size_t> next(starts.begin(), starts.end() - 1);

@@ -64,6 +64,21 @@ struct ParticleStore::Implementation
 
   void find_foreign_neighbours();
 
+  static std::vector<double> properties_of(const NewParticle &p, const Origin &origin,
+                                           const std::vector<double> &extra)
+  {
+    std::vector<double> values(property::extra, 0.);
+    store(p.velocity, &values[property::velocity]);
+    store(p.spin, &values[property::spin]);
+    values[property::radius] = p.radius;
+    values[property::mass] = p.mass;
+    values[property::type] = p.type;
+    values[property::origin] = encode(origin);
+    values[property::id] = p.id;
+    values.insert(values.end(), extra.begin(), extra.end());
+    return values;
+  }
+
   /// Cost of particles, as they were when they were last written.
   template <typename Range>
   double weight(const Range &particles, const LoadBalancingParameters &p) const
@@ -154,23 +169,6 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
 {
   Implementation &impl = *implementation;
   MPI_Comm comm = impl.domain.communicator();
-  std::vector<dealii::Point<3>> positions;
-  std::vector<std::vector<double>> properties;
-  for (std::size_t k = 0; k < particles.size(); ++k) {
-    const NewParticle &p = particles[k];
-    positions.push_back(to_point(impl.domain.periods().wrap(p.position)));
-    std::vector<double> values(property::extra, 0.);
-    store(p.velocity, &values[property::velocity]);
-    store(p.spin, &values[property::spin]);
-    values[property::radius] = p.radius;
-    values[property::mass] = p.mass;
-    values[property::type] = p.type;
-    values[property::origin] = encode(origins.empty() ? Origin() : origins[k]);
-    values[property::id] = p.id;
-    values.insert(values.end(), extra.begin(), extra.end());
-    properties.push_back(values);
-  }
-
   // Refused here, as the search for the cells of such points does not come back.
   const std::uint64_t outside = dealii::Utilities::MPI::sum(
       static_cast<std::uint64_t>(
@@ -182,20 +180,32 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
                     " lie outside the mesh. Enlarge the mesh or move the place of insertion.");
 
   const auto owned = dealii::IteratorFilters::LocallyOwnedCell();
-  const std::vector<dealii::BoundingBox<3>> boxes =
+  const auto boxes = dealii::Utilities::MPI::all_gather(
+      comm,
       dealii::GridTools::compute_mesh_predicate_bounding_box(
           impl.triangulation,
-          std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned));
-  const std::uint64_t before = n_global();
-  // Ids go with the properties: given apart, they are exchanged only among ranks that have
-  // particles to insert, and these wait for the others forever (deal.II 9.4).
-  impl.handler.insert_global_particles(positions, dealii::Utilities::MPI::all_gather(comm, boxes),
-                                       properties);
+          std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned)));
+  const std::uint64_t expected =
+      n_global() + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
+  // In portions, as each is copied several times on its way.
+  constexpr std::size_t portion = 50000;
+  const std::size_t most =
+      dealii::Utilities::MPI::max(static_cast<std::uint64_t>(particles.size()), comm);
+  for (std::size_t begin = 0; begin < most; begin += portion) {
+    std::vector<dealii::Point<3>> positions;
+    std::vector<std::vector<double>> properties;
+    for (std::size_t k = begin; k < std::min(begin + portion, particles.size()); ++k) {
+      const NewParticle &p = particles[k];
+      positions.push_back(to_point(impl.domain.periods().wrap(p.position)));
+      properties.push_back(impl.properties_of(p, origins.empty() ? Origin() : origins[k], extra));
+    }
+    // Ids go with the properties: given apart, they are exchanged only among ranks that have
+    // particles to insert, and these wait for the others forever (deal.II 9.4).
+    impl.handler.insert_global_particles(positions, boxes, properties);
+  }
   for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
     particle->set_id(
         static_cast<dealii::types::particle_index>(particle->get_properties()[property::id]));
-  const std::uint64_t expected =
-      before + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
   if (n_global() != expected)
     throw std::logic_error("the mesh did not take over all inserted particles");
 }

@@ -164,6 +164,22 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
   ++searches;
 }
 
+void ParticleSystem::make_room_for_contacts()
+{
+  // Only when there are many more pairs than ever before: it costs as much as a step.
+  if (pairs.size() <= pairs_with_room)
+    return;
+  pairs_with_room = pairs.size() + pairs.size() / 10;
+  const PeriodicBox &box = domain.periods();
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Quad &a = particles.position[pairs.i[k]], &b = particles.position[pairs.j[k]];
+    const double reach = a.w + b.w + model.range();
+    n += norm_square(box.shortest(b.vec() - a.vec())) <= reach * reach ? 1 : 0;
+  }
+  pairs.memory.reserve(n + n / 5);
+}
+
 std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids)
 {
   std::vector<Origin> origins;
@@ -171,6 +187,8 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   halo.build(particles, store, grid, skin + model.range());
   pairs.clear(model.history_size());
   grid.find_pairs(particles, skin + model.range(), pairs);
+  pairs.trim();
+  make_room_for_contacts();
   solid_contacts.search(particles, solids, skin + model.range());
   return origins;
 }

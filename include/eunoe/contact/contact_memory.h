@@ -26,6 +26,9 @@ public:
     n_records = 0;
   }
 
+  /// Makes room for a number of records at once.
+  void reserve(std::size_t n) { quads.reserve(n * quads_per_record); }
+
   /// A record of zeros.
   std::int32_t create()
   {

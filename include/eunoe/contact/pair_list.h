@@ -37,6 +37,18 @@ struct PairList
     awake.clear();
   }
 
+  /// Gives back room beyond a tenth more than there is, which vectors take when they grow.
+  void trim()
+  {
+    for (auto *list : {&i, &j, &record})
+      if (list->capacity() > list->size() + list->size() / 4) {
+        std::vector<std::int32_t> copy;
+        copy.reserve(list->size() + list->size() / 10);
+        copy.assign(list->begin(), list->end());
+        list->swap(copy);
+      }
+  }
+
   void push_back(std::int32_t a, std::int32_t b)
   {
     i.push_back(a);

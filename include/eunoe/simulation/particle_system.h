@@ -111,6 +111,8 @@ private:
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
+  /// Room for the memory of the contacts at once, as what grows by itself takes twice as much.
+  void make_room_for_contacts();
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
@@ -128,6 +130,7 @@ private:
   PairList pairs;
   ContactRows rows;
   std::vector<double> extra_defaults;
+  std::size_t pairs_with_room = 0; ///< for whose contacts there is room in the memory
   unsigned long long searches = 0, balances = 0;
 };
 

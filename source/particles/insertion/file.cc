@@ -54,8 +54,9 @@ public:
 
   std::vector<NewParticle> next(ParticleId &next_id) override
   {
-    const Contents &file = files[n_events++ % files.size()];
-    std::vector<NewParticle> particles = file.share;
+    Contents &file = files[n_events++ % files.size()];
+    // A file that is not needed again is not kept.
+    std::vector<NewParticle> particles = repeats ? file.share : std::move(file.share);
     for (NewParticle &particle : particles)
       particle.id += next_id;
     next_id += static_cast<ParticleId>(file.n);
