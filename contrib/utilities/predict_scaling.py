@@ -4,7 +4,7 @@
 Usage: contrib/utilities/predict_scaling.py output/my_run/spreading_00042.vtu [--ranks 64,128,...]
        contrib/utilities/predict_scaling.py --length-factor 0.5714 --depth 2e-3 --layers 20
            [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
-           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.2] [--search 4] [--interval 60]
+           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.25] [--search 4] [--interval 60]
            [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--compare] [--json FILE]
 
 The particles are those of a picture of a run, or of the paper's apparatus with W1 to W4 times the
