@@ -6,9 +6,10 @@ Usage: contrib/benchmarks/balance.py [case.prm] [--program build/release/eunoe-p
            [--every 20000] [--cell-weights 1000,20] [--set ENTRY=VALUE ...]
 
 The case (prm/benchmarks/two_passes.prm) runs with the methods none, frequent (every so many steps)
-and dynamic; dynamic with each cell weight. Pictures every so many steps tell how many particles each
-rank owns. The imbalance is the largest number over the mean, less 1; it does not depend on the
-machine's load, the seconds do. With more ranks than cores the seconds tell nothing.
+and dynamic; dynamic with each cell weight, of which 20 is the program's default. Pictures every so
+many steps tell how many particles each rank owns. The imbalance is the largest number over the mean,
+less 1; it does not depend on the machine's load, the seconds do. With more ranks than cores the
+seconds tell nothing.
 """
 
 from __future__ import annotations

@@ -4,14 +4,17 @@
 Usage: contrib/utilities/predict_scaling.py output/my_run/spreading_00042.vtu [--ranks 64,128,...]
        contrib/utilities/predict_scaling.py --length-factor 0.5714 --depth 2e-3 --layers 20
            [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
-           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.2] [--search 4] [--interval 60]
-           [--cell-weight 1000] [--particle-weight 2000] [--compare] [--json FILE]
+           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.25] [--search 4] [--interval 60]
+           [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--compare] [--json FILE]
 
 The particles are those of a picture of a run, or of the paper's apparatus with W1 to W4 times the
-length factor. The mesh is cut as the program cuts it. doc/performance.md explains the columns and
-the costs.
+length factor. The mesh is cut as the program cuts it, with the given weights of a cell and a
+particle. doc/performance.md explains the columns and the costs.
 
 --steps    of the whole run: adds core-hours
+--reach    distance (m) of a particle's centre to a cell of another rank within which that rank has it
+           as a ghost; otherwise that of the program, each particle's radius, the largest one, and a
+           skin of a tenth of the largest diameter
 --compare  instead shows what each piece (rank) of the picture really holds beside the prediction for
            that number of ranks
 """
@@ -29,6 +32,7 @@ try:
     import numpy as np
     from scaling import apparatus, snapshot
     from scaling.cost import Costs, Prediction, predict
+    from scaling.ghosts import Filling, reach_of
     from scaling.mesh import Failure, Mesh
     from scaling.partition import Partition, divide
 except ImportError as error:
@@ -48,8 +52,9 @@ def arguments() -> argparse.Namespace:
         parser.add_argument(f"--{name}", type=float, default=getattr(costs, name))
     parser.add_argument("--ranks-per-node", type=int, default=costs.ranks_per_node)
     parser.add_argument("--speeds", default=",".join(f"{n:g}:{s:g}" for n, s in costs.speeds))
-    parser.add_argument("--cell-weight", type=int, default=1000)
+    parser.add_argument("--cell-weight", type=int, default=20)
     parser.add_argument("--particle-weight", type=int, default=2000)
+    parser.add_argument("--reach", type=float)
     parser.add_argument("--compare", action="store_true")
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
@@ -57,6 +62,8 @@ def arguments() -> argparse.Namespace:
         raise Failure("Name a picture (.vtu) of a run, or give --length-factor.")
     if options.compare and options.picture is None:
         raise Failure("--compare needs a picture of a run.")
+    if options.reach is not None and not options.reach >= 0.:
+        raise Failure(f"--reach {options.reach}: give a length in m, as in 1e-4.")
     return options
 
 
@@ -94,10 +101,10 @@ def row(p: Prediction, part: Partition, steps: float | None) -> str:
             f"{p.memory / 2**20:8.0f}{hours}  {slowest}")
 
 
-def compare(picture: Path, mesh: Mesh, counts: np.ndarray, options: argparse.Namespace) -> None:
+def compare(picture: Path, mesh: Mesh, filling: Filling, options: argparse.Namespace) -> None:
     real = [int(piece.get("NumberOfPoints", 0)) for piece in
             ElementTree.parse(picture).getroot().iter("Piece")]
-    part = divide(mesh, counts, mesh.curve(), len(real), options.cell_weight,
+    part = divide(mesh, filling, mesh.curve(), len(real), options.cell_weight,
                   options.particle_weight)
     print("rank  owned  predicted  ghosts predicted")
     for rank, number in enumerate(real):
@@ -108,17 +115,18 @@ def main() -> int:
     options = arguments()
     costs, ranks = costs_of(options), rank_numbers(options.ranks)
     if options.picture is not None:
-        mesh, points = snapshot.read(options.picture)
+        mesh, points, diameters = snapshot.read(options.picture)
     else:
         place = apparatus.apparatus(options.length_factor, options.depth)
         mesh, points = apparatus.mesh_of(place), apparatus.powder(place, options.layers)
-    counts = mesh.count(points)
-    occupied = np.count_nonzero(counts)
+        diameters = apparatus.sizes(len(points))
+    filling = Filling(mesh, points, reach_of(diameters) if options.reach is None else options.reach)
+    occupied = np.count_nonzero(filling.counts)
     print(f"{len(points)} particles; mesh of {' x '.join(map(str, mesh.cells))} cells, refined "
           f"{mesh.refinement} times from {int(np.prod(mesh.trees))}; {occupied} cells with particles,"
           f" {len(points) / occupied:.1f} in each")
     if options.compare:
-        compare(options.picture, mesh, counts, options)
+        compare(options.picture, mesh, filling, options)
         return 0
     curve = mesh.curve()
     print(f"{'':6s} {'particles':>11s} {'':>11s} {'ghosts':>7s} {'most':>6s} {'kB a step':>9s} "
@@ -128,7 +136,7 @@ def main() -> int:
           + (f"{'hours':>11s}" if options.steps else "") + "  of the slowest rank's time")
     records = []
     for n in ranks:
-        part = divide(mesh, counts, curve, n, options.cell_weight, options.particle_weight)
+        part = divide(mesh, filling, curve, n, options.cell_weight, options.particle_weight)
         prediction = predict(part, int(np.prod(mesh.trees)), costs)
         print(row(prediction, part, options.steps), flush=True)
         records.append({**asdict(prediction), "imbalance": part.imbalance,

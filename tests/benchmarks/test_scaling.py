@@ -7,6 +7,7 @@ import sys
 import unittest
 from itertools import product
 from pathlib import Path
+from unittest.mock import patch
 
 try:
     import numpy as np
@@ -14,9 +15,13 @@ except ImportError:
     print("skipped: numpy is missing")
     sys.exit(77)
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib" / "utilities"))
-from scaling.apparatus import apparatus, mesh_of, powder  # noqa: E402
+CONTRIB = Path(__file__).resolve().parents[2] / "contrib"
+BED = CONTRIB / "benchmarks" / "settled_bed.csv.gz"
+sys.path.insert(0, str(CONTRIB / "utilities"))
+from scaling import ghosts  # noqa: E402
+from scaling.apparatus import apparatus, mesh_of, powder, sizes  # noqa: E402
 from scaling.cost import GHOST_BYTES, Costs, message_seconds, predict  # noqa: E402
+from scaling.ghosts import Filling, reach_of  # noqa: E402
 from scaling.mesh import Failure, Mesh  # noqa: E402
 from scaling.partition import cut, divide  # noqa: E402
 
@@ -24,6 +29,13 @@ from scaling.partition import cut, divide  # noqa: E402
 def box(trees, refinement=0, periodic=(False, False, False)):
     cells = [n << refinement for n in trees]
     return Mesh(tuple(trees), (0., 0., 0.), tuple(float(n) for n in cells), refinement, periodic)
+
+
+def filled(mesh, counts):
+    """So many particles in the middle of each cell, each needed in all cells around."""
+    index = np.argwhere(np.ones(mesh.cells, bool))
+    points = np.array(mesh.lower) + (index + 0.5) * mesh.width
+    return Filling(mesh, np.repeat(points, counts.ravel(), axis=0), np.inf)
 
 
 class Order(unittest.TestCase):
@@ -71,7 +83,7 @@ class Ghosts(unittest.TestCase):
     def test_a_row_of_cells(self):
         # 6 cells with 1 ... 6 particles; without a weight of cells 21 particles: 2 x 7 and the rest.
         mesh, counts = box((6, 1, 1)), np.arange(1, 7).reshape(6, 1, 1)
-        part = divide(mesh, counts, mesh.curve(), 3, cell_weight=0, particle_weight=1)
+        part = divide(mesh, filled(mesh, counts), mesh.curve(), 3, cell_weight=0, particle_weight=1)
         self.assertEqual(part.owned.tolist(), [10, 5, 6])
         self.assertEqual(part.ghosts.tolist(), [5, 4 + 6, 5])
         self.assertEqual(part.sent.tolist(), [4, 5 + 5, 6])
@@ -81,36 +93,108 @@ class Ghosts(unittest.TestCase):
 
     def test_a_period_makes_the_ends_neighbours(self):
         mesh = box((6, 1, 1), periodic=(True, False, False))
-        part = divide(mesh, np.ones((6, 1, 1), int), mesh.curve(), 3)
+        part = divide(mesh, filled(mesh, np.ones((6, 1, 1), int)), mesh.curve(), 3)
         self.assertEqual(part.ghosts.tolist(), [2, 2, 2])
         self.assertEqual(part.neighbours.tolist(), [2, 2, 2])
 
+    def test_only_cells_within_reach_count(self):
+        # Two cells, a rank each, and a period in z, where each cell is its own neighbour. Reaches
+        # of 0.25: the particle at 0.7 from the face stays, that at 0.25 just goes, and back.
+        mesh = box((2, 1, 1), periodic=(False, False, True))
+        x = [0.3, 0.75, 0.8, 1.25, 1.5, 1.9]
+        points = np.array([[v, 0.5, 0.5] for v in x])
+        part = divide(mesh, Filling(mesh, points, 0.25), mesh.curve(), 2)
+        self.assertEqual(part.owned.tolist(), [3, 3])
+        self.assertEqual(part.messages.tolist(), [[0, 1, 2], [1, 0, 1]])
+
+    def test_each_particle_has_its_own_reach(self):
+        mesh = box((2, 1, 1))
+        points = np.array([[0.5, 0.5, 0.5], [0.75, 0.5, 0.5], [1.25, 0.5, 0.5], [1.75, 0.5, 0.5]])
+        part = divide(mesh, Filling(mesh, points, np.array([0.5, 0.2, 0.2, 0.8])), mesh.curve(), 2)
+        self.assertEqual(part.messages.tolist(), [[0, 1, 1], [1, 0, 1]])
+
+    def test_a_corner_is_as_far_as_its_diagonal(self):
+        # Four ranks around an edge at (1, 1), with particles on the diagonal: 0.2 and 0.3 from both
+        # faces are 0.283 and 0.424 from the edge, so with 0.35 only the first goes to all three.
+        mesh = box((2, 2, 1))
+        points = np.array([[1. + s * u, 1. + t * u, 0.5] for s in (-1., 1.) for t in (-1., 1.)
+                           for u in (0.3, 0.2)])
+        part = divide(mesh, Filling(mesh, points, 0.35), mesh.curve(), 4)
+        self.assertEqual(part.owned.tolist(), [2, 2, 2, 2])
+        self.assertEqual(part.sent.tolist(), [5, 5, 5, 5])
+        self.assertEqual(int(part.ghosts.sum()), 20)
+
+    def test_a_receiver_in_many_cells_has_a_particle_once(self):
+        # The other rank owns nine cells around the particle.
+        mesh = box((2, 3, 3))
+        points = np.array([[0.9, 1.5, 1.5], [1.1, 1.5, 1.5]])
+        filling = Filling(mesh, points, 5.)
+        owner = np.zeros(mesh.cells, np.int32)
+        owner[1] = 1
+        self.assertEqual(ghosts.messages(mesh, filling, owner, 2).tolist(), [[0, 1, 1], [1, 0, 1]])
+
+    def test_the_reach_of_the_program(self):
+        # Both radii, a tenth of the largest diameter, and the range; then 0.1 per thousand.
+        np.testing.assert_allclose(reach_of(np.array([1., 2.]), 0.05) / 1.0001,
+                                   [0.5 + 1. + 0.25, 1. + 1. + 0.25])
+
     def test_against_the_definition(self):
-        mesh = box((3, 2, 1), 2, (False, False, True))
-        counts = np.random.default_rng(3).integers(0, 5, mesh.cells)
-        curve, n_ranks = mesh.curve(), 7
-        part = divide(mesh, counts, curve, n_ranks)
-        starts = cut(1000 + 2000 * counts.ravel()[curve], n_ranks, 8)
+        mesh, n_ranks = box((3, 2, 1), 2, (False, False, True)), 7
+        random = np.random.default_rng(3)
+        points = random.uniform(0., 1., (400, 3)) * np.array(mesh.upper)
+        for reach in (np.full(400, np.inf), random.uniform(0.1, 1., 400)):
+            for chunk in (ghosts.CHUNK, 30):
+                with patch.object(ghosts, "CHUNK", chunk):
+                    filling = Filling(mesh, points, reach)
+                    part = divide(mesh, filling, mesh.curve(), n_ranks)
+                expected = self.by_definition(mesh, points, reach, n_ranks)
+                np.testing.assert_array_equal(part.ghosts, expected)
+                self.assertEqual(int(part.owned.sum()), 400)
+
+    @staticmethod
+    def by_definition(mesh, points, reach, n_ranks):
+        """Ghosts of each rank, from the cells around each particle one by one."""
+        cells = np.floor(points).astype(int)
+        counts = np.zeros(mesh.cells, int)
+        np.add.at(counts, tuple(cells.T), 1)
+        curve = mesh.curve()
+        starts = cut(20 + 2000 * counts.ravel()[curve], n_ranks, 8)
         owner = np.empty(counts.size, int)
         for rank in range(n_ranks):
             owner[curve[starts[rank]:starts[rank + 1]]] = rank
         owner = owner.reshape(mesh.cells)
-        ghosts = np.zeros(n_ranks, int)
-        for cell in product(*(range(n) for n in mesh.cells)):
+        result = np.zeros(n_ranks, int)
+        for point, cell, limit in zip(points, cells, reach):
             receivers = set()
             for step in product((-1, 0, 1), repeat=3):
-                x, y, z = (c + s for c, s in zip(cell, step))
-                z %= mesh.cells[2]
-                if 0 <= x < mesh.cells[0] and 0 <= y < mesh.cells[1]:
-                    receivers.add(owner[x, y, z])
-            for rank in receivers - {owner[cell]}:
-                ghosts[rank] += counts[cell]
-        np.testing.assert_array_equal(part.ghosts, ghosts)
-        self.assertEqual(int(part.owned.sum()), int(counts.sum()))
+                x, y, z = near = [c + s for c, s in zip(cell, step)]
+                away = [max(low - v, 0., v - low - 1.) for low, v in zip(near, point)]
+                if 0 <= x < mesh.cells[0] and 0 <= y < mesh.cells[1] \
+                        and np.linalg.norm(away) <= limit:
+                    receivers.add(owner[x, y, z % mesh.cells[2]])
+            for rank in receivers - {owner[tuple(cell)]}:
+                result[rank] += 1
+        return result
 
-    def test_count_puts_points_into_their_cells(self):
-        counts = box((2, 2, 2)).count(np.array([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5], [1.9, 0.1, 0.1]]))
+    def test_particles_are_counted_in_their_cells(self):
+        counts = Filling(box((2, 2, 2)), np.array([[0.5, 0.5, 0.5], [1.5, 0.5, 0.5],
+                                                   [1.9, 0.1, 0.1]]), 0.).counts
         self.assertEqual((counts[0, 0, 0], counts[1, 0, 0], counts.sum()), (1, 2, 3))
+
+
+class SettledBed(unittest.TestCase):
+    """What the program itself counted (`ghosts` of summary.json) with a cell weight of 1000."""
+
+    def test_ghosts_of_the_benchmark(self):
+        table = np.loadtxt(BED, delimiter=",", skiprows=1) * 1e-6
+        # DMT is cut off at a tenth of the pull-off force: Hamaker's constant 4e-19 J, 2 x 0.35 mJ/m2.
+        reach = reach_of(table[:, 0], (4e-19 / 6. / (2. * np.pi * 7e-4) / 0.1) ** 0.5)
+        for trees, refinement, expected in (((24, 37, 6), 0, [3222, 6650]),
+                                            ((4, 6, 1), 3, [2698, 7094])):
+            mesh = Mesh(trees, (0., 0., 0.), (4e-3, 6e-3, 1e-3), refinement, (False, False, True))
+            filling, curve = Filling(mesh, table[:, 1:], reach), mesh.curve()
+            counted = [int(divide(mesh, filling, curve, n, 1000).ghosts.sum()) for n in (2, 4)]
+            self.assertEqual(counted, expected)
 
 
 class Cost(unittest.TestCase):
@@ -119,7 +203,7 @@ class Cost(unittest.TestCase):
         self.counts = np.full((6, 1, 1), 100)
 
     def part(self, n_ranks):
-        return divide(self.mesh, self.counts, self.mesh.curve(), n_ranks)
+        return divide(self.mesh, filled(self.mesh, self.counts), self.mesh.curve(), n_ranks)
 
     def test_one_rank_is_the_measure(self):
         costs = Costs(speeds=((1., 1e6),))
@@ -159,6 +243,11 @@ class Plate(unittest.TestCase):
         # 19 layers of 73/7 mm x 2 mm x 0.1 mm, 55 % full, of grains of 1.71e-13 m3 in the mean.
         self.assertAlmostEqual((len(many) - len(few)) / (19 * 73e-3 / 7. * 2e-3 * 1e-4 * 0.55
                                                          / self.mean_volume()), 1., delta=0.01)
+
+    def test_sizes_have_the_paper_s_mean_volume(self):
+        diameters = sizes(100000)
+        self.assertAlmostEqual((np.pi / 6. * diameters**3).mean() / self.mean_volume(), 1.,
+                               delta=0.01)
 
     @staticmethod
     def mean_volume():

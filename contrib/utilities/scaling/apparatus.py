@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from .ghosts import SKIN_SHARE
 from .mesh import Mesh
 
 SLOPE = math.tan(math.radians(35.))
@@ -16,7 +17,7 @@ SLOPE = math.tan(math.radians(35.))
 W1, W2, W3, W4 = 69e-3, 56e-3, 73e-3, 46.5e-3
 GAP, LIP, STROKE, FIRST_STROKE, MARGIN = 0.5e-3, 0.1e-3, 0.6e-3, 2.2e-3, 1e-3
 LAYER, CLEARANCE, RADIUS, N_LAYERS = 100e-6, 100e-6, 5e-3, 21
-LARGEST, SKIN_SHARE = 101.096e-6, 0.1
+LARGEST = 101.096e-6
 DIAMETERS = np.array([52.622, 57.7666, 63.4141, 69.6138, 76.4196, 83.8907, 92.0923, 101.096]) * 1e-6
 SHARES = np.array([0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927, 0.050544])
 BED_FRACTION = 0.55  # of the volume that is solid
@@ -80,3 +81,9 @@ def powder(a: dict[str, float], layers: int) -> np.ndarray:
     heap = lattice((middle, 0., 0.), (middle + length, length * SLOPE, depth), density, random)
     parts.append(heap[heap[:, 1] < SLOPE * (middle + length - heap[:, 0])])
     return np.concatenate(parts)
+
+
+def sizes(number: int) -> np.ndarray:
+    """Diameters (m) for so many particles; the paper's shares are of the volume."""
+    numbers = SHARES / DIAMETERS**3
+    return np.random.default_rng(2).choice(DIAMETERS, number, p=numbers / numbers.sum())

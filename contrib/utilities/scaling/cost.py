@@ -25,7 +25,7 @@ class Costs:
     """
 
     speeds: tuple[tuple[float, float], ...] = ((2e4, 10.5e6), (2e5, 7.3e6))
-    ghost: float = 0.2
+    ghost: float = 0.25
     search: float = 4.
     interval: float = 60.
     collectives: int = 40

@@ -98,9 +98,8 @@ class Mesh:
         outer = self.tree_order()[tuple(index >> self.refinement)]
         return np.argsort(((outer << (3 * self.refinement)) + inner).ravel(), kind="stable")
 
-    def count(self, points: np.ndarray) -> np.ndarray:
-        """Number of points in every cell; points beyond the box count to the cells at its edge."""
+    def find(self, points: np.ndarray) -> np.ndarray:
+        """Indices of each point's cell, shape (n, 3); for points beyond the box, of the one at its
+        edge."""
         cell = ((points - np.array(self.lower)) / self.width).astype(np.int64)
-        cell = np.clip(cell, 0, self.cells - 1)
-        flat = np.ravel_multi_index(tuple(cell.T), self.cells)
-        return np.bincount(flat, minlength=int(np.prod(self.cells))).reshape(self.cells)
+        return np.clip(cell, 0, self.cells - 1)

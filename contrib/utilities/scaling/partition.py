@@ -1,12 +1,12 @@
-"""Who owns which cells, and which particles each rank needs as ghosts."""
+"""Who owns which cells and particles, and what is sent as ghosts."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
+from .ghosts import Filling, messages
 from .mesh import Mesh
 
 
@@ -63,47 +63,14 @@ class Partition:
         return float(self.ghosts.sum() / self.owned.sum())
 
 
-def shifted(array: np.ndarray, offset: tuple[int, ...], periodic: tuple[bool, ...]) -> np.ndarray:
-    """The value at each cell's neighbour at `offset`; -1 where there is none."""
-    result = array
-    for axis, (step, wraps) in enumerate(zip(offset, periodic)):
-        if step == 0:
-            continue
-        result = np.roll(result, -step, axis)
-        if not wraps:
-            edge = [slice(None)] * 3
-            edge[axis] = slice(-1, None) if step > 0 else slice(0, 1)
-            result[tuple(edge)] = -1
-    return result
-
-
-def divide(mesh: Mesh, counts: np.ndarray, curve: np.ndarray, n_ranks: int,
+def divide(mesh: Mesh, filling: Filling, curve: np.ndarray, n_ranks: int,
            cell_weight: int = 20, particle_weight: int = 2000) -> Partition:
-    """Shares out the cells with their particles, `counts` of the shape of the mesh.
-
-    A particle is a ghost of every other rank that owns a cell around its own, empty or not: over
-    faces, edges and corners, also across periodic faces.
-    """
+    """Shares out the cells with their particles."""
+    counts = filling.counts
     weights = cell_weight + particle_weight * counts.ravel()[curve].astype(np.int64)
     starts = cut(weights, n_ranks, 8 if mesh.refinement > 0 else 1)
     owner = np.empty(counts.size, np.int32)
     owner[curve] = np.repeat(np.arange(n_ranks, dtype=np.int32), np.diff(starts))
-    owner = owner.reshape(counts.shape)
-
-    # Only cells at a border have receivers: one column for each direction.
-    around = np.stack([shifted(owner, offset, mesh.periodic).ravel()
-                       for offset in product((-1, 0, 1), repeat=3) if offset != (0, 0, 0)])
-    border = np.flatnonzero(((around != owner.ravel()) & (around >= 0)).any(axis=0))
-    near = np.sort(around[:, border], axis=0)
-    own = owner.ravel()[border]
-    is_new = (near >= 0) & (near != own)
-    is_new[1:] &= near[1:] != near[:-1]
-    row, column = np.nonzero(is_new)
-    receiver, sender = near[row, column], own[column]
-    number = counts.ravel()[border][column]
-    pair = sender.astype(np.int64) * n_ranks + receiver
-    links, place = np.unique(pair[number > 0], return_inverse=True)
-    amount = np.bincount(place, number[number > 0], len(links)).astype(np.int64)
     return Partition(cells=np.diff(starts),
-                     owned=np.bincount(owner.ravel(), counts.ravel(), n_ranks).astype(np.int64),
-                     messages=np.column_stack((links // n_ranks, links % n_ranks, amount)))
+                     owned=np.bincount(owner, counts.ravel(), n_ranks).astype(np.int64),
+                     messages=messages(mesh, filling, owner.reshape(counts.shape), n_ranks))

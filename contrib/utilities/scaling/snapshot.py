@@ -36,20 +36,22 @@ def _mesh_of_input(prm: Parameters) -> Mesh:
                 int(mesh.number("initial refinement")), tuple(periodic))
 
 
-def read(file: Path) -> tuple[Mesh, np.ndarray]:
-    """Mesh and centres (m) of a picture in the output folder of a run: the mesh is that of its
-    used.prm, or of its apparatus."""
+def read(file: Path) -> tuple[Mesh, np.ndarray, np.ndarray]:
+    """Mesh, centres and diameters (m) of a picture in the output folder of a run: the mesh is that
+    of its used.prm, or of its apparatus."""
     folder = file.resolve().parent
     try:
         data = read_vtu(file, ["diameter"])
         points = data["points"].astype(float)
         if len(points) == 0:
             raise Failure(f"{file} holds no particles. Choose a later picture.")
+        diameters = data["diameter"].astype(float)
         apparatus = folder / "apparatus.json"
         if apparatus.is_file():
-            return mesh_of(json.loads(apparatus.read_text(encoding="utf-8")),
-                           float(data["diameter"].max())), points
-        return _mesh_of_input(parse_prm((folder / "used.prm").read_text(encoding="utf-8"))), points
+            mesh = mesh_of(json.loads(apparatus.read_text(encoding="utf-8")), diameters.max())
+        else:
+            mesh = _mesh_of_input(parse_prm((folder / "used.prm").read_text(encoding="utf-8")))
+        return mesh, points, diameters
     except OSError as error:
         raise Failure(f"{error.filename} cannot be read. A picture is looked at in the output "
                       "folder of its run, beside used.prm.") from error
