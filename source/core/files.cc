@@ -45,6 +45,8 @@ std::string read_file(const std::string &path, MPI_Comm comm)
     std::ostringstream all;
     if (fs::is_directory(path))
       error = "it is a folder";
+    else if (fs::is_character_file(path) || fs::is_block_file(path))
+      error = "it is a device"; // of which some never end
     else if (!stream)
       error = std::strerror(errno);
     else if (stream.peek() != std::ifstream::traits_type::eof()) {

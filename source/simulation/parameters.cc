@@ -254,6 +254,10 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
     const auto value = after.find(place);
     entry.is_default =
         entry.name.empty() || (value != after.end() && value->second == before.at(place));
+    // Numbers of subsections are known before the defaults are printed.
+    for (const Repeated &r : repeated_sections())
+      if (entry.path == r.path && entry.name == r.entry)
+        entry.is_default = entry.value == std::to_string(SectionCounts().*r.count);
   }
 }
 
