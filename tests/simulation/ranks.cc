@@ -123,7 +123,8 @@ Result run(const std::string &balancing, MPI_Comm comm)
   test_case.run();
   Result result;
   result.particles = particle_table(*test_case);
-  for (const ExactSum &component : test_case->global_solid_loads().back().force)
+  const SolidLoad load = test_case->global_solid_loads().back();
+  for (const ExactSum &component : load.force)
     result.load.push_back(component.value());
   result.lost = test_case->get_ledger().through_outlet[0].global(comm).mass;
   result.balances = test_case->get_system().n_balances();
