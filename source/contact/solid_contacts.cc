@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace eunoe {
 
@@ -88,6 +89,41 @@ void SolidContacts::restore(const std::int32_t particle, const std::int32_t soli
   it->living[it->n_living++] = record;
 }
 
+std::int32_t SolidContacts::take_living(Candidate &candidate, const Vec3 &normal) const
+{
+  unsigned int best = candidate.n_living;
+  double best_cosine = 0.9;
+  for (unsigned int l = 0; l < candidate.n_living; ++l) {
+    const double cosine = candidate.living[l] == ContactMemory::none
+                              ? -1.
+                              : dot(normal, normals[candidate.living[l]]);
+    if (cosine > best_cosine) {
+      best = l;
+      best_cosine = cosine;
+    }
+  }
+  return best < candidate.n_living ? std::exchange(candidate.living[best], ContactMemory::none)
+                                   : ContactMemory::none;
+}
+
+void SolidContacts::go_on(Candidate &candidate, const SurfaceContact *found,
+                          const unsigned int n_found)
+{
+  std::array<std::int32_t, Shape::max_contacts> living = {};
+  for (unsigned int k = 0; k < n_found; ++k) {
+    living[k] = take_living(candidate, found[k].normal);
+    if (living[k] == ContactMemory::none)
+      living[k] = create(found[k].normal);
+    else
+      normals[living[k]] = found[k].normal;
+  }
+  for (unsigned int l = 0; l < candidate.n_living; ++l)
+    if (candidate.living[l] != ContactMemory::none)
+      memory.release(candidate.living[l]);
+  candidate.living = living;
+  candidate.n_living = n_found;
+}
+
 void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Solid> &solids,
                                const double time, const double dt, std::vector<SolidLoad> *loads)
 {
@@ -96,7 +132,7 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
   for (std::size_t s = 0; s < solids.size(); ++s)
     way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
   for (Candidate &candidate : candidates) {
-    // Sleepers weigh on solids, too, but feel nothing.
+    // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
     if (loads == nullptr && !particles.is_awake(candidate.particle))
       continue;
     // Too far for a contact, as long as both together have not gone the gap that there was.
@@ -116,36 +152,14 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
                                          first, first + candidate.n_facets, found.data())
             : 0;
 
-    // A contact goes on if there was one with nearly the same normal; it has moved by a tiny
-    // part of the particle's size since, over whatever edge.
-    std::array<std::int32_t, Shape::max_contacts> living = {};
+    Candidate asleep = candidate;
+    const bool is_awake = particles.is_awake(candidate.particle);
+    if (is_awake)
+      go_on(candidate, found.data(), n_found);
     for (unsigned int k = 0; k < n_found; ++k) {
-      unsigned int best = candidate.n_living;
-      double best_cosine = 0.9;
-      for (unsigned int l = 0; l < candidate.n_living; ++l) {
-        const double cosine = candidate.living[l] == ContactMemory::none
-                                  ? -1.
-                                  : dot(found[k].normal, normals[candidate.living[l]]);
-        if (cosine > best_cosine) {
-          best = l;
-          best_cosine = cosine;
-        }
-      }
-      if (best < candidate.n_living) {
-        living[k] = candidate.living[best];
-        normals[living[k]] = found[k].normal;
-        candidate.living[best] = ContactMemory::none;
-      } else
-        living[k] = create(found[k].normal);
-    }
-    for (unsigned int l = 0; l < candidate.n_living; ++l)
-      if (candidate.living[l] != ContactMemory::none)
-        memory.release(candidate.living[l]);
-    candidate.living = living;
-    candidate.n_living = n_found;
-
-    for (unsigned int k = 0; k < n_found; ++k) {
-      add_to_block(particles, solid, candidate, found[k], living[k]);
+      add_to_block(particles, solid, candidate, found[k],
+                   is_awake ? candidate.living[k] : take_living(asleep, found[k].normal));
+      places->feels[block->n - 1] = is_awake;
       if (block->n == PairBlock::size)
         run_block(particles, solids, dt, loads);
     }
@@ -187,9 +201,9 @@ void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &s
   b.roll_y[k] = roll.y;
   b.roll_z[k] = roll.z;
   b.kind[k] = model.get_materials().kind(particles.type[p], solid.material);
-  const double *const history = memory[record];
+  const double *const history = record == ContactMemory::none ? nullptr : memory[record];
   for (unsigned int h = 0; h < model.history_size(); ++h)
-    b.history[h][k] = history[h];
+    b.history[h][k] = history == nullptr ? 0. : history[h];
 
   places->particle[k] = p;
   places->solid[k] = candidate.solid;
@@ -218,8 +232,6 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
     const Vec3 shear = {b.shear_x[k], b.shear_y[k], b.shear_z[k]};
     const Vec3 rolling = {b.torque_x[k], b.torque_y[k], b.torque_z[k]};
     const Vec3 force = (b.contact_force[k] - b.cohesion[k]) * n + shear;
-    particles.force[p].add(-force);
-    particles.torque[p].add(rolling - particles.position[p].w * cross(n, shear));
     if (loads != nullptr) {
       SolidLoad &load = (*loads)[places->solid[k]];
       const Vec3 torque =
@@ -229,6 +241,10 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
         load.torque[d] += torque[d];
       }
     }
+    if (!places->feels[k])
+      continue;
+    particles.force[p].add(-force);
+    particles.torque[p].add(rolling - particles.position[p].w * cross(n, shear));
     double *const history = memory[places->record[k]];
     for (unsigned int h = 0; h < model.history_size(); ++h)
       history[h] = b.history[h][k];

@@ -93,6 +93,11 @@ def sleeping(program: str, folder: Path) -> None:
         other = Case(program, CASE, folder / str(ranks), list(SLEEPY))
         other.run(ranks, *settings)
         compare(reference, other, f"With sleep, on {ranks} ranks")
+    # Forces on solids are summed over sleepers, too, and must leave no trace in them.
+    quiet = Case(program, CASE, folder / "no_forces", list(SLEEPY))
+    quiet.run(1, "post-processing/solid forces/calculation = false")
+    if quiet.dump.read_bytes() != reference.dump.read_bytes():
+        raise Failure("With sleep, the state depends on whether forces on solids are written.")
     other = Case(program, CASE, folder / "restarted", list(SLEEPY))
     other.run(2, *EVERY, "simulation control/iteration end = 11111")
     other.run(4, *EVERY, "restart/restart = true")

@@ -67,6 +67,7 @@ private:
   {
     std::array<std::int32_t, PairBlock::size> particle, solid, record;
     std::array<Vec3, PairBlock::size> point;
+    std::array<bool, PairBlock::size> feels; ///< the particle is awake
   };
 
   void add_to_block(const ParticleArrays &particles, const Solid &solid, const Candidate &candidate,
@@ -74,6 +75,11 @@ private:
   void run_block(ParticleArrays &particles, const std::vector<Solid> &solids, double dt,
                  std::vector<SolidLoad> *loads);
   std::int32_t create(const Vec3 &normal);
+  /// Takes the living contact with nearly the same normal out of a candidate: a contact moves by a
+  /// tiny part of the particle's size in a step, over whatever edge. None if there is none.
+  std::int32_t take_living(Candidate &candidate, const Vec3 &normal) const;
+  /// Contacts that were found go on, or begin; those that were not have ended.
+  void go_on(Candidate &candidate, const SurfaceContact *found, unsigned int n_found);
 
   const ContactModel &model;
   std::vector<RigidState> solids_at_search;

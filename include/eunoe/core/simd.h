@@ -6,7 +6,7 @@
 /// Compiles a kernel for several instruction sets (the option EUNOE_INSTRUCTION_SETS of CMake) and
 /// picks one when the program starts. All of them round every operation alike (the project is built
 /// without contraction of multiply-add), so the choice changes the speed of a run and never its
-/// bits; tests/restart compares them.
+/// bits; tests/instruction_sets compares them.
 #if defined(__x86_64__) && defined(EUNOE_INSTRUCTION_SETS)
 #define EUNOE_MULTIVERSION __attribute__((noinline, target_clones(EUNOE_INSTRUCTION_SETS)))
 #else
