@@ -36,13 +36,23 @@ take_apart() {
   tail -c +$((28 + length)) "$1" | head -c -8
 }
 
-# Runs a case to its end, or up to the checkpoint that it writes when it is asked to stop, and prints
-# the path of that.
+# Runs a case until there is a checkpoint, and prints the path of that.
 make_checkpoint() {
-  local folder=$build/seeds/$1 case=$2
+  local folder=$build/seeds/$1 case=$2 waited=0
   shift 2
-  timeout 60 "$build/eunoe-particles" "$case" --quiet --set "simulation control/output path = $folder" \
-    --set "restart/checkpoint = true" "$@" >&2 || true
+  rm -rf "$folder"
+  "$build/eunoe-particles" "$case" --quiet --set "simulation control/output path = $folder" \
+    --set "restart/checkpoint = true" "$@" >&2 &
+  while kill -0 $! 2>/dev/null && [ "$waited" -lt 1200 ] && ! ls "$folder"/*.checkpoint; do
+    sleep 1
+    waited=$((waited + 1))
+  done >/dev/null 2>&1
+  kill -9 $! 2>/dev/null || true
+  wait $! 2>/dev/null || true
+  if ! ls "$folder"/*.checkpoint >/dev/null 2>&1; then
+    echo "$case leaves no checkpoint to begin with." >&2
+    return 1
+  fi
   ls "$folder"/*.checkpoint | head -1
 }
 
@@ -65,7 +75,7 @@ fill_corpora() {
   file=$(make_checkpoint general contrib/fuzzing/seeds/restart.prm)
   take_apart "$file" >"$folder/restart/general"
   cp "$file" "$folder/restart/general" "$folder/checkpoint"
-  file=$(make_checkpoint spreading tests/spreading/tiny.prm)
+  file=$(make_checkpoint spreading tests/spreading/tiny.prm --set "restart/frequency = 500")
   take_apart "$file" >"$folder/restart_spreading/spreading"
 }
 
