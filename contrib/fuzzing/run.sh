@@ -31,7 +31,7 @@ ninja -C "$build"
 take_apart() {
   local length
   length=$(od -An -t u8 -j 19 -N 8 "$1" | tr -d ' ')
-  tail -c +28 "$1" | head -c "$length" | sed 's/"input":"[^"]*"/"input":"="/'
+  head -c $((27 + length)) "$1" | tail -c +28 | sed 's/"input":"[^"]*"/"input":"="/'
   printf '\0'
   tail -c +$((28 + length)) "$1" | head -c -8
 }
