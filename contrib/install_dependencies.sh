@@ -12,6 +12,7 @@ build=(
   libdeal.ii-dev               # particles, meshes, parameters; brings p4est, Trilinos, Boost, Open MPI
   libboost-program-options-dev # command line
   nlohmann-json3-dev           # summary.json
+  libeigen3-dev                # linear algebra of discovery
 )
 report=(
   python3-numpy

@@ -1,6 +1,7 @@
 #include <eunoe/core/input_file.h>
 
 #include <boost/algorithm/string.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -76,6 +77,20 @@ std::string nearest_name(const std::string &word, const std::vector<std::string>
 
 namespace {
 
+/// Whether a text can go into files in JSON, which are UTF-8 throughout.
+bool is_utf8(const std::string &text)
+{
+  try {
+    nlohmann::json(text).dump();
+    return true;
+  } catch (const nlohmann::json::exception &) {
+    return false;
+  }
+}
+
+const std::string not_utf8 = "this is not written in UTF-8.",
+                  mend_encoding = "Save the file in that encoding, or keep to ASCII.";
+
 /// Reads one file and those that it includes.
 class InputParser
 {
@@ -103,7 +118,9 @@ public:
         statement += strip(line);
       }
       boost::trim(statement);
-      if (!statement.empty())
+      if (!is_utf8(statement))
+        problems.add(where + ":", not_utf8, mend_encoding);
+      else if (!statement.empty())
         understand(statement, file, where);
     }
     if (path.size() > open_at_start) {
@@ -217,6 +234,10 @@ InputEntry parse_override(const std::string &text, Problems &problems)
   InputEntry entry;
   entry.where = "--set \"" + text + "\"";
   const std::size_t equals = text.find('=');
+  if (!is_utf8(text)) {
+    problems.add("--set:", not_utf8, mend_encoding);
+    return entry;
+  }
   if (!parse_assignment(text, entry)) {
     problems.add(entry.where + ":", "it has no '='.", "Write --set \"subsection/entry = value\".");
     return entry;

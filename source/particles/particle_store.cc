@@ -19,7 +19,7 @@ namespace {
 /// Places of a particle's data among its properties in the handler.
 namespace property {
 constexpr unsigned int velocity = 0, spin = 3, force = 6, torque = 9, radius = 12, mass = 13,
-                       type = 14, origin = 15, id = 16, extra = 17;
+                       type = 14, origin = 15, id = 16, work = 17, extra = 18;
 } // namespace property
 
 void store(const Vec3 &v, double *values)
@@ -75,6 +75,7 @@ struct ParticleStore::Implementation
     values[property::type] = p.type;
     values[property::origin] = encode(origin);
     values[property::id] = p.id;
+    values[property::work] = 1.;
     values.insert(values.end(), extra.begin(), extra.end());
     return values;
   }
@@ -84,10 +85,12 @@ struct ParticleStore::Implementation
   double weight(const Range &particles, const LoadBalancingParameters &p) const
   {
     double sum = 0.;
-    for (const auto &particle : particles)
-      sum += asleep >= 0 && particle.get_properties()[property::extra + asleep] != 0.
-                 ? p.inactive_factor
-                 : p.active_factor;
+    for (const auto &particle : particles) {
+      const auto values = particle.get_properties();
+      sum += values[property::work] * (asleep >= 0 && values[property::extra + asleep] != 0.
+                                           ? p.inactive_factor
+                                           : p.active_factor);
+    }
     return sum * p.particle_weight;
   }
 
@@ -210,7 +213,7 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
     throw std::logic_error("the mesh did not take over all inserted particles");
 }
 
-void ParticleStore::write(const ParticleArrays &particles)
+void ParticleStore::write(const ParticleArrays &particles, const std::vector<double> &work)
 {
   Implementation &impl = *implementation;
   const PeriodicBox &box = impl.domain.periods();
@@ -223,6 +226,7 @@ void ParticleStore::write(const ParticleArrays &particles)
     store(particles.force[row].vec(), &values[property::force]);
     store(particles.torque[row].vec(), &values[property::torque]);
     values[property::origin] = encode({impl.rank, static_cast<std::int32_t>(row)});
+    values[property::work] = work[row];
     for (unsigned int e = 0; e < impl.n_extra; ++e)
       values[property::extra + e] = particles.extra[e][row];
   }

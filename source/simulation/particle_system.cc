@@ -59,6 +59,22 @@ ContactRows ParticleSystem::contact_rows() const
   return collected;
 }
 
+std::vector<double> ParticleSystem::work() const
+{
+  // Shares of a step's time, measured on a settled bed, where a particle has four listed pairs and
+  // two to three contacts.
+  constexpr double of_particle = 0.15, of_pair = 0.04, of_contact = 0.28;
+  std::vector<double> work(particles.size(), of_particle);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double half = 0.5 * (is_within_reach(k) ? of_pair + of_contact : of_pair);
+    work[pairs.i[k]] += half;
+    work[pairs.j[k]] += half;
+  }
+  for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates())
+    work[candidate.particle] += of_contact;
+  return work;
+}
+
 std::vector<std::size_t> ParticleSystem::find_leaving()
 {
   std::vector<std::size_t> leaving;
@@ -78,7 +94,7 @@ void ParticleSystem::search(const std::vector<Solid> &solids,
                             const std::vector<std::size_t> &lost)
 {
   rows.collect(particles, pairs, solid_contacts);
-  store.write(particles);
+  store.write(particles, work());
   std::vector<std::size_t> leaving = find_leaving();
   for (const std::size_t row : lost) {
     ledger.lost.count(particles.velocity[row].w);
@@ -93,7 +109,7 @@ ParticleId ParticleSystem::exchange(const Delivery &delivery,
                                     const std::vector<Solid> &solids)
 {
   rows.collect(particles, pairs, solid_contacts);
-  store.write(particles);
+  store.write(particles, work());
   std::vector<std::size_t> leaving = find_leaving();
   std::vector<bool> has_left(particles.n_owned, false);
   for (const std::size_t row : leaving)
@@ -164,19 +180,22 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
   ++searches;
 }
 
+bool ParticleSystem::is_within_reach(const std::size_t pair) const
+{
+  const Quad &a = particles.position[pairs.i[pair]], &b = particles.position[pairs.j[pair]];
+  const double reach = a.w + b.w + model.range();
+  return norm_square(domain.periods().shortest(b.vec() - a.vec())) <= reach * reach;
+}
+
 void ParticleSystem::make_room_for_contacts()
 {
   // Only when there are many more pairs than ever before: it costs as much as a step.
   if (pairs.size() <= pairs_with_room)
     return;
   pairs_with_room = pairs.size() + pairs.size() / 10;
-  const PeriodicBox &box = domain.periods();
   std::size_t n = 0;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Quad &a = particles.position[pairs.i[k]], &b = particles.position[pairs.j[k]];
-    const double reach = a.w + b.w + model.range();
-    n += norm_square(box.shortest(b.vec() - a.vec())) <= reach * reach ? 1 : 0;
-  }
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    n += is_within_reach(k) ? 1 : 0;
   pairs.memory.reserve(n + n / 5);
 }
 

@@ -294,13 +294,23 @@ unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double
 {
   thread_local std::vector<Touch> touches;
   touches.clear();
-  for (const std::int32_t *facet = begin; facet != end; ++facet) {
-    const Touch touch = closest(centre, *facet);
+  for (const std::int32_t *number = begin; number != end; ++number) {
+    const Facet &facet = facets[*number];
+    if (std::abs(dot(facet.normal, centre) - facet.offset) >= reach)
+      continue;
+    const Touch touch = closest(centre, *number);
     if (touch.distance < reach)
       touches.push_back(touch);
   }
   if (touches.empty())
     return 0;
+  // The usual case, a sphere on the inside of one facet, needs none of what follows.
+  if (touches.size() == 1 && touches[0].n_corners == 0 && touches[0].distance > 0.) {
+    const Vec3 &normal = facets[touches[0].facet].normal;
+    contacts[0].normal = dot(touches[0].offset, normal) > 0. ? normal : -normal;
+    contacts[0].distance = touches[0].distance;
+    return 1;
+  }
 
   // An edge or corner counts if no triangle that shares it comes nearer: then the distance to
   // the whole surface has a minimum there.

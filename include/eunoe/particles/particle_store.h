@@ -35,7 +35,8 @@ public:
 
   /// Takes over the state of the owned particles, which must be those of the last `read`, wraps
   /// their positions and notes that their contacts are kept in row k of this rank.
-  void write(const ParticleArrays &particles);
+  /// @param work cost of each in a step, about 1; new particles count 1
+  void write(const ParticleArrays &particles, const std::vector<double> &work);
 
   /// Removes owned particles by their rows in the last `read`; collective. To be called between
   /// `write` and `migrate`.

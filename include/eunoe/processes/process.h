@@ -26,6 +26,20 @@ struct RunEstimate
   double steps = 0.;
 };
 
+/// One number that a run has measured, as discovery compares it with measured data. SI units.
+struct Measurement
+{
+  std::string observable;
+  int index; ///< layer or bin; 0 for a single number
+  double value;
+};
+
+/// What an observable is: for lists, and for the header of tables.
+struct ObservableDescription
+{
+  std::string name, unit, index_meaning, text;
+};
+
 /// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from
 /// the parts of the engine. A process is a section of the input file.
 class Process : public ParameterSection
@@ -82,6 +96,10 @@ public:
 
   /// Whether all work is done.
   virtual bool finished() const = 0;
+
+  /// What has been measured so far, the same on every rank, and what those observables are.
+  virtual std::vector<Measurement> measurements() const { return {}; }
+  virtual std::vector<ObservableDescription> observables() const { return {}; }
 
   /// Adds what the process has found to the keys of summary.json.
   virtual void add_to_summary(nlohmann::ordered_json &) const {}

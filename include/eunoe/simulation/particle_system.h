@@ -107,6 +107,9 @@ public:
   ParticleArrays particles;
 
 private:
+  /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
+  std::vector<double> work() const;
+  bool is_within_reach(std::size_t pair) const;
   std::vector<std::size_t> find_leaving();
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
