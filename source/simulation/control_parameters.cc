@@ -28,6 +28,9 @@ void ControlParameters::declare(dealii::ParameterHandler &prm)
                  "Steps between files for pictures; 0: none.");
   declare::positive(prm, "output time", output_time,
                     "Simulated time between files for pictures (s).");
+  prm.add_parameter("output time interval", output_window,
+                    "Simulated times between which files for pictures are written (s).",
+                    declare::Patterns::List(declare::Patterns::Double(), 2, 2));
   declare::count(prm, "log frequency", log_frequency,
                  "Steps between lines of a log that is no terminal; 0: none.");
   prm.leave_subsection();

@@ -86,8 +86,10 @@ void create(Triangulation &triangulation, const MeshParameters &mesh)
                          ? "that " + mesh.file + " is a Gmsh file of hexahedra."
                          : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));
   }
-  if (mesh.scale != 1.)
-    dealii::GridTools::scale(mesh.scale, triangulation);
+  if (!mesh.placement.is_identity())
+    dealii::GridTools::transform(
+        [&mesh](const dealii::Point<3> &x) { return to_point(mesh.placement(to_vec3(x))); },
+        triangulation);
 }
 
 /// A flat part of the boundary with one id.

@@ -31,7 +31,7 @@ void MeshParameters::declare(dealii::ParameterHandler &prm)
   prm.add_parameter("initial refinement", refinement,
                     "Number of times that every cell is cut into eight.",
                     declare::Patterns::Integer(0, 12));
-  prm.add_parameter("scale", scale, "Factor on all coordinates.", declare::Patterns::Double(0.));
+  placement.declare(prm);
   prm.leave_subsection();
 }
 
@@ -39,8 +39,7 @@ void MeshParameters::check(const ParameterCheck &check) const
 {
   check.require(type != "gmsh" || file != "none", {mesh_section}, "file name",
                 "is missing while the type is 'gmsh'.", "Name the mesh file.");
-  check.require(scale > 0., {mesh_section}, "scale", "is " + format(scale) + ".",
-                "Give a positive factor.");
+  placement.check(check, {mesh_section});
 }
 
 void BoundaryParameters::declare(dealii::ParameterHandler &prm)

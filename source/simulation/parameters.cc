@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/simulation/lethe_spellings.h>
 #include <eunoe/simulation/parameters.h>
 
 #include <boost/property_tree/json_parser.hpp>
@@ -271,6 +272,7 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
     if (!entry.name.empty())
       entries.push_back(entry);
   }
+  translate_lethe(entries, problems);
   Parameters parameters(count(entries));
   parameters.set(entries, problems);
 

@@ -36,6 +36,12 @@ std::vector<Process::Field> make_fields(const Parameters &parameters)
   return fields;
 }
 
+bool is_in_box(const Vec3 &x, const Vec3 &lower, const Vec3 &upper)
+{
+  return x.x >= lower.x && x.x <= upper.x && x.y >= lower.y && x.y <= upper.y && x.z >= lower.z &&
+         x.z <= upper.z;
+}
+
 /// Null for a process, which makes its own.
 std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm comm)
 {
@@ -314,9 +320,15 @@ void Simulation::insert_if_due()
   const unsigned int frequency = parameters.insertion.frequency;
   if (step != 0 && (frequency == 0 || step % frequency != 0))
     return;
+  std::vector<std::size_t> removed;
+  const InsertionParameters &p = parameters.insertion;
+  if (p.removes)
+    for (std::size_t row = 0; row < system.particles.n_owned; ++row)
+      if (is_in_box(system.particles.position[row].vec(), p.removal_lower, p.removal_upper))
+        removed.push_back(row);
   Delivery delivery;
   delivery.particles = insertion->next(next_id);
-  exchange(delivery, {});
+  exchange(delivery, removed);
   ++n_insertions;
 }
 
@@ -350,12 +362,17 @@ void Simulation::do_what_is_due()
     observable->step(*this);
 
   const ControlParameters &control = parameters.control;
+  const double half_step = 0.5 * control.time_step;
   const bool output_due =
       control.output_control == "time"
-          ? present_time >= next_output - 0.5 * control.time_step
+          ? present_time >= next_output - half_step
           : control.output_frequency > 0 && step % control.output_frequency == 0;
+  const bool in_window = present_time >= control.output_window[0] - half_step &&
+                         present_time <= control.output_window[1] + half_step;
   if (output_due) {
     next_output += control.output_time;
+  }
+  if (output_due && in_window) {
     write_pictures(*particle_pictures);
     const Timers::Scope scope(timers, Section::output);
     solid_pictures->write(present_time, solids);

@@ -45,7 +45,7 @@ TriangleMesh make_mesh(const SolidObject &object, MPI_Comm comm)
     arguments.finish();
   }
   for (Vec3 &vertex : mesh.vertices)
-    vertex = object.scale * vertex - object.centre;
+    vertex = object.placement(vertex) - object.centre;
   const std::string defect = mesh.defect();
   if (!defect.empty())
     throw std::invalid_argument("the surface cannot be used: " + defect);
@@ -79,8 +79,7 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
         "flat_blade: start of the front lower edge : length in z : thickness : "
         "height.");
     prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
-    prm.add_parameter("scale", object.scale, "Factor on all coordinates.",
-                      declare::Patterns::Double(0.));
+    object.placement.declare(prm);
     prm.leave_subsection();
     declare_function(prm, "translational velocity", object.velocity, object.velocity_constants,
                      "Velocity of the centre of rotation (m/s)");
@@ -105,8 +104,7 @@ void SolidObjectParameters::check(const ParameterCheck &check) const
                   "is missing while the type is 'gmsh'.", "Name the file, or set type = shape.");
     check.require(object.simplex, path, "simplex", "is false.",
                   "Surfaces of solids are made of triangles: set it to true.");
-    check.require(object.scale > 0., path, "scale", "is " + format(object.scale) + ".",
-                  "Give a positive factor.");
+    object.placement.check(check, path);
   }
 }
 

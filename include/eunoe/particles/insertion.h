@@ -6,6 +6,7 @@
 #include <eunoe/particles/new_particle.h>
 #include <eunoe/particles/physical_properties.h>
 
+#include <functional>
 #include <mpi.h>
 
 namespace eunoe {
@@ -25,6 +26,9 @@ struct InsertionParameters : public ParameterSection
   double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
   unsigned int seed = 1;
   Vec3 velocity, spin;
+  std::string acceptance = "1", acceptance_constants; ///< a point is used where this is positive
+  bool removes = false; ///< empties the removal box before every event
+  Vec3 removal_lower, removal_upper = {1., 1., 1.};
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
@@ -73,6 +77,9 @@ struct VolumeGrid
   double offset = 0.;     ///< largest random shift in each direction (m)
   std::vector<int> order; ///< directions from the first filled to the last
 
+  /// Leaves out the points, before their shift, that @p accepts refuses.
+  void restrict_to(const std::function<bool(const Vec3 &)> &accepts);
+
   /// Number of points that fit.
   std::size_t capacity() const;
   /// The k-th point, shifted by draws that depend on (seed, id).
@@ -81,6 +88,11 @@ struct VolumeGrid
 private:
   /// Number of points in direction @p d, a whole number.
   double points_along(unsigned int d) const;
+  /// Lower corner of the cell of the k-th point of all (m).
+  Vec3 cell(std::size_t k) const;
+
+  bool restricted = false;
+  std::vector<std::uint32_t> accepted; ///< of all points, if not all are used
 };
 
 } // namespace eunoe

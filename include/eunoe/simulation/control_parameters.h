@@ -17,6 +17,7 @@ struct ControlParameters : public ParameterSection
   std::string output_control = "iteration";
   unsigned long long output_frequency = 0;
   double output_time = 1.;
+  std::vector<double> output_window = {0., 1e308}; ///< first and last moment of pictures (s)
   unsigned long long log_frequency = 1000;
 
   void declare(dealii::ParameterHandler &prm) override;

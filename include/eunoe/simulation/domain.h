@@ -3,6 +3,7 @@
 
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/periodic_box.h>
+#include <eunoe/solids/placement.h>
 #include <eunoe/solids/solid.h>
 
 #include <mpi.h>
@@ -17,7 +18,7 @@ struct MeshParameters : public ParameterSection
   std::string grid_type = "hyper_cube";
   std::string grid_arguments = "-1 : 1 : false";
   unsigned int refinement = 0;
-  double scale = 1.;
+  Placement placement;
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;

@@ -2,6 +2,7 @@
 #define eunoe_solids_solid_parameters_h
 
 #include <eunoe/core/parameter_section.h>
+#include <eunoe/solids/placement.h>
 #include <eunoe/solids/solid.h>
 #include <eunoe/solids/triangulated_surface.h>
 
@@ -36,7 +37,7 @@ struct SolidObject
   std::string shape = "plane";
   std::string arguments = "0,0,0 : 1,0,0 : 0,0,1";
   bool simplex = true;
-  double scale = 1.;
+  Placement placement;
   std::string velocity = "0; 0; 0", angular_velocity = "0; 0; 0";
   std::string velocity_constants, angular_velocity_constants;
   Vec3 centre;

@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/core/expressions.h>
 #include <eunoe/particles/insertion.h>
 
 #include <algorithm>
@@ -61,6 +62,17 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
                     "volume: largest random shift of a particle over the largest diameter.",
                     Double(0.));
   declare::count(prm, "insertion prn seed", seed, "volume: seed of the random shifts.");
+  prm.enter_subsection("insertion acceptance function");
+  prm.add_parameter("Function expression", acceptance,
+                    "volume: expression in x, y, z; points of the grid are used where it is "
+                    "positive.");
+  prm.add_parameter("Function constants", acceptance_constants,
+                    "Constants of the expression, 'a=1, b=2'.");
+  prm.leave_subsection();
+  prm.add_parameter("remove particles", removes,
+                    "Whether the removal box is emptied before every event.");
+  declare::corners(prm, "removal box points coordinates", removal_lower, removal_upper,
+                   "Two opposite corners of the removal box (m).");
   declare::vector(prm, "initial velocity", velocity, "volume: velocity of the particles (m/s).");
   declare::vector(prm, "initial angular velocity", spin,
                   "volume: angular velocity of the particles (rad/s).");
@@ -69,7 +81,20 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
 
 void InsertionParameters::check(const ParameterCheck &check) const
 {
+  if (removes)
+    check.require(removal_lower.x < removal_upper.x && removal_lower.y < removal_upper.y &&
+                      removal_lower.z < removal_upper.z,
+                  {section}, "removal box points coordinates",
+                  "has a first corner that is not below the second in every direction.",
+                  "Give the lower corner first.");
   if (method == "volume") {
+    try {
+      Expressions(acceptance, acceptance_constants, 1);
+    } catch (const std::invalid_argument &error) {
+      check.require(false, {section, "insertion acceptance function"}, "Function expression",
+                    "is not understood: " + std::string(error.what()) + ".",
+                    "Write one expression in x, y and z.");
+    }
     check.require(box_lower.x < box_upper.x && box_lower.y < box_upper.y &&
                       box_lower.z < box_upper.z,
                   {section}, "insertion box points coordinates",

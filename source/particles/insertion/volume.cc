@@ -1,3 +1,4 @@
+#include <eunoe/core/expressions.h>
 #include <eunoe/core/random.h>
 #include <eunoe/particles/insertion.h>
 
@@ -9,6 +10,8 @@ namespace eunoe {
 namespace {
 /// More than any run can have ids for, and whole as a double.
 constexpr double many = 0x1p32;
+/// Points at which an acceptance function is asked, as many as fit into some seconds.
+constexpr std::size_t most_restricted = 100000000;
 } // namespace
 
 double VolumeGrid::points_along(const unsigned int d) const
@@ -18,21 +21,44 @@ double VolumeGrid::points_along(const unsigned int d) const
 
 std::size_t VolumeGrid::capacity() const
 {
+  if (restricted)
+    return accepted.size();
   return static_cast<std::size_t>(
       std::min(points_along(0) * points_along(1) * points_along(2), many));
 }
 
-Vec3 VolumeGrid::point(std::size_t k, const unsigned int seed, const ParticleId id) const
+Vec3 VolumeGrid::cell(std::size_t k) const
 {
   Vec3 x;
   for (const int d : order) {
     const auto n = static_cast<std::size_t>(points_along(static_cast<unsigned int>(d)));
-    const double slack = pitch - offset;
-    x[d] = lower[d] + (k % n) * pitch + 0.5 * slack +
-           offset * uniform(seed, Draw::offset, id, static_cast<std::uint32_t>(d));
+    x[d] = lower[d] + (k % n) * pitch;
     k /= n;
   }
   return x;
+}
+
+Vec3 VolumeGrid::point(const std::size_t k, const unsigned int seed, const ParticleId id) const
+{
+  Vec3 x = cell(restricted ? accepted[k] : k);
+  for (const int d : order) {
+    const double slack = pitch - offset;
+    x[d] = x[d] + 0.5 * slack +
+           offset * uniform(seed, Draw::offset, id, static_cast<std::uint32_t>(d));
+  }
+  return x;
+}
+
+void VolumeGrid::restrict_to(const std::function<bool(const Vec3 &)> &accepts)
+{
+  std::vector<std::uint32_t> list;
+  const std::size_t n = capacity();
+  const Vec3 middle = {0.5 * pitch, 0.5 * pitch, 0.5 * pitch};
+  for (std::size_t k = 0; k < n; ++k)
+    if (accepts(cell(k) + middle))
+      list.push_back(static_cast<std::uint32_t>(k));
+  accepted = list;
+  restricted = true;
 }
 
 namespace {
@@ -54,6 +80,8 @@ public:
     grid.pitch = parameters.distance_threshold * largest;
     grid.offset = parameters.maximum_offset * largest;
     grid.order = parameters.directions;
+    if (parameters.acceptance != "1")
+      restrict_grid();
 
     const std::size_t room = grid.capacity(), wanted = n_remaining();
     const std::string box =
@@ -115,6 +143,16 @@ public:
   }
 
 private:
+  void restrict_grid()
+  {
+    // A wrong text has been refused when the parameters were checked.
+    const Expressions acceptance(parameters.acceptance, parameters.acceptance_constants, 1);
+    if (grid.capacity() > most_restricted)
+      throw UserError("subsection 'insertion info': the acceptance function would be asked at " +
+                      std::to_string(grid.capacity()) +
+                      " points. Make the insertion box smaller, or the distance threshold larger.");
+    grid.restrict_to([&](const Vec3 &x) { return acceptance.value(0, x, 0.) > 0.; });
+  }
   std::size_t n_remaining() const
   {
     return std::accumulate(remaining.begin(), remaining.end(), std::size_t(0));

@@ -1,63 +1,11 @@
+#include <eunoe/core/expressions.h>
 #include <eunoe/solids/expression_motion.h>
 
-#include <deal.II/base/function_parser.h>
-#include <deal.II/base/utilities.h>
-
 #include <boost/algorithm/string.hpp>
-
-#include <cstdlib>
-#include <iostream>
-#include <sstream>
-#include <stdexcept>
 
 namespace eunoe {
 
 namespace {
-
-/// Three expressions in x, y, z and t.
-class Expressions
-{
-public:
-  Expressions(const std::string &text, const std::string &constants) : parser(3, 0., 1e-9)
-  {
-    std::map<std::string, double> values;
-    for (const std::string &definition : dealii::Utilities::split_string_list(constants, ',')) {
-      const auto parts = dealii::Utilities::split_string_list(definition, '=');
-      char *end = nullptr;
-      if (parts.size() == 2)
-        values[parts[0]] = std::strtod(parts[1].c_str(), &end);
-      if (parts.size() != 2 || parts[1].empty() || *end != '\0')
-        throw std::invalid_argument("'" + definition + "' is no constant 'name=value'");
-    }
-    values["pi"] = M_PI;
-    const auto parts = dealii::Utilities::split_string_list(text, ';');
-    if (parts.size() != 3)
-      throw std::invalid_argument("'" + text + "' does not hold three expressions");
-    // The parser writes of errors by itself; the sentence that is thrown here is enough.
-    std::ostringstream unwanted;
-    std::streambuf *const errors = std::cerr.rdbuf(unwanted.rdbuf());
-    bool understood = true;
-    try {
-      parser.initialize("x,y,z,t", parts, values, true);
-      (*this)({}, 0.);
-    } catch (const std::exception &) {
-      understood = false;
-    }
-    std::cerr.rdbuf(errors);
-    if (!understood)
-      throw std::invalid_argument("'" + text + "' is not understood");
-  }
-
-  Vec3 operator()(const Vec3 &x, double t)
-  {
-    parser.set_time(t);
-    const dealii::Point<3> p(x.x, x.y, x.z);
-    return {parser.value(p, 0), parser.value(p, 1), parser.value(p, 2)};
-  }
-
-private:
-  dealii::FunctionParser<3> parser;
-};
 
 bool is_zero(const std::string &expressions)
 {
@@ -88,13 +36,15 @@ struct ExpressionMotion::Implementation
   /// State after @p dt from (@p centre, @p rotation) at time @p t.
   void advance(double t, double dt, Vec3 &x, Rotation &r)
   {
-    const Vec3 v1 = velocity(x, t), w1 = angular_velocity(x, t);
+    const Vec3 v1 = velocity.vector(x, t), w1 = angular_velocity.vector(x, t);
     const Vec3 x2 = x + 0.5 * dt * v1;
-    const Vec3 v2 = velocity(x2, t + 0.5 * dt), w2 = angular_velocity(x2, t + 0.5 * dt);
+    const Vec3 v2 = velocity.vector(x2, t + 0.5 * dt),
+               w2 = angular_velocity.vector(x2, t + 0.5 * dt);
     const Vec3 x3 = x + 0.5 * dt * v2;
-    const Vec3 v3 = velocity(x3, t + 0.5 * dt), w3 = angular_velocity(x3, t + 0.5 * dt);
+    const Vec3 v3 = velocity.vector(x3, t + 0.5 * dt),
+               w3 = angular_velocity.vector(x3, t + 0.5 * dt);
     const Vec3 x4 = x + dt * v3;
-    const Vec3 v4 = velocity(x4, t + dt), w4 = angular_velocity(x4, t + dt);
+    const Vec3 v4 = velocity.vector(x4, t + dt), w4 = angular_velocity.vector(x4, t + dt);
     x += dt / 6. * (v1 + 2. * v2 + 2. * v3 + v4);
     // The last term is for an axis that turns (Magnus expansion of fourth order).
     r = r.then(
@@ -107,13 +57,14 @@ ExpressionMotion::ExpressionMotion(const Vec3 &centre, const std::string &veloci
                                    const std::string &angular_velocity,
                                    const std::string &angular_velocity_constants,
                                    const double time_step)
-    : implementation(new Implementation{Expressions(velocity, velocity_constants),
-                                        Expressions(angular_velocity, angular_velocity_constants),
-                                        centre,
-                                        time_step,
-                                        0,
-                                        centre,
-                                        {}}),
+    : implementation(
+          new Implementation{Expressions(velocity, velocity_constants, 3),
+                             Expressions(angular_velocity, angular_velocity_constants, 3),
+                             centre,
+                             time_step,
+                             0,
+                             centre,
+                             {}}),
       has_rotation(!is_zero(angular_velocity))
 {
 }
@@ -137,8 +88,8 @@ RigidState ExpressionMotion::at(const double time) const
   const double rest = time - target * dt;
   if (rest > 1e-6 * dt)
     impl.advance(target * dt, rest, state.centre, state.rotation);
-  state.velocity = impl.velocity(state.centre, time);
-  state.angular_velocity = impl.angular_velocity(state.centre, time);
+  state.velocity = impl.velocity.vector(state.centre, time);
+  state.angular_velocity = impl.angular_velocity.vector(state.centre, time);
   return state;
 }
 

@@ -1,0 +1,302 @@
+#include <eunoe/simulation/lethe_spellings.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+namespace eunoe {
+
+namespace {
+
+using Path = std::vector<std::string>;
+
+/// Whether a path is the one of a rule, in which a name may end in '*'.
+bool fits(const Path &path, const Path &rule)
+{
+  return path.size() == rule.size() &&
+         std::equal(path.begin(), path.end(), rule.begin(),
+                    [](const std::string &name, const std::string &pattern) {
+                      return !pattern.empty() && pattern.back() == '*'
+                                 ? name.compare(0, pattern.size() - 1, pattern, 0,
+                                                pattern.size() - 1) == 0
+                                 : name == pattern;
+                    });
+}
+
+const Path properties = {"lagrangian physical properties"},
+           type = {"lagrangian physical properties", "particle type *"},
+           insertion = {"insertion info"}, model = {"model parameters"},
+           control = {"simulation control"}, mesh = {"mesh"}, no_section = {};
+
+/// An entry with another name.
+struct Renamed
+{
+  Path path;
+  std::string from, to;
+};
+const std::vector<Renamed> &renamed()
+{
+  static const std::vector<Renamed> list = {
+      {type, "random seed distribution", "distribution prn seed"},
+      {type, "custom volume fractions", "custom distribution diameters probabilities"},
+      {insertion, "insertion file name", "list of input files"},
+      {insertion, "clearing particles", "remove particles"},
+      {insertion, "clearing box points coordinates", "removal box points coordinates"},
+      {insertion, "insertion random number range", "insertion maximum offset"},
+      {insertion, "insertion random number seed", "insertion prn seed"},
+      {{"post-processing"}, "Lagrangian post-processing", "lagrangian post-processing"},
+      {{"model parameters", "adaptive sparse contacts"},
+       "enable dynamic disabling contacts",
+       "enable adaptive sparse contacts"}};
+  return list;
+}
+
+/// A word with another spelling; without a new one the entry is not needed.
+struct Word
+{
+  Path path;
+  std::string entry, from, to;
+};
+const std::vector<Word> &words()
+{
+  static const std::vector<Word> list = {
+      {model, "rolling resistance torque method", "no_resistance", "none"},
+      {model, "rolling resistance torque method", "constant_resistance", "constant"},
+      {model, "rolling resistance torque method", "viscous_resistance", "viscous"},
+      {model, "rolling resistance torque method", "epsd_resistance", "epsd"},
+      {insertion, "insertion method", "uniform", "volume"},
+      {insertion, "insertion method", "non_uniform", "volume"},
+      {{"model parameters", "load balancing"},
+       "load balance method",
+       "dynamic_with_sparse_contacts",
+       "dynamic"}};
+  return list;
+}
+
+/// Numbers that have become components of one entry.
+struct Components
+{
+  Path path;
+  Path from; ///< three numbers, or six for two corners
+  Path to_path;
+  std::string to;
+};
+const std::vector<Components> &components()
+{
+  static const std::vector<Components> list = {
+      {properties, {"gx", "gy", "gz"}, properties, "g"},
+      {insertion, {"velocity x", "velocity y", "velocity z"}, insertion, "initial velocity"},
+      {insertion, {"omega x", "omega y", "omega z"}, insertion, "initial angular velocity"},
+      {insertion,
+       {"insertion box minimum x", "insertion box minimum y", "insertion box minimum z",
+        "insertion box maximum x", "insertion box maximum y", "insertion box maximum z"},
+       insertion,
+       "insertion box points coordinates"},
+      {{"floating walls", "wall *", "point on wall"},
+       {"x", "y", "z"},
+       {"floating walls", "wall *"},
+       "point on wall"},
+      {{"floating walls", "wall *", "normal vector"},
+       {"nx", "ny", "nz"},
+       {"floating walls", "wall *"},
+       "normal vector"}};
+  return list;
+}
+
+/// Entries that change nothing here.
+struct Ignored
+{
+  Path path, entries; ///< no entries: all of the subsection
+  std::string why;
+};
+const std::vector<Ignored> &ignored()
+{
+  static const std::string of_fluids = "is for flows of fluids.";
+  static const std::vector<Ignored> list = {
+      {no_section, {"print parameters"}, "is not needed: used.prm holds all parameters."},
+      {no_section, {"comment message"}, "is a remark."},
+      {control,
+       {"method", "bdf startup method", "startup time scaling", "adapt", "number mesh adapt",
+        "max cfl", "max time step", "stop tolerance", "adaptative time step scaling",
+        "respect capillary time-step constraint", "capillary time-step ratio", "subdivision",
+        "output qcriterion", "output vorticity", "output velocity gradient"},
+       of_fluids},
+      {control, {"log precision"}, "is not needed."},
+      {control, {"group files"}, "is not needed: every picture is one file a rank."},
+      {{"timer"}, {}, "is not needed: summary.json has the times of all parts of the program."},
+      {{"test"}, {}, "is not needed: --dump writes the complete state at the end."},
+      {mesh,
+       {"check diamond cells", "expand particle-wall contact search"},
+       "is not needed: walls are found from every cell."},
+      {{"model parameters", "adaptive sparse contacts"}, {"enable particle advection"}, of_fluids},
+      {{"model parameters", "adaptive sparse contacts"},
+       {"solid fraction threshold"},
+       "is not needed: particles sleep one by one, and those that are free to fall move."},
+      {insertion,
+       {"insertion plane threshold distance"},
+       "is not needed: a cell takes a particle if it is empty."}};
+  return list;
+}
+
+/// What is out of scope, if it asks for more than nothing.
+struct Refused
+{
+  Path path;
+  std::string entry, harmless, why;
+};
+const std::vector<Refused> &refused()
+{
+  static const std::string heat = "Heat between particles is out of scope.";
+  static const std::vector<Refused> list = {
+      {no_section, "dimension", "3", "Simulations are in three dimensions: give 3."},
+      {model, "solver type", "dem", heat + " Give dem."},
+      {model, "disable position integration", "false", heat + " Give false."},
+      {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
+      {insertion, "list temperatures", "", heat + " Remove the entry."}};
+  return list;
+}
+
+class Translator
+{
+public:
+  Translator(std::vector<InputEntry> &entries, Problems &problems)
+      : entries(entries), problems(problems)
+  {
+  }
+
+  void run()
+  {
+    for (InputEntry &entry : entries)
+      move(entry);
+    for (const Components &rule : components())
+      join(rule);
+    entries.erase(std::remove_if(entries.begin(), entries.end(),
+                                 [this](const InputEntry &entry) { return takes_out(entry); }),
+                  entries.end());
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      // What had this name were shares of the volume.
+      if (fits(entries[k].path, type) && entries[k].name == "custom volume fractions") {
+        InputEntry basis = entries[k];
+        basis.name = "distribution weighting basis";
+        basis.value = "volume";
+        entries.insert(entries.begin() + static_cast<std::ptrdiff_t>(k), basis);
+        ++k;
+      }
+      rename(entries[k]);
+    }
+  }
+
+private:
+  static std::string place(const InputEntry &entry)
+  {
+    return entry.where + ": " + describe(entry.path, entry.name);
+  }
+
+  /// Solids stood directly in 'solid objects'; 'adaptive sparse contacts' had another name.
+  void move(InputEntry &entry)
+  {
+    Path &path = entry.path;
+    const bool is_solid = path.size() >= 2 && path[0] == "solid objects" &&
+                          path[1].compare(0, 13, "solid object ") == 0;
+    const bool is_number = path == Path{"solid objects"} && entry.name == "number of solids";
+    if (is_solid || is_number) {
+      if (is_number)
+        problems.warn(place(entry), "stands in the subsection 'solid surfaces' now.", "");
+      path.insert(path.begin() + 1, "solid surfaces");
+    }
+    if (path.size() >= 2 && path[0] == "model parameters" &&
+        path[1] == "dynamic disabling contacts") {
+      if (entry.name.empty())
+        problems.warn(place(entry), "is 'adaptive sparse contacts' now.", "");
+      path[1] = "adaptive sparse contacts";
+    }
+  }
+
+  /// Makes one entry out of those for its components, at the place of the first.
+  void join(const Components &rule)
+  {
+    std::map<Path, std::vector<std::string>> values;
+    for (const InputEntry &entry : entries)
+      if (fits(entry.path, rule.path))
+        for (std::size_t c = 0; c < rule.from.size(); ++c)
+          if (entry.name == rule.from[c]) {
+            values.try_emplace(entry.path, rule.from.size(), "0");
+            values[entry.path][c] = entry.value;
+          }
+    if (values.empty())
+      return;
+    const std::size_t depth = rule.to_path.size();
+    std::vector<InputEntry> joined;
+    for (const InputEntry &entry : entries) {
+      const auto found = values.find(entry.path);
+      const bool is_component =
+          std::find(rule.from.begin(), rule.from.end(), entry.name) != rule.from.end();
+      const bool is_opening = entry.name.empty() && rule.path.size() > depth;
+      if (found == values.end() || !(is_component || is_opening)) {
+        joined.push_back(entry);
+        continue;
+      }
+      if (found->second.empty() || is_opening)
+        continue;
+      InputEntry whole = entry;
+      whole.path.resize(depth);
+      whole.name = rule.to;
+      whole.value.clear();
+      for (std::size_t c = 0; c < found->second.size(); ++c)
+        whole.value += (c == 0 ? "" : c == 3 ? " : " : ", ") + found->second[c];
+      found->second.clear();
+      problems.warn(place(entry),
+                    "and its like are one entry now:", "'" + rule.to + " = " + whole.value + "'.");
+      joined.push_back(whole);
+    }
+    entries = joined;
+  }
+
+  bool takes_out(const InputEntry &entry)
+  {
+    for (const Ignored &rule : ignored()) {
+      const bool of_section = rule.entries.empty();
+      if (!fits(entry.path, rule.path) ||
+          (!of_section &&
+           std::find(rule.entries.begin(), rule.entries.end(), entry.name) == rule.entries.end()))
+        continue;
+      if (!of_section || entry.name.empty())
+        problems.warn(place(entry), rule.why, "It is ignored.");
+      return true;
+    }
+    for (const Refused &rule : refused())
+      if (fits(entry.path, rule.path) && entry.name == rule.entry) {
+        if (entry.value != rule.harmless)
+          problems.add(place(entry), "is '" + entry.value + "'.", rule.why);
+        return true;
+      }
+    return false;
+  }
+
+  void rename(InputEntry &entry)
+  {
+    for (const Renamed &rule : renamed())
+      if (fits(entry.path, rule.path) && entry.name == rule.from) {
+        problems.warn(place(entry), "is called '" + rule.to + "' now.", "");
+        entry.name = rule.to;
+      }
+    for (const Word &rule : words())
+      if (fits(entry.path, rule.path) && entry.name == rule.entry && entry.value == rule.from) {
+        problems.warn(place(entry),
+                      "is '" + rule.from + "', which is called '" + rule.to + "' now.", "");
+        entry.value = rule.to;
+      }
+  }
+
+  std::vector<InputEntry> &entries;
+  Problems &problems;
+};
+
+} // namespace
+
+void translate_lethe(std::vector<InputEntry> &entries, Problems &problems)
+{
+  Translator(entries, problems).run();
+}
+
+} // namespace eunoe

@@ -1,0 +1,226 @@
+// Input files for Lethe in its older words mean what the same files in the present words mean; what
+// is for fluids is passed over, what is out of scope refused, each with one line.
+
+#include "tests.h"
+
+using namespace eunoe;
+
+namespace {
+
+const std::string old_words = R"(
+set dimension        = 3
+set print parameters = none
+
+subsection simulation control
+  set method           = bdf1
+  set time step        = 1e-5
+  set time end         = 2e-3
+  set log frequency    = 0
+  set output frequency = 0
+  set group files      = 1
+end
+
+subsection timer
+  set type = none
+end
+
+subsection test
+  set enable = true
+end
+
+subsection mesh
+  set type                                = dealii
+  set grid type                           = hyper_rectangle
+  set grid arguments                      = 0, 0, 0 : 0.1, 0.1, 0.1 : true
+  set initial refinement                  = 2
+  set expand particle-wall contact search = false
+end
+
+subsection lagrangian physical properties
+  set gz                       = -9.81
+  set number of particle types = 1
+  subsection particle type 0
+    set size distribution type            = uniform
+    set diameter                          = 0.005
+    set number                            = 6
+    set density particles                 = 2500
+    set young modulus particles           = 1e6
+    set poisson ratio particles           = 0.3
+    set restitution coefficient particles = 0.9
+    set friction coefficient particles    = 0.3
+    set random seed distribution          = 3
+    set size distribution type            = custom
+    set custom diameters                  = 0.004, 0.005
+    set custom volume fractions           = 0.4, 0.6
+  end
+  set young modulus wall = 1e6
+end
+
+subsection insertion info
+  set insertion method                               = non_uniform
+  set inserted number of particles at each time step = 3
+  set insertion frequency                            = 50
+  set insertion box minimum x                        = 0.01
+  set insertion box minimum y                        = 0.01
+  set insertion box minimum z                        = 0.01
+  set insertion box maximum x                        = 0.09
+  set insertion box maximum y                        = 0.09
+  set insertion box maximum z                        = 0.09
+  set insertion distance threshold                   = 1.5
+  set insertion random number range                  = 0.2
+  set insertion random number seed                   = 7
+  set velocity y                                     = 0.5
+  subsection insertion acceptance function
+    set Function expression = x - 0.05
+  end
+end
+
+subsection model parameters
+  set particle particle contact force method = hertz_mindlin_limit_overlap
+  set particle wall contact force method     = nonlinear
+  set rolling resistance torque method       = constant_resistance
+  set solver type                            = dem
+  subsection dynamic disabling contacts
+    set enable dynamic disabling contacts = false
+    set solid fraction threshold          = 0.4
+  end
+end
+
+subsection floating walls
+  set number of floating walls = 1
+  subsection wall 0
+    subsection point on wall
+      set z = 0.002
+    end
+    subsection normal vector
+      set nz = 1
+    end
+    set end time = 1
+  end
+end
+
+subsection solid objects
+  set number of solids = 1
+  subsection solid object 0
+    subsection mesh
+      set type           = shape
+      set grid type      = box
+      set grid arguments = 0.02, 0.02, 0.003 : 0.04, 0.04, 0.006
+      set simplex        = true
+    end
+  end
+end
+)";
+
+const std::string present_words = R"(
+subsection simulation control
+  set time step        = 1e-5
+  set time end         = 2e-3
+  set log frequency    = 0
+  set output frequency = 0
+end
+
+subsection mesh
+  set type               = dealii
+  set grid type          = hyper_rectangle
+  set grid arguments     = 0, 0, 0 : 0.1, 0.1, 0.1 : true
+  set initial refinement = 2
+end
+
+subsection lagrangian physical properties
+  set g                        = 0, 0, -9.81
+  set number of particle types = 1
+  subsection particle type 0
+    set size distribution type            = uniform
+    set average diameter                  = 0.005
+    set number of particles               = 6
+    set density particles                 = 2500
+    set young modulus particles           = 1e6
+    set poisson ratio particles           = 0.3
+    set restitution coefficient particles = 0.9
+    set friction coefficient particles    = 0.3
+    set distribution prn seed             = 3
+    set size distribution type            = custom
+    set distribution weighting basis                = volume
+    set custom distribution diameters values        = 0.004, 0.005
+    set custom distribution diameters probabilities = 0.4, 0.6
+  end
+  set young modulus wall = 1e6
+end
+
+subsection insertion info
+  set insertion method                               = volume
+  set inserted number of particles at each time step = 3
+  set insertion frequency                            = 50
+  set insertion box points coordinates               = 0.01, 0.01, 0.01 : 0.09, 0.09, 0.09
+  set insertion distance threshold                   = 1.5
+  set insertion maximum offset                       = 0.2
+  set insertion prn seed                             = 7
+  set initial velocity                               = 0, 0.5, 0
+  subsection insertion acceptance function
+    set Function expression = x - 0.05
+  end
+end
+
+subsection model parameters
+  set particle particle contact force method = hertz_mindlin_limit_overlap
+  set particle wall contact force method     = nonlinear
+  set rolling resistance torque method       = constant
+  subsection adaptive sparse contacts
+    set enable adaptive sparse contacts = false
+  end
+end
+
+subsection floating walls
+  set number of floating walls = 1
+  subsection wall 0
+    set point on wall = 0, 0, 0.002
+    set normal vector = 0, 0, 1
+    set end time      = 1
+  end
+end
+
+subsection solid objects
+  subsection solid surfaces
+    set number of solids = 1
+    subsection solid object 0
+      subsection mesh
+        set type           = shape
+        set grid type      = box
+        set grid arguments = 0.02, 0.02, 0.003 : 0.04, 0.04, 0.006
+        set simplex        = true
+      end
+    end
+  end
+end
+)";
+
+void print_problems(const std::string &text)
+{
+  Problems problems;
+  Parameters::read(text, "case.prm", {}, problems);
+  for (const Problem &problem : problems.all())
+    test::print("refused: " + problem.text());
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Problems of_old, of_present;
+  const Parameters old = Parameters::read(old_words, "case.prm", {}, of_old);
+  const Parameters present = Parameters::read(present_words, "case.prm", {}, of_present);
+  test::check("old words are understood", of_old.empty());
+  test::check("present words are understood", of_present.empty());
+  test::check("present words give no warning", of_present.warnings().empty());
+  test::check("both mean the same", old.as_input_file() == present.as_input_file());
+  for (const Problem &warning : of_old.warnings())
+    test::print(warning.text());
+
+  print_problems("set dimension = 2\n");
+  print_problems("subsection model parameters\n set solver type = dem_mp\nend\n");
+  print_problems("subsection mesh\n set simplex = true\nend\n");
+  print_problems("subsection insertion info\n set list temperatures = 300\nend\n");
+  return 0;
+}
