@@ -125,6 +125,52 @@ void test_types()
   }
 }
 
+/// Points of the grid where a function is not positive stay empty; all particles find room in the
+/// others.
+void test_acceptance()
+{
+  Case cylinder(
+      case_with(" set insertion box points coordinates = -9e-3, -9e-3, -9e-3 : 9e-3, 9e-3, "
+                "9e-3\n set insertion distance threshold = 1.2\n"
+                " subsection insertion acceptance function\n"
+                "  set Function constants = R=7e-3\n"
+                "  set Function expression = R^2 - x^2 - z^2\n end"));
+  cylinder.run();
+  const auto all = particle_table(*cylinder);
+  const bool inside = std::all_of(all.begin(), all.end(),
+                                  [](const auto &p) { return std::hypot(p[c_x], p[c_z]) <= 7e-3; });
+  const bool fills = std::any_of(all.begin(), all.end(),
+                                 [](const auto &p) { return std::hypot(p[c_x], p[c_z]) > 6e-3; });
+  check("acceptance function", all.size() == 400 && inside && fills);
+}
+
+/// The removal box is emptied before every event, the first as the later ones.
+void test_removal()
+{
+  const std::string removal =
+      " set insertion box points coordinates = -5e-3, -5e-3, -5e-3 : 5e-3, -3e-3, 5e-3\n"
+      " set insertion frequency = 2\n set inserted number of particles at each time step = 10\n"
+      " set initial velocity = 0, 0.5, 0\n set insertion distance threshold = 1.2\n"
+      " set remove particles = true\n"
+      " set removal box points coordinates = -1e-2, -3.5e-3, -1e-2 : 1e-2, 1e-2, 1e-2";
+  std::vector<double> numbers;
+  Case removing(box_input(1e-3, 8e-3,
+                          "subsection lagrangian physical properties\n subsection particle type 0\n"
+                          "  set average diameter = 1e-3\n  set number of particles = 40\n end\n"
+                          "end\nsubsection insertion info\n" +
+                              removal + "\nend\n"));
+  removing.run([&](Simulation &simulation) {
+    numbers.push_back(static_cast<double>(particle_table(simulation).size()));
+  });
+  // Particles rise by 0.5 mm a step from below -4 mm: an event is complete for four steps at most.
+  const double removed = removing->get_ledger().taken_out.global(MPI_COMM_WORLD).number;
+  check("removal box", numbers.front() == 10. && removed >= 10. &&
+                           particle_table(*removing).size() + removed == 40.);
+  for (const auto &p : particle_table(*removing))
+    if (p[c_id] <= 10.)
+      print("particle " + std::to_string(static_cast<int>(p[c_id])) + " was not removed");
+}
+
 void test_errors()
 {
   const auto refused = [](const std::string &insertion) -> std::string {
@@ -165,5 +211,7 @@ int main(int argc, char **argv)
   test_single_particle();
   test_large_particles_of_a_file();
   test_types();
+  test_acceptance();
+  test_removal();
   test_errors();
 }
