@@ -41,6 +41,13 @@ double damping_factor(const double restitution)
   return -2. * std::sqrt(5. / 6.) * beta;
 }
 
+double linear_stiffness(const double effective_young_modulus, const double effective_radius,
+                        const double effective_mass)
+{
+  const double spring = 16. / 15. * std::sqrt(effective_radius) * effective_young_modulus;
+  return spring * std::pow(effective_mass / spring, 0.2);
+}
+
 double hertz_tangent_stiffness(const double effective_young_modulus, const double effective_radius,
                                const double overlap)
 {

@@ -21,6 +21,8 @@ struct NamedModel
 const std::vector<NamedModel> &named_models()
 {
   static const std::vector<NamedModel> models = {
+      {"linear", "linear", {"linear", {}, "linear_limit_overlap", "none"}},
+      {"hertz", "nonlinear", {"hertz", {}, "mindlin_undamped", "none"}},
       {"hertz_mindlin_limit_overlap", "nonlinear", {"hertz", {}, "mindlin_limit_overlap", "none"}},
       {"hertz_mindlin_limit_force", "nonlinear", {"hertz", {}, "mindlin_limit_force", "none"}},
       {"hertz_JKR", "JKR", {"jkr", {}, "mindlin_limit_overlap", "none"}},
@@ -65,10 +67,7 @@ void declare_capillary_bridges(dealii::ParameterHandler &prm, ContactLawOptions 
 ContactModelNames ModelParameters::laws() const
 {
   ContactModelNames names = named_model(contact_method).laws;
-  const std::string suffix = "_resistance";
-  const std::size_t cut = rolling_method.find(suffix);
-  const std::string rolling = rolling_method.substr(0, cut);
-  names.rolling = rolling == "no" ? "none" : rolling;
+  names.rolling = rolling_method;
   return names;
 }
 
@@ -77,20 +76,23 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   prm.enter_subsection(section);
   declare::choice(
       prm, "particle particle contact force method", contact_method, names_of_models(),
-      "Laws of a contact of two particles. All are Hertz's elastic force with Tsuji's "
-      "damping and Mindlin's tangential force with memory; 'DMT' adds cohesion with its "
+      "Laws of a contact of two particles. All but 'linear', which has springs of constant "
+      "stiffness, are Hertz's elastic force with Tsuji's damping and Mindlin's tangential force "
+      "with memory, which 'hertz' does not damp; 'DMT' adds cohesion with its "
       "long-range part; 'hertz_JKR' or, in short, 'JKR' has the adhesion of soft contacts, which "
       "hold until they are drawn out to a neck.");
-  declare::choice(prm, "particle wall contact force method", wall_method, "nonlinear|DMT|JKR",
+  declare::choice(prm, "particle wall contact force method", wall_method,
+                  "linear|nonlinear|DMT|JKR",
                   "Laws of a contact with a wall or solid: the same as between particles, so "
                   "'DMT' or 'JKR' where particles use it and 'nonlinear' elsewhere.");
   prm.add_parameter("dmt cut-off threshold", options.dmt_cut_off,
                     "Share of the pull-off force below which the long-range attraction is dropped.",
                     declare::Patterns::Double(1e-6, 1.));
   declare::choice(prm, "rolling resistance torque method", rolling_method,
-                  "none|no_resistance|constant|constant_resistance|epsd|epsd_resistance",
-                  "Resistance against rolling: none, a torque of constant magnitude, or the "
-                  "elastic-plastic spring-dashpot of Ai et al. (2011).");
+                  "none|constant|viscous|epsd",
+                  "Resistance against rolling: none, a torque of constant magnitude, one in "
+                  "proportion to the speed of rolling, or the elastic-plastic spring-dashpot of Ai "
+                  "et al. (2011).");
   prm.add_parameter("f coefficient", options.epsd_f,
                     "EPSD: share of the viscous torque left once the spring is fully mobilised.",
                     declare::Patterns::Double(0., 1.));
@@ -131,6 +133,13 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
                     "The search lists pairs with gaps up to (threshold - 1) times the largest "
                     "diameter. Larger: longer lists, fewer searches.",
                     declare::Patterns::Double(1.));
+  prm.leave_subsection();
+
+  prm.enter_subsection("contact history");
+  declare::count(prm, "forget interval", forget_interval,
+                 "Steps after which every contact forgets what it remembers (slip, rolling, "
+                 "bridges), as in programs that lose it when they share out the work anew: for "
+                 "studies of what that changes. 0: never.");
   prm.leave_subsection();
 
   prm.enter_subsection("load balancing");

@@ -68,6 +68,14 @@ double SolidContacts::deepest_overlap(const Candidate &candidate, const Solid &s
   return deepest;
 }
 
+void SolidContacts::forget()
+{
+  for (Candidate &candidate : candidates)
+    candidate.n_living = 0;
+  memory.clear(model.history_size());
+  normals.clear();
+}
+
 void SolidContacts::reset(const Memory &saved)
 {
   candidates = saved.candidates;

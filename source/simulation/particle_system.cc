@@ -31,6 +31,13 @@ void ParticleSystem::add_contact_forces(const std::vector<Solid> &solids, const 
   solid_contacts.add_forces(particles, solids, time, dt, loads);
 }
 
+void ParticleSystem::forget_contacts()
+{
+  std::fill(pairs.record.begin(), pairs.record.end(), ContactMemory::none);
+  pairs.memory.clear(model.history_size());
+  solid_contacts.forget();
+}
+
 void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)
 {
   sparse.update(particles, pairs, solid_contacts, halo, stirring);

@@ -215,6 +215,8 @@ void Simulation::advance()
   if (looks)
     update_sleep(false);
 
+  if (parameters.model.forgets_at(step))
+    system.forget_contacts();
   compute_forces(dt);
   integrator->end_step();
   particle_steps += static_cast<double>(n_particles);

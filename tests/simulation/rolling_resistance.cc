@@ -60,6 +60,26 @@ void check_decay(const std::string &rolling)
   check_relative(rolling + ": it rolls", dot(end.v, along), dot(end.w, axis) * radius, 1e-3);
 }
 
+/// The viscous torque mu_r R^2 |F| w lets a spin decay exponentially.
+void check_viscous_decay()
+{
+  constexpr double resistance = 10.; // s/m
+  Scene s = scene("viscous");
+  s.particle.rolling_friction = s.wall.rolling_friction = resistance;
+  const double first = 0.002, second = 0.01;
+  s.time_end = second;
+  s.spheres[0].w = 100. * axis;
+  s.particle.friction = 0.;
+  std::array<double, 2> spin = spins(s, first);
+  check_relative("viscous: decay of a spin without friction", std::log(spin[0] / spin[1]),
+                 2.5 * resistance * g * (second - first), 1e-3);
+  s.particle.friction = 0.5;
+  s.spheres[0].v = 100. * radius * along;
+  spin = spins(s, first);
+  check_relative("viscous: decay of a roll", std::log(spin[0] / spin[1]),
+                 5. / 7. * resistance * g * (second - first), 2e-3);
+}
+
 void check_incline(const std::string &rolling)
 {
   Scene s = scene(rolling, 0.9 * rolling_friction);
@@ -94,6 +114,7 @@ int main(int argc, char **argv)
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_decay("constant");
   check_decay("epsd");
+  check_viscous_decay();
   check_incline("constant");
   check_incline("epsd");
 }

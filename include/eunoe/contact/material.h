@@ -29,6 +29,9 @@ double effective_hamaker_constant(const Material &a, const Material &b);
 double harmonic_mean(double a, double b);
 /// -2 sqrt(5/6) beta with beta = ln e / sqrt(ln^2 e + pi^2) (Tsuji 1992); beta = -1 for e = 0.
 double damping_factor(double restitution);
+/// Stiffness of the linear law (N/m), see source/contact/laws/linear.cc.
+double linear_stiffness(double effective_young_modulus, double effective_radius,
+                        double effective_mass);
 /// Stiffness 2 E* sqrt(R* overlap) of a Hertzian contact against further approach (N/m).
 double hertz_tangent_stiffness(double effective_young_modulus, double effective_radius,
                                double overlap);

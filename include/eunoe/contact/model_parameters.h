@@ -51,6 +51,12 @@ struct ModelParameters : public ParameterSection
 
   LoadBalancingParameters load_balancing;
   SparseContactParameters sparse_contacts;
+  /// Steps after which all contacts lose their memory; 0: never. For studies of forgetting.
+  unsigned long long forget_interval = 0;
+  bool forgets_at(unsigned long long step) const
+  {
+    return forget_interval > 0 && step % forget_interval == 0;
+  }
 
   /// The laws behind the names of the input file.
   ContactModelNames laws() const;

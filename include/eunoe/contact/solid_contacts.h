@@ -53,6 +53,8 @@ public:
     ContactMemory records;
     std::vector<Vec3> normals;
   };
+  /// Lets every contact begin anew.
+  void forget();
   Memory save() const { return {candidates, memory, normals}; }
   void reset(const Memory &saved);
   /// Gives the candidate (particle, solid) a contact with a memory; without effect if the two are

@@ -70,6 +70,9 @@ public:
   /// Puts to sleep and wakes, then brings the ghosts up to date; collective.
   void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
 
+  /// Lets every contact begin anew.
+  void forget_contacts();
+
   /// Adds the forces of all contacts and advances their memory by @p dt (s).
   /// @param loads if not null: forces on the solids, one a solid
   void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,

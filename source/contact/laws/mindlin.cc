@@ -10,14 +10,23 @@ namespace {
 /// The spring's displacement is carried over the contact and turned with its plane. Past the limit
 /// the force is scaled to it; with `limit_overlap` the displacement is then recomputed from the
 /// limited force, else it keeps growing.
-template <bool limit_overlap>
+///
+/// Beside a linear normal law the spring has 0.4 of its stiffness and the same damping ratio (Garg,
+/// Galvin-Carney, Li, Pannala 2012).
+enum class Spring
+{
+  mindlin,
+  linear
+};
+template <Spring spring, bool limit_overlap>
 class Mindlin : public ContactLaw
 {
 public:
-  explicit Mindlin(const Materials &materials)
-      : table(materials.table([](const Material &a, const Material &b) {
+  /// @param damping on the factor of Tsuji's damping
+  Mindlin(const Materials &materials, const double damping)
+      : table(materials.table([damping](const Material &a, const Material &b) {
           return Row{effective_shear_modulus(a, b),
-                     damping_factor(harmonic_mean(a.restitution, b.restitution)),
+                     damping * damping_factor(harmonic_mean(a.restitution, b.restitution)),
                      harmonic_mean(a.friction, b.friction)};
         }))
   {
@@ -50,7 +59,8 @@ private:
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const bool touching = b.contact_radius[k] > 0.;
-      const double stiffness = 8. * shear[k] * b.contact_radius[k];
+      const double stiffness =
+          spring == Spring::linear ? 0.4 * b.stiffness[k] : 8. * shear[k] * b.contact_radius[k];
       const double damper = damping[k] * std::sqrt(stiffness * b.mass[k]);
 
       const Vec3 turned = turn_with_plane(hx[k], hy[k], hz[k], b.nx[k], b.ny[k], b.nz[k]);
@@ -89,16 +99,22 @@ private:
   const std::vector<Row> table;
 };
 
-template <bool limit_overlap>
-std::unique_ptr<ContactLaw> make(const Materials &materials, const ContactLawOptions &)
+template <Spring spring, bool limit_overlap>
+auto maker(const double damping)
 {
-  return std::make_unique<Mindlin<limit_overlap>>(materials);
+  return [damping](const Materials &materials, const ContactLawOptions &) {
+    return std::make_unique<Mindlin<spring, limit_overlap>>(materials, damping);
+  };
 }
 
 const ContactLawRegistry::Registration overlap(contact_laws("tangential"), "mindlin_limit_overlap",
-                                               make<true>);
+                                               maker<Spring::mindlin, true>(1.));
 const ContactLawRegistry::Registration force(contact_laws("tangential"), "mindlin_limit_force",
-                                             make<false>);
+                                             maker<Spring::mindlin, false>(1.));
+const ContactLawRegistry::Registration undamped(contact_laws("tangential"), "mindlin_undamped",
+                                                maker<Spring::mindlin, false>(0.));
+const ContactLawRegistry::Registration linear(contact_laws("tangential"), "linear_limit_overlap",
+                                              maker<Spring::linear, true>(std::sqrt(6. / 5.)));
 
 } // namespace
 } // namespace eunoe

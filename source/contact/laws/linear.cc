@@ -1,0 +1,67 @@
+#include <eunoe/contact/contact_law.h>
+#include <eunoe/core/simd.h>
+
+#include <cmath>
+
+namespace eunoe {
+namespace {
+
+/// A linear spring and damper. The stiffness is the one by which a contact at an impact of 1 m/s is
+/// as deep as with Hertz's law (Tsuji's characteristic velocity),
+///
+///     k_n = 16/15 sqrt(R) Y (15 m V^2 / (16 sqrt(R) Y))^(1/5),  V = 1 m/s,
+///
+/// the damper -2 beta sqrt(m k_n), by which a head-on impact has the prescribed restitution.
+class Linear : public ContactLaw
+{
+public:
+  explicit Linear(const Materials &materials)
+      : table(materials.table([](const Material &a, const Material &b) {
+          return Row{effective_young_modulus(a, b),
+                     damping_factor(harmonic_mean(a.restitution, b.restitution)) /
+                         std::sqrt(5. / 6.)};
+        }))
+  {
+  }
+
+  void apply(PairBlock &block, unsigned int, double) const override
+  {
+    alignas(64) PairBlock::Lanes young, damping, stiffness;
+    look_up(block, table, &Row::young, young);
+    look_up(block, table, &Row::damping, damping);
+    for (unsigned int k = 0; k < PairBlock::size; ++k)
+      stiffness[k] = linear_stiffness(young[k], block.radius[k], block.mass[k]);
+    kernel(block, stiffness, damping);
+  }
+
+private:
+  struct Row
+  {
+    double young, damping;
+  };
+
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *stiffness,
+                                        const double *damping)
+  {
+#pragma omp simd
+    for (unsigned int k = 0; k < PairBlock::size; ++k) {
+      const double overlap = b.overlap[k] > 0. ? b.overlap[k] : 0.;
+      const double damper = damping[k] * std::sqrt(stiffness[k] * b.mass[k]);
+      const double force = stiffness[k] * overlap + damper * b.closing_speed[k];
+      b.contact_radius[k] = std::sqrt(b.radius[k] * overlap);
+      b.stiffness[k] = overlap > 0. ? stiffness[k] : 0.;
+      b.contact_force[k] = overlap > 0. ? force : 0.;
+    }
+  }
+
+  const std::vector<Row> table;
+};
+
+const ContactLawRegistry::Registration registration(contact_laws("normal"), "linear",
+                                                    [](const Materials &materials,
+                                                       const ContactLawOptions &) {
+                                                      return std::make_unique<Linear>(materials);
+                                                    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,53 @@
+#include <eunoe/contact/contact_law.h>
+#include <eunoe/core/simd.h>
+
+namespace eunoe {
+namespace {
+
+/// Rolling resistance mu_r R_e |F_n| (R_e |w_p|) against the relative spin w_p: in proportion to
+/// the speed by which the surfaces roll over each other, so that mu_r is in s/m (Zhou, Wright,
+/// Yang, Xu, Yu 1999, model of the second kind).
+class ViscousRolling : public ContactLaw
+{
+public:
+  explicit ViscousRolling(const Materials &materials)
+      : table(materials.table([](const Material &a, const Material &b) {
+          return Row{harmonic_mean(a.rolling_friction, b.rolling_friction)};
+        }))
+  {
+  }
+
+  void apply(PairBlock &block, unsigned int, double) const override
+  {
+    alignas(64) PairBlock::Lanes friction;
+    look_up(block, table, &Row::friction, friction);
+    kernel(block, friction);
+  }
+
+private:
+  struct Row
+  {
+    double friction;
+  };
+
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
+  {
+#pragma omp simd
+    for (unsigned int k = 0; k < PairBlock::size; ++k) {
+      const double factor = -friction[k] * b.radius[k] * b.radius[k] * std::abs(b.contact_force[k]);
+      b.torque_x[k] += factor * b.roll_x[k];
+      b.torque_y[k] += factor * b.roll_y[k];
+      b.torque_z[k] += factor * b.roll_z[k];
+    }
+  }
+
+  const std::vector<Row> table;
+};
+
+const ContactLawRegistry::Registration registration(
+    contact_laws("rolling"), "viscous", [](const Materials &materials, const ContactLawOptions &) {
+      return std::make_unique<ViscousRolling>(materials);
+    });
+
+} // namespace
+} // namespace eunoe
