@@ -25,6 +25,7 @@ PAGE = ROOT / "doc" / "parameters.md"
 
 # One of each of the numbered subsections.
 COUNTS = {
+    "lagrangian physical properties/number of wall materials": "1",
     "DEM boundary conditions/number of boundary conditions": "1",
     "floating walls/number of floating walls": "1",
     "solid objects/solid surfaces/number of solids": "1",
