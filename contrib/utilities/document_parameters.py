@@ -33,6 +33,7 @@ COUNTS = {
 # Entries whose defaults the program refuses, as the user has to choose. Their defaults stand beside
 # these values in what it prints.
 CHOSEN = {
+    "lagrangian physical properties/wall material 0/surfaces": "floating wall",
     "floating walls/wall 0/end time": "1",
     "solid objects/solid surfaces/solid object 0/mesh/type": "shape",
 }
