@@ -25,6 +25,7 @@ PAGE = ROOT / "doc" / "parameters.md"
 
 # One of each of the numbered subsections.
 COUNTS = {
+    "lagrangian physical properties/number of wall materials": "1",
     "DEM boundary conditions/number of boundary conditions": "1",
     "floating walls/number of floating walls": "1",
     "solid objects/solid surfaces/number of solids": "1",
@@ -32,6 +33,7 @@ COUNTS = {
 # Entries whose defaults the program refuses, as the user has to choose. Their defaults stand beside
 # these values in what it prints.
 CHOSEN = {
+    "lagrangian physical properties/wall material 0/surfaces": "floating wall",
     "floating walls/wall 0/end time": "1",
     "solid objects/solid surfaces/solid object 0/mesh/type": "shape",
 }

@@ -16,25 +16,92 @@ std::string type_section(unsigned int t)
   return "particle type " + std::to_string(t);
 }
 
+const char *const common = "common";
+
+/// A number, or the word 'common'.
+class OwnOrCommon : public declare::Patterns::PatternBase
+{
+public:
+  explicit OwnOrCommon(const declare::Patterns::Double &number) : number(number) {}
+
+  bool match(const std::string &text) const override
+  {
+    return text == common || number.match(text);
+  }
+  std::string description(const OutputStyle style = Machine) const override
+  {
+    return "[common or " + number.description(style) + "]";
+  }
+  std::unique_ptr<PatternBase> clone() const override
+  {
+    return std::make_unique<OwnOrCommon>(*this);
+  }
+
+private:
+  const declare::Patterns::Double number;
+};
+
+std::string wall_section(std::size_t k)
+{
+  return "wall material " + std::to_string(k);
+}
+
+/// An entry of every material.
+struct Property
+{
+  const char *name;
+  double Material::*member;
+  double largest;
+  const char *documentation;
+};
+
+constexpr double any = std::numeric_limits<double>::max();
+const Property properties[] = {
+    {"young modulus", &Material::young_modulus, any, "Young's modulus (Pa)."},
+    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio."},
+    {"restitution coefficient", &Material::restitution, 1.,
+     "Restitution coefficient; a pair takes the harmonic mean."},
+    {"friction coefficient", &Material::friction, any,
+     "Sliding friction coefficient; a pair takes the harmonic mean."},
+    {"rolling friction", &Material::rolling_friction, any,
+     "Rolling friction coefficient; a pair takes the harmonic mean."},
+    {"rolling viscous damping", &Material::rolling_viscous_damping, any,
+     "Damping ratio of the EPSD rolling spring; a pair takes the harmonic mean."},
+    {"surface energy", &Material::surface_energy, any,
+     "Surface energy (J/m2); a pair takes twice the geometric mean."},
+    {"hamaker constant", &Material::hamaker_constant, any,
+     "Hamaker constant (J); a pair takes the arithmetic mean."}};
+
 /// The entries of a material; @p of is "particles" or "wall".
 void declare_material(dealii::ParameterHandler &prm, Material &m, const std::string &of)
 {
-  declare::positive(prm, "young modulus " + of, m.young_modulus, "Young's modulus (Pa).");
-  prm.add_parameter("poisson ratio " + of, m.poisson_ratio, "Poisson's ratio.",
-                    declare::Patterns::Double(0., 0.5));
-  prm.add_parameter("restitution coefficient " + of, m.restitution,
-                    "Restitution coefficient; a pair takes the harmonic mean.",
-                    declare::Patterns::Double(0., 1.));
-  declare::positive(prm, "friction coefficient " + of, m.friction,
-                    "Sliding friction coefficient; a pair takes the harmonic mean.");
-  declare::positive(prm, "rolling friction " + of, m.rolling_friction,
-                    "Rolling friction coefficient; a pair takes the harmonic mean.");
-  declare::positive(prm, "rolling viscous damping " + of, m.rolling_viscous_damping,
-                    "Damping ratio of the EPSD rolling spring; a pair takes the harmonic mean.");
-  declare::positive(prm, "surface energy " + of, m.surface_energy,
-                    "Surface energy (J/m2); a pair takes twice the geometric mean.");
-  declare::positive(prm, "hamaker constant " + of, m.hamaker_constant,
-                    "Hamaker constant (J); a pair takes the arithmetic mean.");
+  for (const Property &p : properties)
+    prm.add_parameter(p.name + (" " + of), m.*p.member, p.documentation,
+                      declare::Patterns::Double(0., p.largest));
+}
+
+/// The same entries of a material that takes those which it lacks from the common one of walls.
+void declare_wall_material(dealii::ParameterHandler &prm, WallMaterial &material)
+{
+  prm.add_parameter(
+      "surfaces", material.surfaces,
+      "Names of the walls and solids of this material, separated by commas: 'boundary "
+      "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
+      "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
+      "that have one.");
+  for (const Property &p : properties) {
+    const std::string entry = p.name + std::string(" wall");
+    prm.declare_entry(entry, common, OwnOrCommon(declare::Patterns::Double(0., p.largest)),
+                      std::string(p.documentation) + " 'common': that of all other walls.");
+    prm.add_action(entry, [&material, &p](const std::string &value) {
+      auto &own = material.own;
+      own.erase(std::remove_if(own.begin(), own.end(),
+                               [&p](const auto &entry) { return entry.first == p.member; }),
+                own.end());
+      if (value != common)
+        own.emplace_back(p.member, dealii::Utilities::string_to_double(value));
+    });
+  }
 }
 
 void check_material(const ParameterCheck &check, const ParameterCheck::Path &path,
@@ -55,6 +122,11 @@ Materials PhysicalProperties::materials() const
     all.push_back(type.material);
   const auto n_types = static_cast<int>(all.size());
   all.push_back(wall);
+  for (const WallMaterial &material : wall_materials) {
+    all.push_back(wall);
+    for (const auto &[member, value] : material.own)
+      all.back().*member = value;
+  }
   return Materials(all, n_types);
 }
 
@@ -122,6 +194,16 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     prm.leave_subsection();
   }
   declare_material(prm, wall, "wall");
+  prm.declare_entry(
+      "number of wall materials", std::to_string(wall_materials.size()),
+      declare::Patterns::Integer(0, 20),
+      "Number of the subsections 'wall material 0', ...: walls and solids that differ "
+      "from the common ones.");
+  for (std::size_t k = 0; k < wall_materials.size(); ++k) {
+    prm.enter_subsection(wall_section(k));
+    declare_wall_material(prm, wall_materials[k]);
+    prm.leave_subsection();
+  }
   declare::positive(prm, "dynamic viscosity gas", gas_viscosity,
                     "Dynamic viscosity of the still gas around the particles (Pa s); 0: no drag.");
   declare::positive(prm, "density gas", gas_density,
@@ -140,6 +222,12 @@ void PhysicalProperties::check(const ParameterCheck &check) const
                   "is " + format(types[t].density) + " kg/m3.", "Give a positive density.");
   }
   check_material(check, {section}, wall, "wall");
+  const Materials all = materials();
+  for (std::size_t k = 0; k < wall_materials.size(); ++k) {
+    check_material(check, {section, wall_section(k)}, all[wall_material(k)], "wall");
+    check.require(!wall_materials[k].surfaces.empty(), {section, wall_section(k)}, "surfaces",
+                  "is empty.", "Name the walls and solids that have this material.");
+  }
 }
 
 } // namespace eunoe

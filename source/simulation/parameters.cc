@@ -39,6 +39,11 @@ const std::vector<Repeated> &repeated_sections()
        "particle type",
        5,
        &SectionCounts::particle_types},
+      {{"lagrangian physical properties"},
+       "number of wall materials",
+       "wall material",
+       20,
+       &SectionCounts::wall_materials},
       {{"DEM boundary conditions"},
        "number of boundary conditions",
        "boundary condition",
@@ -128,6 +133,8 @@ std::string in_words(const std::string &pattern)
     const std::string number = part[2] == part[3] ? part[2].str() + " values" : "a list of values";
     return number + ", each " + items;
   }
+  if (std::regex_match(pattern, part, std::regex(R"(\[common or (\[.*\])\])")))
+    return in_words(part[1]) + ", or 'common'";
   const std::regex range(
       R"(\[(Double|Integer)(?: range)?(?: (\S+?)\.\.\.(\S+?) \(inclusive\))?\])");
   if (std::regex_match(pattern, part, range)) {
@@ -171,7 +178,7 @@ std::string complete_text(const dealii::ParameterHandler &prm)
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
-    : boundaries(counts.boundary_conditions), physics(counts.particle_types),
+    : boundaries(counts.boundary_conditions), physics(counts.particle_types, counts.wall_materials),
       floating_walls(counts.floating_walls), solids(counts.solids)
 {
   for (const std::string &name : process_kinds().list())

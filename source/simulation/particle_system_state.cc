@@ -85,7 +85,7 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   bool ok = true;
   for (std::size_t k = 0; k < share.size(); ++k)
     ok = ok && share.length(k) >= n_fixed &&
-         are_of_particle(share[k] + id, model.get_materials().size() - 1) &&
+         are_of_particle(share[k] + id, model.get_materials().n_types()) &&
          ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
                                   model.history_size());
   checkpoint.require(ok, "its particles are not those of the case.");

@@ -91,6 +91,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
     append(process->make_solids(parameters));
     check_crossings(solids, n_given, problems);
   }
+  give_materials(solids, parameters.physics, problems);
   std::vector<double> defaults;
   for (const Process::Field &field : fields)
     defaults.insert(defaults.end(), field.n_components, field.initial);

@@ -70,5 +70,5 @@ int main()
   const ContactModelNames names = {"hertz", {}, "mindlin_limit_overlap", "none"};
   check("none by default", Laws({m}, 1, names, options).model.range() == 0.);
   m.surface_charge = -1e-6;
-  check_relative("default range", Laws({m}, 1, names, options).model.range(), 20e-6, 1e-14);
+  check_relative("default range", Laws({m}, 1, names, options).model.range(), 10e-6, 1e-14);
 }

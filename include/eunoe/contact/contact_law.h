@@ -27,7 +27,7 @@ struct ContactLawOptions
   double bridge_share = 1e-3;  ///< volume of a bridge over that of a particle
   double bridge_volume = 0.;   ///< the same for all bridges if positive (m3)
   /// Gap at which the forces of charges end, over the largest radius.
-  double charge_cut_off = 1.;
+  double charge_cut_off = 0.5;
 
   /// Of the particles (m); laws that act across gaps reach the farther, the larger they are.
   double largest_radius = 0.;

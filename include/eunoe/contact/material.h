@@ -50,6 +50,9 @@ public:
   /// Row of all pairs of particles if they share one, else -1.
   int only_particle_kind() const { return n_particle_types == 1 ? kind(0, 0) : -1; }
 
+  /// Number of particle types, whose materials come first.
+  int n_types() const { return n_particle_types; }
+
   /// Whether a material is one of walls and solids.
   bool is_wall(int m) const { return m >= n_particle_types; }
 

@@ -6,6 +6,10 @@
 #include <eunoe/core/vec3.h>
 #include <eunoe/particles/size_distribution.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace eunoe {
 
 /// `particle type i` of the input: a material with a density and a size distribution.
@@ -17,24 +21,38 @@ struct ParticleType
   SizeDistributionParameters sizes;
 };
 
+/// `wall material i` of the input: what distinguishes some walls and solids from the common ones.
+struct WallMaterial
+{
+  std::string surfaces; ///< their names, separated by commas
+  /// Properties that differ, by their member of Material.
+  std::vector<std::pair<double Material::*, double>> own;
+};
+
 /// `subsection lagrangian physical properties`.
 struct PhysicalProperties : public ParameterSection
 {
   Vec3 gravity;
   std::vector<ParticleType> types;
   Material wall;
+  std::vector<WallMaterial> wall_materials;
   double gas_viscosity = 0.; ///< of the still gas around the particles (Pa s); 0: no drag
   double gas_density = 0.;   ///< (kg/m3)
 
-  explicit PhysicalProperties(unsigned int n_types = 1) : types(n_types) {}
+  explicit PhysicalProperties(unsigned int n_types = 1, unsigned int n_wall_materials = 0)
+      : types(n_types), wall_materials(n_wall_materials)
+  {
+  }
 
-  /// Materials of the particle types, then the common one of walls and solids.
+  /// Materials of the particle types, then the common one of walls and solids, then their own ones.
   Materials materials() const;
   /// Largest diameter that the types' size distributions give (m).
   double largest_diameter() const;
   /// Smallest diameter that the types' size distributions give (m).
   double smallest_diameter() const;
   int wall_material() const { return static_cast<int>(types.size()); }
+  /// Number of the material that the input gives to `wall material` @p k.
+  int wall_material(std::size_t k) const { return wall_material() + 1 + static_cast<int>(k); }
 
   /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).
   static double rayleigh_time(double radius, double density, const Material &material);

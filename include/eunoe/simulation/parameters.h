@@ -20,7 +20,8 @@ namespace eunoe {
 /// Numbers of the subsections that are repeated.
 struct SectionCounts
 {
-  unsigned int particle_types = 1, boundary_conditions = 0, floating_walls = 0, solids = 0;
+  unsigned int particle_types = 1, wall_materials = 0;
+  unsigned int boundary_conditions = 0, floating_walls = 0, solids = 0;
 };
 
 /// Everything that an input file says, as plain structs that belong to the parts of the code that

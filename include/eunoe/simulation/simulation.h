@@ -170,6 +170,10 @@ void check_places(const Domain &domain, const std::vector<Vec3> &places, MPI_Com
 /// beginning, those of a process.
 void check_crossings(const std::vector<Solid> &solids, std::size_t n_given, Problems &problems);
 
+/// Gives walls and solids the materials that the input names for them.
+void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physics,
+                    Problems &problems);
+
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
 /// @param reach of the contact search (m)
 void check_domain(const Domain &domain, const Parameters &parameters, double reach,

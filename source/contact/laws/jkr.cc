@@ -96,12 +96,15 @@ private:
       const double root = cube_root(radius);
       const double torn = neck[k] * root * root;
       const double torn2 = torn * torn;
-      const bool touching = overlap > 0. || (begun[k] > 0. && overlap * radius >= -3. * torn2);
+      const double depth2 = overlap * radius;
+      // The smallest normal number stands for "above zero".
+      const double least_depth2 = begun[k] > 0. ? -3. * torn2 : 0x1p-1022;
+      const bool touching = depth2 >= least_depth2;
 
-      const double hertz2 = overlap > 0. ? overlap * radius : 0.;
+      const double hertz2 = depth2 > 0. ? depth2 : 0.;
       const double least2 = least_neck * least_neck * hertz2;
       const double unit2 = torn2 > least2 ? torn2 : least2;
-      const double above = overlap * radius / (unit2 > 0. ? unit2 : 1.) + 3.;
+      const double above = depth2 / (unit2 > 0. ? unit2 : 1.) + 3.;
       const double z = neck_root(std::sqrt(above > 0. ? above : 0.));
       const double a = std::sqrt(unit2) * (1. + z) * (1. + z);
 
