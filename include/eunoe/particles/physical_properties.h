@@ -23,6 +23,8 @@ struct PhysicalProperties : public ParameterSection
   Vec3 gravity;
   std::vector<ParticleType> types;
   Material wall;
+  /// Materials of walls that differ, which a process may add: rows behind the common wall's.
+  std::vector<Material> other_walls;
 
   explicit PhysicalProperties(unsigned int n_types = 1) : types(n_types) {}
 
