@@ -59,10 +59,10 @@ void examine(const std::string &name, const std::string &more)
               described.begin(), described.end(),
               [&](const ObservableDescription &d) { return d.name == m.observable; });
         }));
-  check(name + ": layers and bins", count(measured, "mass") == 2 && count(measured, "LRD") == 1 &&
-                                        count(measured, "CRD") == 0 &&
-                                        count(measured, "surface_height") == 4 &&
-                                        count(measured, "surface_roughness") == 1);
+  check(name + ": layers and bins",
+        count(measured, "mass") == 2 && count(measured, "LRD") == 1 &&
+            count(measured, "CRD") == 0 && count(measured, "mass_removed") == 1 &&
+            count(measured, "surface_height") == 4 && count(measured, "surface_roughness") == 1);
   for (const Measurement &m : measured) {
     if (m.observable == "surface_height")
       check(name + ": surface between plate and spreader",

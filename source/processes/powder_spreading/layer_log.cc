@@ -153,7 +153,9 @@ void LayerLog::record(const unsigned int layer, const double time,
   std::vector<double> columns = {static_cast<double>(layer), time};
   for (const auto &[name, value] : row) {
     columns.push_back(value);
-    if (std::isfinite(value) && name != wall_clock)
+    // No pass before layer 0 has left anything that could be removed.
+    const bool is_defined = std::isfinite(value) && (layer > 0 || name != "mass_removed");
+    if (is_defined && name != wall_clock)
       measured.push_back({name, static_cast<int>(layer), value});
   }
   file->write(columns);
@@ -185,7 +187,8 @@ std::vector<ObservableDescription> LayerLog::observables()
       {"particles", "1", layer, "number of particles on the plate"},
       {"LRD", "1", layer, "layer relative density, from layer 1 on"},
       {"CRD", "1", layer, "cumulative relative density, from layer 2 on"},
-      {"mass_removed", "kg", layer, "mass taken from the layers below during the pass"},
+      {"mass_removed", "kg", layer,
+       "mass taken from the layers below during the pass, from layer 1 on"},
       {"mass_to_gap", "kg", layer, "mass lost through the gaps since the last weighing"},
       {"mass_to_collector", "kg", layer, "mass lost over the end since the last weighing"},
       {"spreader_force_mean", "N", layer, "mean force on the spreader over the plate"},
