@@ -79,5 +79,12 @@ int main(int argc, char **argv)
 {
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine("periodic", "");
-  examine("walls", "  set side walls = true");
+  examine("faults", R"(
+  set spreader tilt                = 30e-6
+  set spreader vibration amplitude = 5e-6
+  set spreader vibration frequency = 400
+  set layer thickness error        = 0.1
+  set plate recoil                 = 20e-6
+  set side walls                   = true
+  set side wall friction           = 0.2)");
 }
