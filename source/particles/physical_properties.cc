@@ -127,6 +127,7 @@ Materials PhysicalProperties::materials() const
     for (const auto &[member, value] : material.own)
       all.back().*member = value;
   }
+  all.insert(all.end(), other_walls.begin(), other_walls.end());
   return Materials(all, n_types);
 }
 

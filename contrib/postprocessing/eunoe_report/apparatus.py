@@ -7,7 +7,7 @@ plate's surface at 0. SI units.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
 from typing import Sequence
 
@@ -49,12 +49,14 @@ class Apparatus:
     bed_depth: float
     first_bed_depth: float
     density: float
+    plate_stroke: float | None = None  # where it differs from the layer thickness
 
     @classmethod
     def read(cls, file: Path) -> Apparatus:
         try:
             values = json.loads(file.read_text(encoding="utf-8"))
-            return cls(**{field.name: values[field.name] for field in fields(cls)})
+            return cls(**{field.name: values[field.name] for field in fields(cls)
+                          if field.name in values or field.default is MISSING})
         except FileNotFoundError as error:
             raise ApparatusError(f"{file.name} is missing.") from error
         except (OSError, ValueError, TypeError) as error:
@@ -89,7 +91,7 @@ class Apparatus:
 
     def plate_height(self, layer: int) -> float:
         """Of the measuring plate when this layer is weighed."""
-        return -layer * self.layer_thickness
+        return -layer * (self.plate_stroke or self.layer_thickness)
 
     def spreader_tip(self) -> float:
         """Place of the lowest line of the spreader that has made a layer when that is weighed."""

@@ -3,12 +3,9 @@
 
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
-
-#include <nlohmann/json_fwd.hpp>
+#include <eunoe/observables/measurement.h>
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace eunoe {
 
@@ -24,20 +21,6 @@ struct RunEstimate
   double particles = 0.; ///< at a time, mean over the run
   double most_particles = 0.;
   double steps = 0.;
-};
-
-/// One number that a run has measured, as discovery compares it with measured data. SI units.
-struct Measurement
-{
-  std::string observable;
-  int index; ///< layer or bin; 0 for a single number
-  double value;
-};
-
-/// What an observable is: for lists, and for the header of tables.
-struct ObservableDescription
-{
-  std::string name, unit, index_meaning, text;
 };
 
 /// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from
