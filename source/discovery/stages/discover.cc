@@ -11,7 +11,7 @@ namespace {
 std::string study_key(const StudyOptions &o, const MeasuredData &data,
                       const std::vector<Factor> &factors)
 {
-  Table all = {o.level,         o.null_runs, o.screen_runs,   o.confirm_runs,
+  Table all = {o.level,         o.null_runs, o.nuisance_runs, o.screen_runs,   o.confirm_runs,
                o.confirm_rounds, o.n_leaders, o.fit_runs,      o.validate_runs,
                o.budget,        o.max_effects, o.seed,         o.further_experiments,
                o.model_tolerance, o.common_random_numbers, o.confirm, o.bootstrap};

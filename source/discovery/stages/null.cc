@@ -142,6 +142,12 @@ void settle_nuisances(Workbench &bench)
         mean_at(bench, has_up ? up : Amplitudes()) - mean_at(bench, has_down ? down : Amplitudes());
     bench.nuisance_cells.col(static_cast<Eigen::Index>(k)) =
         change.cwiseQuotient(bench.modes.deviations()) / (has_up && has_down ? 2. : 1.);
+    const auto variance = [&](const Amplitudes &amplitudes) {
+      return 1. / static_cast<double>(bench.runs.at(amplitudes).size());
+    };
+    bench.nuisance_noise += has_up && has_down
+                                ? 0.25 * (variance(up) + variance(down))
+                                : variance(has_up ? up : down) + variance({});
   }
 }
 
@@ -155,7 +161,7 @@ Table stage_null(Workbench &bench)
     for (const double side : {1., -1.})
       orders.push_back(
           {{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
-           std::max(2u, bench.options.screen_runs)});
+           bench.options.nuisance_runs});
   bench.ask(orders);
   if (bench.base().size() < 8)
     throw UserError("Only " + std::to_string(bench.base().size()) + " of " +
@@ -165,7 +171,7 @@ Table stage_null(Workbench &bench)
   settle_cells(bench);
   settle_chaos(bench);
   settle_nuisances(bench);
-  bench.misfit = Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise));
+  bench.misfit = Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise, bench.chaos.matrix));
 
   Table table = {{"base runs", bench.base().size()},
                  {"cells", bench.cells.size()},
