@@ -17,11 +17,11 @@ namespace eunoe::discovery {
 /// How a study is made. A *set of runs* is one run of every experiment that is measured.
 struct StudyOptions
 {
-  double level = 0.05;           ///< probability of a false alarm that is accepted
-  unsigned int null_runs = 30;   ///< sets of runs of the base model, at least 8
+  double level = 0.05;            ///< probability of a false alarm that is accepted
+  unsigned int null_runs = 30;    ///< sets of runs of the base model, at least 8
   unsigned int nuisance_runs = 4; ///< sets on either side of each nuisance
-  unsigned int screen_runs = 2;  ///< sets at each of an effect's two amplitudes
-  unsigned int confirm_runs = 8; ///< further sets for each leader, in each round
+  unsigned int screen_runs = 2;   ///< sets at each of an effect's two amplitudes
+  unsigned int confirm_runs = 8;  ///< further sets for each leader, in each round
   unsigned int confirm_rounds = 3;
   unsigned int n_leaders = 4;     ///< most effects that a round confirms
   unsigned int fit_runs = 8;      ///< sets at the fitted amplitudes

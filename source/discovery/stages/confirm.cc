@@ -126,6 +126,7 @@ Table stage_confirm(Workbench &bench, Findings &findings)
                        {"amplitude", leader.amplitudes.begin()->second}});
     }
     bench.ask(orders);
+    settle_chaos(bench);
     findings.posterior = compare_models(bench, findings.decision);
     rounds.push_back({{"confirmed", names},
                       {"models", describe_models(bench, findings.posterior.models)},

@@ -2,6 +2,7 @@
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace eunoe::discovery {
@@ -18,9 +19,9 @@ Eigen::VectorXd chaos_of_cells(const Workbench &bench, const std::vector<Measure
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(bench.base().size()), n);
   for (std::size_t r = 0; r < bench.base().size(); ++r)
     rows.row(static_cast<Eigen::Index>(r)) = bench.measured(bench.base()[r].values).transpose();
-  const Eigen::VectorXd deviation = (centred(rows).colwise().squaredNorm().transpose() /
-                                     static_cast<double>(rows.rows() - 1))
-                                        .cwiseSqrt();
+  const Eigen::VectorXd deviation =
+      (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
+          .cwiseSqrt();
   Eigen::VectorXd result = deviation;
   for (Eigen::Index c = 0; c < n; ++c) {
     std::vector<double> same;
@@ -88,66 +89,63 @@ void settle_cells(Workbench &bench)
   bench.settle_modes(Modes(bench.cells, Eigen::Map<Eigen::VectorXd>(deviations.data(), n)));
 }
 
-/// Chaos of modes and cells, and the noise of the data.
-void settle_chaos(Workbench &bench)
+/// A nuisance's values on both sides. Two prior deviations make a clearer change than one, and are
+/// mostly little enough to be in proportion.
+std::array<double, 2> nuisance_values(const Factor &nuisance)
 {
-  const auto runs = static_cast<Eigen::Index>(bench.base().size());
-  Eigen::MatrixXd rows(runs, bench.modes.n_modes()), cells(runs, bench.modes.n_cells());
-  for (Eigen::Index r = 0; r < runs; ++r) {
-    const RunSet &run = bench.base()[static_cast<std::size_t>(r)];
-    rows.row(r) = run.modes.transpose();
-    cells.row(r) = bench.measured(run.values)
-                       .cwiseQuotient(bench.modes.deviations())
-                       .transpose();
-  }
-  bench.chaos = shrunk_covariance(centred(rows), static_cast<double>(runs - 1),
-                                  bench.modes.experiment_of_mode());
-  // Modes that hardly vary are no better known than the cells that they are made of.
-  bench.chaos.matrix.diagonal() += Eigen::VectorXd::Constant(bench.modes.n_modes(), 1e-3);
-  bench.cell_chaos = (centred(cells).colwise().squaredNorm().transpose() /
-                      static_cast<double>(runs - 1))
-                         .cwiseMax(0.04);
-  bench.noise = estimate_data_noise(
-      bench.modes, bench.chaos.matrix, bench.cell_chaos,
-      {bench.deviation.cwiseQuotient(bench.modes.deviations()), bench.repeats});
+  constexpr double step = 2.;
+  return {std::max(nuisance.lower, nuisance.null_value - step * nuisance.prior_deviation),
+          std::min(nuisance.upper, nuisance.null_value + step * nuisance.prior_deviation)};
 }
 
-Eigen::VectorXd mean_at(const Workbench &bench, const Amplitudes &amplitudes)
+/// Changes of the cells by one prior deviation of a nuisance: a row for each seed with runs on both
+/// sides, or, where one side fails, for each run on the other.
+Eigen::MatrixXd changes_by(Workbench &bench, const Factor &nuisance)
 {
-  const auto &sets = bench.runs.at(amplitudes);
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(bench.modes.n_cells());
-  for (const RunSet &set : sets)
-    mean += bench.measured(set.values) / static_cast<double>(sets.size());
-  return mean;
+  const auto [low, high] = nuisance_values(nuisance);
+  const auto &up = bench.runs[{{nuisance.name, high}}], &down = bench.runs[{{nuisance.name, low}}];
+  std::vector<Eigen::VectorXd> rows;
+  const auto add = [&](const RunSet &a, const RunSet &b, double step) {
+    if (a.seed == b.seed && step > 0.)
+      rows.push_back((bench.measured(a.values) - bench.measured(b.values)) *
+                     (nuisance.prior_deviation / step));
+  };
+  for (const RunSet &a : up)
+    for (const RunSet &b : down)
+      add(a, b, high - low);
+  if (rows.size() < 2)
+    for (const RunSet &base : bench.base()) {
+      for (const RunSet &run : up)
+        add(run, base, high - nuisance.null_value);
+      for (const RunSet &run : down)
+        add(base, run, nuisance.null_value - low);
+    }
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(rows.size()), bench.modes.n_cells());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    result.row(static_cast<Eigen::Index>(r)) =
+        rows[r].cwiseQuotient(bench.modes.deviations()).transpose();
+  return result;
 }
 
-/// Changes of the cells by one prior deviation of each nuisance, from runs on both sides or, where
-/// one side fails, on one.
+/// What is known of each nuisance's change, and the noise that stays in it, which counts as noise
+/// of the comparison.
 void settle_nuisances(Workbench &bench)
 {
-  bench.nuisance_cells =
-      Eigen::MatrixXd::Zero(bench.modes.n_cells(),
-                            static_cast<Eigen::Index>(bench.nuisances.size()));
+  const Misfit white(bench.chaos.matrix, 0. * bench.chaos.matrix);
+  bench.nuisance_cells = Eigen::MatrixXd::Zero(bench.modes.n_cells(),
+                                               static_cast<Eigen::Index>(bench.nuisances.size()));
   for (std::size_t k = 0; k < bench.nuisances.size(); ++k) {
-    const Factor &nuisance = bench.nuisances[k];
-    const Amplitudes up = {{nuisance.name, nuisance.null_value + nuisance.prior_deviation}};
-    const Amplitudes down = {{nuisance.name, nuisance.null_value - nuisance.prior_deviation}};
-    const bool has_up = !bench.runs[up].empty(), has_down = !bench.runs[down].empty();
-    if (!has_up && !has_down) {
-      bench.notes.push_back("The nuisance " + nuisance.name +
+    const Eigen::MatrixXd rows = changes_by(bench, bench.nuisances[k]);
+    if (rows.rows() < 2) {
+      bench.notes.push_back("The nuisance " + bench.nuisances[k].name +
                             " could not be simulated and is not profiled out.");
       continue;
     }
-    const Eigen::VectorXd change =
-        mean_at(bench, has_up ? up : Amplitudes()) - mean_at(bench, has_down ? down : Amplitudes());
-    bench.nuisance_cells.col(static_cast<Eigen::Index>(k)) =
-        change.cwiseQuotient(bench.modes.deviations()) / (has_up && has_down ? 2. : 1.);
-    const auto variance = [&](const Amplitudes &amplitudes) {
-      return 1. / static_cast<double>(bench.runs.at(amplitudes).size());
-    };
-    bench.nuisance_noise += has_up && has_down
-                                ? 0.25 * (variance(up) + variance(down))
-                                : variance(has_up ? up : down) + variance({});
+    const auto number = static_cast<double>(rows.rows());
+    bench.nuisance_cells.col(static_cast<Eigen::Index>(k)) = rows.colwise().mean().transpose();
+    bench.nuisance_noise +=
+        white.coordinates(bench.modes.basis() * centred(rows).transpose()).squaredNorm() /
+        ((number - 1.) * number * static_cast<double>(bench.modes.n_modes()));
   }
 }
 
@@ -158,10 +156,8 @@ Table stage_null(Workbench &bench)
   bench.column_of_cell = places(bench);
   std::vector<Workbench::Order> orders = {{{}, bench.options.null_runs}};
   for (const Factor &nuisance : bench.nuisances)
-    for (const double side : {1., -1.})
-      orders.push_back(
-          {{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
-           bench.options.nuisance_runs});
+    for (const double value : nuisance_values(nuisance))
+      orders.push_back({{{nuisance.name, value}}, bench.options.nuisance_runs});
   bench.ask(orders);
   if (bench.base().size() < 8)
     throw UserError("Only " + std::to_string(bench.base().size()) + " of " +
@@ -171,7 +167,7 @@ Table stage_null(Workbench &bench)
   settle_cells(bench);
   settle_chaos(bench);
   settle_nuisances(bench);
-  bench.misfit = Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise, bench.chaos.matrix));
+  settle_chaos(bench);
 
   Table table = {{"base runs", bench.base().size()},
                  {"cells", bench.cells.size()},

@@ -25,7 +25,7 @@ struct Findings
 
   // confirm, fit, iterate
   Posterior posterior;
-  Scored chosen; ///< the effects that go into the model, with no effect if nothing was detected
+  Scored chosen;     ///< the effects that go into the model, with no effect if nothing was detected
   double p_fit = 1.; ///< whether the chosen model describes the data
 
   Verdict verdict = Verdict::none;
@@ -45,6 +45,9 @@ Table stage_confirm(Workbench &bench, Findings &findings);
 Table stage_fit(Workbench &bench, Findings &findings);
 Table stage_iterate(Workbench &bench, Findings &findings);
 Table stage_validate(Workbench &bench, Findings &findings);
+
+/// Estimates chaos, the data's noise and the misfit anew from all runs so far.
+void settle_chaos(Workbench &bench);
 
 /// Amplitudes at which more runs tell most: those of a fit, or of runs nearby.
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,

@@ -10,7 +10,6 @@
 #include <eunoe/discovery/study.h>
 
 #include <Eigen/Dense>
-
 #include <functional>
 #include <map>
 #include <string>
@@ -54,7 +53,8 @@ struct Workbench
 
   // What the stage null settles.
   Modes modes;
-  Covariance chaos;           ///< of one run's modes
+  Covariance chaos; ///< of one run's modes
+  double chaos_degrees_of_freedom = 0.;
   Eigen::VectorXd cell_chaos; ///< variance of each cell, in squared units of modes.deviations()
   DataNoise noise;
   Eigen::MatrixXd nuisance_cells; ///< change by one prior deviation, cells x nuisances, scaled
@@ -112,7 +112,7 @@ private:
   std::uint32_t first_seed(const Amplitudes &amplitudes);
 
   std::map<Amplitudes, std::uint32_t> seed_offsets;
-  std::map<Amplitudes, std::uint32_t> tried; ///< seeds that were used so far
+  std::map<Amplitudes, std::uint32_t> tried;        ///< seeds that were used so far
   mutable std::map<EffectSet, double> correlations; ///< that are known; renewed after each run
 };
 

@@ -4,7 +4,6 @@
 #include <eunoe/discovery/cell.h>
 
 #include <Eigen/Dense>
-
 #include <vector>
 
 namespace eunoe::discovery {
@@ -30,7 +29,7 @@ public:
   Modes(const std::vector<Cell> &cells, const Eigen::VectorXd &deviations);
 
   /// Most modes of one observable.
-  static constexpr Eigen::Index most_modes = 12;
+  static constexpr Eigen::Index most_modes = 8;
 
   Eigen::Index n_cells() const { return scale.size(); }
   Eigen::Index n_modes() const { return matrix.rows(); }
