@@ -114,12 +114,12 @@ RunEstimate Simulation::estimate() const
 
 void Simulation::open_output()
 {
-  create_folder(parameters.control.output_path, comm);
+  output.open();
   int rank;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0)
     // One of an earlier run would make this one look finished.
-    remove_file(output_file("summary.json"));
+    remove_file(output.file("summary.json"));
   if (checkpoint)
     resume_output();
   particle_pictures = output.pictures(parameters.control.output_name);
@@ -354,7 +354,7 @@ void Simulation::do_what_is_due()
       control.output_control == "time"
           ? present_time >= next_output - 0.5 * control.time_step
           : control.output_frequency > 0 && step % control.output_frequency == 0;
-  if (output_due) {
+  if (output_due && output.is_open()) {
     next_output += control.output_time;
     write_pictures(*particle_pictures);
     const Timers::Scope scope(timers, Section::output);

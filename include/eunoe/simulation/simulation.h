@@ -27,7 +27,8 @@ public:
   /// What the run will cost, as far as it can be known.
   RunEstimate estimate() const;
 
-  /// Creates the output folder and the tables of the observables. Throws like the constructor.
+  /// Creates the output folder and the tables of the observables. Throws like the constructor. A
+  /// run without it writes nothing.
   void open_output();
 
   /// Runs to the end and leaves all results in the output folder.
@@ -73,7 +74,6 @@ public:
   /// Writes the particles to a series of their own, beside the regular output.
   void write_pictures(PictureSeries &series);
   OutputFolder &output_folder() { return output; }
-  std::string output_file(const std::string &name) const { return output.file(name); }
   ///@}
 
 private:

@@ -1,4 +1,3 @@
-#include <eunoe/core/files.h>
 #include <eunoe/processes/heap/measurement.h>
 
 #include <limits>
@@ -114,10 +113,7 @@ nlohmann::ordered_json measure(Simulation &simulation, const HeapParameters &par
   found["heap_mass_clinging"] = clinging.mass.value();
   write_views(simulation, views, found);
   write_profile(simulation, views, parameters.measured_profile, found);
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  if (rank == 0)
-    write_file(simulation.output_file("heap_map.pgm"), views.map());
+  simulation.output_folder().write("heap_map.pgm", views.map());
   return found;
 }
 
