@@ -1,0 +1,112 @@
+#ifndef eunoe_discovery_study_h
+#define eunoe_discovery_study_h
+
+#include <eunoe/core/log.h>
+#include <eunoe/discovery/factor.h>
+#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/measured_data.h>
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// How a study is made. A *set of runs* is one run of every experiment that is measured.
+struct StudyOptions
+{
+  double level = 0.05;           ///< probability of a false alarm that is accepted
+  unsigned int null_runs = 30;   ///< sets of runs of the base model, at least 8
+  unsigned int screen_runs = 2;  ///< sets at each of an effect's two amplitudes
+  unsigned int confirm_runs = 8; ///< further sets for each leader, in each round
+  unsigned int confirm_rounds = 3;
+  unsigned int n_leaders = 4;     ///< most effects that a round confirms
+  unsigned int fit_runs = 8;      ///< sets at the fitted amplitudes
+  unsigned int validate_runs = 8; ///< runs of each held-out experiment, before and after each
+  std::uint64_t budget = 0;       ///< most runs (of one experiment each) in all; 0: no limit
+  unsigned int max_effects = 3;   ///< that one verdict may name together
+  std::uint32_t seed = 1;         ///< of the study; its runs use seeds from 100000 * seed + 1 on
+
+  /// Experiments that could be made but are not in the data: where a tie may be broken.
+  std::vector<std::string> further_experiments;
+
+  /// Relative deviation of a value that the base model is forgiven (period, time step, ...).
+  double model_tolerance = 0.;
+
+  /// What ablations switch off: fingerprints by paired seeds where that pays, the stage confirm,
+  /// and thresholds that know that the covariance is estimated.
+  bool common_random_numbers = true, confirm = true, bootstrap = true;
+};
+
+/// Where stages leave their tables, so that a killed study goes on where it was. A table that was
+/// left by a study of other data, factors or options is not used.
+class StageStore
+{
+public:
+  virtual ~StageStore() = default;
+
+  /// What a stage has left, if it did.
+  virtual std::optional<nlohmann::ordered_json> load(const std::string &stage) = 0;
+  virtual void save(const std::string &stage, const nlohmann::ordered_json &table) = 0;
+};
+
+/// Remembers stages in memory only.
+class TransientStore : public StageStore
+{
+public:
+  std::optional<nlohmann::ordered_json> load(const std::string &stage) override
+  {
+    const auto found = tables.find(stage);
+    return found == tables.end() ? std::nullopt : std::make_optional(found->second);
+  }
+  void save(const std::string &stage, const nlohmann::ordered_json &table) override
+  {
+    tables[stage] = table;
+  }
+
+private:
+  std::map<std::string, nlohmann::ordered_json> tables;
+};
+
+enum class Verdict
+{
+  none,          ///< nothing is missing, as far as could be seen
+  named,         ///< effects that are missing, each by its name
+  tie,           ///< something is missing, one of several effects that look alike
+  off_catalogue, ///< something is missing that is none of the effects
+  underpowered   ///< nothing was seen, and most effects could not have been
+};
+
+/// "none", "named", "tie", "off catalogue", "underpowered".
+std::string name_of(Verdict verdict);
+
+/// Exit code of a program that ends with this verdict: 0 for none, 10 to 13 for the others.
+int exit_code(Verdict verdict);
+
+/// The answer of a study.
+struct Discovery
+{
+  Verdict verdict = Verdict::none;
+  Amplitudes model_after;   ///< amplitudes of the named effects (tie: of the likeliest), else empty
+  Amplitudes nuisances;     ///< best values of the nuisances together with these effects
+  std::uint64_t n_runs = 0; ///< simulations that were asked for, however many came from a cache
+
+  /// What doc/discovery_json.md describes.
+  nlohmann::ordered_json content;
+};
+
+/// Runs all stages: null, detect, screen, confirm, fit, iterate, validate. Collective: every rank
+/// does the same arithmetic on the results that Laboratory::run gives to all.
+/// @param factors effects of the catalogue and nuisances of the base model
+/// @param store called alike on every rank; `load` must give all the same, `save` may write on one
+/// @throws UserError if data, factors and laboratory do not fit together, or the budget is less
+///   than null and screen need; Interrupted if the laboratory was
+Discovery discover(const StudyOptions &options, const MeasuredData &data,
+                   const std::vector<Factor> &factors, Laboratory &laboratory, StageStore &store,
+                   Log &log);
+
+} // namespace eunoe::discovery
+
+#endif
