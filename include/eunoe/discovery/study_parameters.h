@@ -2,8 +2,7 @@
 #define eunoe_discovery_study_parameters_h
 
 #include <eunoe/core/parameter_section.h>
-
-#include <cstdint>
+#include <eunoe/discovery/study.h>
 
 namespace eunoe::discovery {
 
@@ -29,6 +28,7 @@ struct TwinParameters
 {
   std::vector<std::string> effects; ///< "name: amplitude"
   std::vector<std::string> overrides;
+  std::vector<std::string> observables = {"all"}; ///< that are measured
   std::string sealed_file = "truth.sealed.json";
   unsigned int seed = 1001, repeats = 4;
   double noise = 0.01, time_step_factor = 0.8;
@@ -57,11 +57,8 @@ public:
   std::string measured_data = "measured.csv", output_path = "./output";
   std::string cache_path; ///< as written; empty: in the output folder
   std::vector<std::string> effects = {"all"}, excluded_effects, effect_folders;
-  double level = 0.05;
-  std::uint64_t budget = 1000;
-  unsigned int null_runs = 0, screen_runs = 0, confirm_runs = 0, fit_runs = 0, validate_runs = 0;
-  unsigned int max_effects = 3, ranks_per_run = 1;
-  std::uint32_t seed = 1;
+  StudyOptions options;
+  unsigned int ranks_per_run = 1;
   bool write_page = true;
   std::vector<ExperimentParameters> experiments;
   std::vector<NuisanceParameters> nuisances;

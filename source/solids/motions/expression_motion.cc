@@ -1,3 +1,4 @@
+#include <eunoe/core/silent_errors.h>
 #include <eunoe/solids/expression_motion.h>
 
 #include <deal.II/base/function_parser.h>
@@ -6,8 +7,6 @@
 #include <boost/algorithm/string.hpp>
 
 #include <cstdlib>
-#include <iostream>
-#include <sstream>
 #include <stdexcept>
 
 namespace eunoe {
@@ -33,17 +32,16 @@ public:
     const auto parts = dealii::Utilities::split_string_list(text, ';');
     if (parts.size() != 3)
       throw std::invalid_argument("'" + text + "' does not hold three expressions");
-    // The parser writes of errors by itself; the sentence that is thrown here is enough.
-    std::ostringstream unwanted;
-    std::streambuf *const errors = std::cerr.rdbuf(unwanted.rdbuf());
     bool understood = true;
-    try {
-      parser.initialize("x,y,z,t", parts, values, true);
-      (*this)({}, 0.);
-    } catch (const std::exception &) {
-      understood = false;
+    {
+      const SilentErrors silence; // the sentence that is thrown here is enough
+      try {
+        parser.initialize("x,y,z,t", parts, values, true);
+        (*this)({}, 0.);
+      } catch (const std::exception &) {
+        understood = false;
+      }
     }
-    std::cerr.rdbuf(errors);
     if (!understood)
       throw std::invalid_argument("'" + text + "' is not understood");
   }
