@@ -1,0 +1,54 @@
+#ifndef eunoe_discovery_stages_posterior_h
+#define eunoe_discovery_stages_posterior_h
+
+#include <eunoe/discovery/stages/models.h>
+
+namespace eunoe::discovery {
+
+/// What is expected before any data, and how sure a verdict must be. Tuned on synthetic
+/// laboratories; doc/discovery_json.md tells how.
+struct Decision
+{
+  /// Probability of one, two or three effects of the catalogue, and of something else, given that
+  /// something is missing; only their ratios count.
+  double prior_of_size[3] = {1., 0.3, 0.1};
+  double prior_off_catalogue = 0.25;
+  /// What a further amplitude costs in deviance: the width of what is expected over that which the
+  /// data leave, -2 log.
+  double cost_of_effect = 5.2;
+  /// Deviances are divided by this before they become probabilities.
+  double temperature = 1.;
+  double credible = 0.95;          ///< probability that a tie set covers
+  double off_catalogue = 0.5;      ///< least probability for this verdict
+  double p_of_bad_fit = 0.01;      ///< below: the best model does not describe the data
+  double least_inclusion = 0.02;   ///< an effect less likely than this is not confirmed
+};
+
+/// A set of effects and how likely it is.
+struct Scored
+{
+  Fit fit;
+  double score = 0.; ///< -2 log of evidence times prior, up to a constant
+  double probability = 0.;
+};
+
+/// All sets of effects that were looked at, the likeliest first, beside "off catalogue".
+struct Posterior
+{
+  std::vector<Scored> models;
+  double off_catalogue = 0.;
+  std::vector<double> inclusion; ///< of each effect: probability of all sets that hold it
+
+  const Scored &best() const { return models.front(); }
+};
+
+/// Compares all single effects, all pairs, and triples about the best pairs, as far as
+/// StudyOptions::max_effects goes.
+Posterior compare_models(const Workbench &bench, const Decision &decision);
+
+/// Effects whose amplitude can be told from runs.
+bool is_simulated(const Workbench &bench, std::size_t effect);
+
+} // namespace eunoe::discovery
+
+#endif

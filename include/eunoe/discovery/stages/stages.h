@@ -1,0 +1,84 @@
+#ifndef eunoe_discovery_stages_stages_h
+#define eunoe_discovery_stages_stages_h
+
+#include <eunoe/discovery/stages/posterior.h>
+#include <eunoe/discovery/stages/reference.h>
+
+#include <nlohmann/json.hpp>
+
+namespace eunoe::discovery {
+
+/// What the stages have found so far.
+struct Findings
+{
+  Decision decision;
+
+  // detect
+  Reference base_reference;
+  Evidence evidence; ///< against the base model; with the gain once fingerprints are known
+  double p_global = 1.;
+
+  // screen
+  Reference reference;
+  double p_detected = 1.; ///< of all evidence together
+  bool detected = false;
+
+  // confirm, fit, iterate
+  Posterior posterior;
+  Scored chosen; ///< the effects that go into the model, with no effect if nothing was detected
+  double p_fit = 1.; ///< whether the chosen model describes the data
+
+  Verdict verdict = Verdict::none;
+  std::vector<Scored> tie; ///< sets of effects that cannot be told apart, the likeliest first
+  std::vector<double> confidence; ///< of each effect
+  double off_catalogue = 0.;      ///< confidence in "something else"
+  bool withdrawn = false;
+};
+
+using Table = nlohmann::ordered_json;
+
+/// Each stage makes its runs, adds to the findings, and returns its table (doc/discovery_json.md).
+Table stage_null(Workbench &bench);
+Table stage_detect(Workbench &bench, Findings &findings);
+Table stage_screen(Workbench &bench, Findings &findings);
+Table stage_confirm(Workbench &bench, Findings &findings);
+Table stage_fit(Workbench &bench, Findings &findings);
+Table stage_iterate(Workbench &bench, Findings &findings);
+Table stage_validate(Workbench &bench, Findings &findings);
+
+/// Amplitudes at which more runs tell most: those of a fit, or of runs nearby.
+Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
+                           const Eigen::VectorXd &position);
+
+/// Verdict, tie set and confidences from the posterior.
+void decide(const Workbench &bench, Findings &findings);
+
+/// Sets of effects as a table: effects, probability, amplitudes.
+Table describe_models(const Workbench &bench, const std::vector<Scored> &models);
+
+/// What could be measured to tell the sets of a tie apart, the best first.
+Table separating_measurements(Workbench &bench, const std::vector<Scored> &tie);
+
+/// What remains of the data beside the closest model: where, and what it resembles.
+Table describe_remainder(const Workbench &bench, const Findings &findings);
+
+/// Amplitudes of the chosen effects with intervals.
+Table describe_amplitudes(const Workbench &bench, const Findings &findings);
+
+/// Best values of the nuisances beside a fit, in prior deviations from their null values.
+Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit);
+
+/// Means and spreads of base model, chosen model and data per cell.
+Table describe_envelopes(const Workbench &bench, const Findings &findings);
+
+/// Gap between data and model: root mean square deviation of the cells in standard deviations of
+/// one run, less what noise explains.
+struct Gap
+{
+  double value = 0., before_correction = 0.;
+};
+Gap gap(const Eigen::VectorXd &deviation, const Eigen::VectorXd &noise_variance);
+
+} // namespace eunoe::discovery
+
+#endif

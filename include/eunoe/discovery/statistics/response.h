@@ -1,0 +1,58 @@
+#ifndef eunoe_discovery_statistics_response_h
+#define eunoe_discovery_statistics_response_h
+
+#include <Eigen/Dense>
+
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// Emulator: the mean outcome of a run as a polynomial of the amplitudes of a few effects, by
+/// generalised least squares. All runs have the same covariance C up to a factor, so the variance
+/// of a prediction is C times one number, its leverage.
+class Response
+{
+public:
+  struct Run
+  {
+    Eigen::VectorXd position; ///< amplitude of each effect less its null value, over its scale
+    Eigen::VectorXd values;
+    double variance = 1.; ///< in units of C
+  };
+
+  Response() = default;
+
+  /// @param runs at least one of them at the origin
+  Response(const std::vector<Run> &runs, Eigen::Index n_effects);
+
+  /// Predicted outcome at the origin.
+  Eigen::VectorXd origin() const { return coefficients.row(0).transpose(); }
+  double origin_leverage() const { return inverse(0, 0); }
+
+  /// What is predicted to change from the origin to a position, and its leverage.
+  Eigen::VectorXd change(const Eigen::VectorXd &position) const;
+  double change_leverage(const Eigen::VectorXd &position) const;
+  /// Leverage of the outcome itself, origin and change.
+  double leverage(const Eigen::VectorXd &position) const;
+
+  /// Values in other coordinates.
+  Response transformed(const Eigen::MatrixXd &transform) const;
+
+  /// Amplitudes of one effect between which runs were made, with half as much again beyond.
+  double lower(Eigen::Index effect) const { return least(effect); }
+  double upper(Eigen::Index effect) const { return most(effect); }
+
+private:
+  /// A product of powers; powers[k] of effect k.
+  using Term = std::vector<int>;
+  Eigen::VectorXd terms_at(const Eigen::VectorXd &position) const;
+
+  std::vector<Term> terms;
+  Eigen::MatrixXd coefficients; ///< terms x values
+  Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
+  Eigen::VectorXd least, most;
+};
+
+} // namespace eunoe::discovery
+
+#endif

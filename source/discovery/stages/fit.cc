@@ -1,0 +1,156 @@
+#include <eunoe/discovery/stages/stages.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
+{
+  return *std::find_if(posterior.models.begin(), posterior.models.end(),
+                       [&](const Scored &model) { return model.fit.effects == set; });
+}
+
+/// Makes runs at the amplitudes of a fit, and says how well the emulator had foreseen them.
+Table verify(Workbench &bench, const Fit &fit, const unsigned int number)
+{
+  const Amplitudes amplitudes = near_amplitudes(bench, fit.effects, fit.position);
+  Eigen::VectorXd position = fit.position;
+  for (std::size_t k = 0; k < fit.effects.size(); ++k) {
+    const Factor &effect = bench.effects[fit.effects[k]];
+    const auto found = amplitudes.find(effect.name);
+    position(static_cast<Eigen::Index>(k)) =
+        found == amplitudes.end() ? 0. : (found->second - effect.null_value) / effect.scale;
+  }
+  const Response response = bench.response(fit.effects);
+  const Eigen::VectorXd foreseen = response.origin() + response.change(position);
+  const double leverage = response.leverage(position);
+
+  const auto before = bench.runs[amplitudes].size();
+  bench.ask({{amplitudes, static_cast<unsigned int>(before) + number}});
+  const auto &sets = bench.runs[amplitudes];
+  Table row = {{"effects", name_of(bench, fit.effects)}, {"amplitudes", Table::object()}};
+  for (const auto &[name, value] : amplitudes)
+    row["amplitudes"][name] = value;
+  row["runs"] = sets.size();
+  if (sets.size() == before)
+    return row;
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(bench.misfit.size());
+  const auto fresh = static_cast<double>(sets.size() - before);
+  for (std::size_t k = before; k < sets.size(); ++k)
+    mean += bench.misfit.coordinates(sets[k].modes) / fresh;
+  row["distance to what the emulator foresaw, over its expectation"] =
+      (mean - foreseen).squaredNorm() /
+      ((leverage + 1. / fresh) * static_cast<double>(bench.misfit.size()));
+  return row;
+}
+
+/// Takes effects away whose removal the data do not resent, the least needed first.
+Scored prune(const Workbench &bench, const Findings &findings, const Scored &model, Table &steps)
+{
+  const double limit = findings.reference.gain_limit(bench.options.level);
+  Scored result = model;
+  while (result.fit.effects.size() > 1) {
+    double least = limit;
+    EffectSet best;
+    for (const std::size_t k : result.fit.effects) {
+      EffectSet without;
+      for (const std::size_t l : result.fit.effects)
+        if (l != k)
+          without.push_back(l);
+      const double loss = fit_model(bench, without).deviance - result.fit.deviance;
+      steps.push_back({{"without", bench.effects[k].name},
+                       {"of", name_of(bench, result.fit.effects)},
+                       {"loss", loss},
+                       {"loss needed", limit},
+                       {"p", findings.reference.p_gain(loss)}});
+      if (loss < least) {
+        least = loss;
+        best = without;
+      }
+    }
+    if (best.empty())
+      break;
+    result = find_scored(findings.posterior, best);
+  }
+  return result;
+}
+
+} // namespace
+
+Table stage_fit(Workbench &bench, Findings &findings)
+{
+  Table passes = Table::array();
+  Table steps = Table::array();
+  for (unsigned int pass = 0; pass < 2; ++pass) {
+    findings.chosen = prune(bench, findings, findings.posterior.best(), steps);
+    passes.push_back(verify(bench, findings.chosen.fit, (bench.options.fit_runs + 1 - pass) / 2));
+    findings.posterior = compare_models(bench, findings.decision);
+  }
+  return {{"passes", passes},
+          {"deletions tried", steps},
+          {"models", describe_models(bench, findings.posterior.models)}};
+}
+
+Table stage_iterate(Workbench &bench, Findings &findings)
+{
+  Table rounds = Table::array();
+  constexpr int most = 4;
+  for (int round = 0; round < most; ++round) {
+    Table steps = Table::array();
+    const EffectSet before = findings.chosen.fit.effects;
+    findings.chosen = prune(bench, findings, findings.posterior.best(), steps);
+    Table row = {{"effects", name_of(bench, findings.chosen.fit.effects)},
+                 {"likeliest", name_of(bench, findings.posterior.best().fit.effects)},
+                 {"deletions tried", steps}};
+    const bool settled = findings.chosen.fit.effects == before;
+    if (!settled) {
+      row["verification"] = verify(bench, findings.chosen.fit, bench.options.fit_runs);
+      findings.posterior = compare_models(bench, findings.decision);
+    }
+    rounds.push_back(row);
+    if (settled)
+      break;
+  }
+  findings.chosen = find_scored(findings.posterior, findings.chosen.fit.effects);
+  const double modes = findings.reference.n_modes;
+  const auto size = static_cast<double>(findings.chosen.fit.effects.size());
+  findings.p_fit =
+      findings.reference.p_distance(findings.chosen.fit.distance, std::max(1., modes - size) / modes);
+  return {{"rounds", rounds},
+          {"p of the fit", findings.p_fit},
+          {"models", describe_models(bench, findings.posterior.models)}};
+}
+
+Table describe_amplitudes(const Workbench &bench, const Findings &findings)
+{
+  Table rows = Table::array();
+  const Fit &fit = findings.chosen.fit;
+  for (std::size_t k = 0; k < fit.effects.size(); ++k) {
+    const Factor &effect = bench.effects[fit.effects[k]];
+    const Interval interval =
+        profile_interval(bench, fit, k, findings.reference.direction_limit);
+    const auto amplitude = [&](double u) { return effect.null_value + u * effect.scale; };
+    rows.push_back({{"effect", effect.name},
+                    {"unit", effect.unit},
+                    {"amplitude", amplitude(fit.position(static_cast<Eigen::Index>(k)))},
+                    {"lower", amplitude(interval.lower)},
+                    {"upper", amplitude(interval.upper)},
+                    {"lower reached", !interval.open_below},
+                    {"upper reached", !interval.open_above},
+                    {"confidence", findings.confidence[fit.effects[k]]}});
+  }
+  return rows;
+}
+
+Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit)
+{
+  const Eigen::MatrixXd changes =
+      bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
+  return changes.transpose() *
+         fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,308 @@
+#include <eunoe/core/problems.h>
+#include <eunoe/discovery/stages/workbench.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace eunoe::discovery {
+
+namespace {
+
+std::string describe(const Cell &cell)
+{
+  return "observable \"" + cell.observable + "\", index " + std::to_string(cell.index) +
+         ", of experiment \"" + cell.experiment + "\"";
+}
+
+void check_options(const StudyOptions &options)
+{
+  if (!(options.level > 0. && options.level < 0.5))
+    throw UserError("The study's level must lie between 0 and 0.5: give the probability of a false "
+                    "alarm that you accept, such as 0.05.");
+  if (options.null_runs < 8 || options.screen_runs < 1 || options.validate_runs < 3)
+    throw UserError("The study needs at least 8 runs for the stage null, 1 for screen and 3 for "
+                    "validate: raise these numbers.");
+}
+
+void check_cell(const MeasuredCell &cell, const std::vector<Cell> &known)
+{
+  if (std::find(known.begin(), known.end(), cell.cell) == known.end())
+    throw UserError("The measured data have a value for " + describe(cell.cell) +
+                    ", which its simulation does not give: see eunoe-discovery --list-observables.");
+  if (!std::isfinite(cell.value) || !std::isfinite(cell.standard_deviation) ||
+      cell.standard_deviation < 0. || cell.repeats == 0)
+    throw UserError("The measured data for " + describe(cell.cell) +
+                    " need a finite value, a standard deviation of at least 0, and at least one "
+                    "repeat.");
+}
+
+} // namespace
+
+Workbench::Workbench(const StudyOptions &options, const MeasuredData &data,
+                     const std::vector<Factor> &factors, Laboratory &laboratory, Log &log)
+    : options(options), data(data), archive(laboratory, options.budget), log(log)
+{
+  check_options(options);
+  for (const Factor &factor : factors) {
+    if (factor.kind == Factor::Kind::effect)
+      effects.push_back(factor);
+    else if (factor.prior_deviation > 0.)
+      nuisances.push_back(factor);
+  }
+  std::set<std::string> names;
+  for (const Factor &factor : factors)
+    if (!names.insert(factor.name).second)
+      throw UserError("Two effects or nuisances are called \"" + factor.name +
+                      "\": give each its own name.");
+  if (effects.empty())
+    throw UserError("The study has no effects to look for: name some, or \"all\".");
+  if (data.fit.empty())
+    throw UserError("The measured data have no cell for the fit: set the column \"use\" of some "
+                    "to fit.");
+
+  std::set<Cell> seen;
+  for (const MeasuredCell &cell : data.fit) {
+    if (!seen.insert(cell.cell).second)
+      throw UserError("The measured data have two values for " + describe(cell.cell) + ".");
+    if (std::find(experiments.begin(), experiments.end(), cell.cell.experiment) ==
+        experiments.end())
+      experiments.push_back(cell.cell.experiment);
+  }
+  for (const MeasuredCell &cell : data.held_out)
+    check_cell(cell, laboratory.cells(cell.cell.experiment));
+  for (const std::string &experiment : experiments)
+    for (const Cell &cell : laboratory.cells(experiment))
+      columns.push_back(cell);
+  for (const MeasuredCell &cell : data.fit) {
+    check_cell(cell, laboratory.cells(cell.cell.experiment));
+    cells.push_back(cell.cell);
+  }
+}
+
+Eigen::VectorXd Workbench::measured(const Eigen::VectorXd &all) const
+{
+  Eigen::VectorXd result(static_cast<Eigen::Index>(column_of_cell.size()));
+  for (std::size_t c = 0; c < column_of_cell.size(); ++c)
+    result(static_cast<Eigen::Index>(c)) = all(column_of_cell[c]);
+  return result;
+}
+
+std::vector<RunRequest> Workbench::requests(const Amplitudes &amplitudes,
+                                            const std::uint32_t seed) const
+{
+  std::vector<RunRequest> result;
+  for (const std::string &experiment : experiments)
+    result.push_back({experiment, amplitudes, seed});
+  return result;
+}
+
+std::uint32_t Workbench::first_seed(const Amplitudes &amplitudes)
+{
+  const std::uint32_t start = 100000u * options.seed + 1u;
+  if (options.common_random_numbers)
+    return start;
+  const auto number = static_cast<std::uint32_t>(seed_offsets.size());
+  return start + 500u * seed_offsets.emplace(amplitudes, number).first->second;
+}
+
+void Workbench::ask(const std::vector<Order> &orders)
+{
+  // Two rounds: the second stands in for runs that failed in the first.
+  for (unsigned int round = 0; round < 2; ++round) {
+    struct Asked
+    {
+      const Order *order;
+      std::uint32_t seed;
+    };
+    std::vector<Asked> asked;
+    std::vector<RunRequest> all;
+    std::uint64_t room = archive.remaining() / experiments.size();
+    for (const Order &order : orders) {
+      const std::size_t there = runs[order.amplitudes].size();
+      for (std::size_t k = there; k < order.count && room > 0; ++k, --room) {
+        const std::uint32_t seed = first_seed(order.amplitudes) + tried[order.amplitudes]++;
+        asked.push_back({&order, seed});
+        const auto set = requests(order.amplitudes, seed);
+        all.insert(all.end(), set.begin(), set.end());
+      }
+    }
+    const std::vector<RunResult> results = archive.get(all);
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      RunSet set{asked[k].seed, Eigen::VectorXd(static_cast<Eigen::Index>(columns.size())), {}};
+      Eigen::Index place = 0;
+      bool complete = true;
+      for (std::size_t e = 0; e < experiments.size(); ++e) {
+        const RunResult &result = results[k * experiments.size() + e];
+        complete = complete && result.has_value();
+        for (std::size_t c = 0; complete && c < result->size(); ++c)
+          set.values(place++) = (*result)[c];
+      }
+      if (!complete || !measured(set.values).allFinite())
+        continue;
+      if (modes.n_modes() > 0)
+        set.modes = modes.reduce(measured(set.values));
+      runs[asked[k].order->amplitudes].push_back(set);
+    }
+    correlations.clear();
+  }
+}
+
+void Workbench::settle_modes(const Modes &settled)
+{
+  modes = settled;
+  for (auto &[amplitudes, sets] : runs)
+    for (RunSet &set : sets)
+      set.modes = modes.reduce(measured(set.values));
+}
+
+Eigen::VectorXd Workbench::tolerance() const
+{
+  return options.model_tolerance * value.cwiseAbs().cwiseQuotient(modes.deviations());
+}
+
+Eigen::MatrixXd Workbench::other_covariance(const DataNoise &data_noise) const
+{
+  Eigen::MatrixXd result = data_noise.modes;
+  const Eigen::MatrixXd changes = modes.basis() * nuisance_cells;
+  result += changes * changes.transpose();
+  if (options.model_tolerance > 0.) {
+    // Half of what is forgiven belongs to each cell, half to the observable as a whole.
+    const Eigen::VectorXd size = tolerance();
+    for (const Modes::Group &group : modes.groups()) {
+      Eigen::VectorXd part = Eigen::VectorXd::Zero(size.size());
+      for (const Eigen::Index c : group.cells)
+        part(c) = size(c);
+      const Eigen::VectorXd whole = modes.basis() * part;
+      result += 0.5 * whole * whole.transpose();
+    }
+    result += 0.5 * modes.basis() * size.cwiseAbs2().asDiagonal() * modes.basis().transpose();
+  }
+  return result;
+}
+
+Amplitudes Workbench::amplitudes(const EffectSet &set, const Eigen::VectorXd &position) const
+{
+  Amplitudes result;
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const double u = position(static_cast<Eigen::Index>(k));
+    const Factor &effect = effects[set[k]];
+    if (u != 0.)
+      result[effect.name] = effect.null_value + u * effect.scale;
+  }
+  return result;
+}
+
+double Workbench::seed_correlation(const EffectSet &active) const
+{
+  const auto known = correlations.find(active);
+  return known != correlations.end() ? known->second
+                                     : correlations[active] = estimate_correlation(active);
+}
+
+double Workbench::estimate_correlation(const EffectSet &active) const
+{
+  std::set<std::string> names;
+  for (const std::size_t k : active)
+    names.insert(effects[k].name);
+  double products = 0., squares = 0., base_squares = 0., pairs = 0.;
+  for (const auto &[amplitudes, sets] : runs) {
+    std::set<std::string> here;
+    for (const auto &[name, amplitude] : amplitudes)
+      here.insert(name);
+    if (here != names)
+      continue;
+    std::vector<Eigen::VectorXd> changed, unchanged;
+    for (const RunSet &set : sets)
+      for (const RunSet &other : base())
+        if (other.seed == set.seed) {
+          changed.push_back(misfit.coordinates(set.modes));
+          unchanged.push_back(misfit.coordinates(other.modes));
+        }
+    if (changed.size() < 2)
+      continue;
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(misfit.size()), base_mean = mean;
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+      mean += changed[k] / static_cast<double>(changed.size());
+      base_mean += unchanged[k] / static_cast<double>(changed.size());
+    }
+    for (std::size_t k = 0; k < changed.size(); ++k) {
+      products += (changed[k] - mean).dot(unchanged[k] - base_mean);
+      squares += (changed[k] - mean).squaredNorm();
+      base_squares += (unchanged[k] - base_mean).squaredNorm();
+    }
+    pairs += static_cast<double>(changed.size() - 1);
+  }
+  if (pairs == 0. || squares <= 0. || base_squares <= 0.)
+    return 0.;
+  const double correlation = products / std::sqrt(squares * base_squares);
+  const double error = 1. / std::sqrt(pairs * static_cast<double>(misfit.size()));
+  return correlation > 3. * error ? std::min(correlation, 0.98) : 0.;
+}
+
+std::vector<Response::Run>
+Workbench::runs_of(const EffectSet &set,
+                   const std::function<Eigen::VectorXd(const RunSet &)> &values) const
+{
+  std::vector<Response::Run> result;
+  Eigen::VectorXd base_mean;
+  std::map<std::uint32_t, Eigen::VectorXd> base_of_seed;
+  for (const RunSet &run : base()) {
+    base_of_seed[run.seed] = values(run);
+    base_mean = result.empty() ? base_of_seed[run.seed] : base_mean + base_of_seed[run.seed];
+    result.push_back({Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.size())),
+                      base_of_seed[run.seed], 1.});
+  }
+  base_mean /= static_cast<double>(result.size());
+
+  for (const auto &[amplitudes, sets] : runs) {
+    if (amplitudes.empty())
+      continue;
+    Eigen::VectorXd position = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.size()));
+    EffectSet active;
+    for (std::size_t k = 0; k < set.size(); ++k) {
+      const Factor &effect = effects[set[k]];
+      const auto found = amplitudes.find(effect.name);
+      if (found == amplitudes.end())
+        continue;
+      position(static_cast<Eigen::Index>(k)) =
+          (found->second - effect.null_value) / effect.scale;
+      active.push_back(set[k]);
+    }
+    if (active.size() != amplitudes.size())
+      continue;
+    const double correlation = options.common_random_numbers ? seed_correlation(active) : 0.;
+    for (const RunSet &run : sets) {
+      Response::Run row{position, values(run), 1.};
+      const auto same = base_of_seed.find(run.seed);
+      if (correlation > 0. && same != base_of_seed.end()) {
+        row.values -= correlation * (same->second - base_mean);
+        row.variance = 1. - correlation * correlation;
+      }
+      result.push_back(row);
+    }
+  }
+  return result;
+}
+
+Response Workbench::response_of_modes(const EffectSet &set) const
+{
+  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }),
+                  static_cast<Eigen::Index>(set.size()));
+}
+
+Response Workbench::response_of_columns(const EffectSet &set) const
+{
+  return Response(runs_of(set, [](const RunSet &run) { return run.values; }),
+                  static_cast<Eigen::Index>(set.size()));
+}
+
+std::string name_of(const Workbench &bench, const EffectSet &set)
+{
+  std::string name;
+  for (const std::size_t k : set)
+    name += (name.empty() ? "" : " + ") + bench.effects[k].name;
+  return name;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,81 @@
+#include <eunoe/discovery/statistics/data_noise.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// What one observable says of the ratio of variances: its value, and on how many degrees of
+/// freedom it stands.
+struct Witness
+{
+  double ratio, weight;
+  bool declared; ///< a single repeat: the deviation was not estimated from repeats
+};
+
+Witness witness(const Modes::Group &group, const Eigen::MatrixXd &chaos,
+                const Eigen::VectorXd &cell_chaos, const Repeats &repeats)
+{
+  double ratio = 0., number = 0.;
+  for (const Eigen::Index c : group.cells) {
+    ratio += repeats.deviation(c) * repeats.deviation(c) / cell_chaos(c);
+    number += repeats.number(c);
+  }
+  const auto n = static_cast<double>(group.cells.size());
+  double trace = 0., squares = 0.;
+  for (const Eigen::Index i : group.modes)
+    for (const Eigen::Index j : group.modes) {
+      trace += i == j ? chaos(i, i) : 0.;
+      squares += chaos(i, j) * chaos(i, j);
+    }
+  const double effective = std::max(1., trace * trace / squares);
+  const bool declared = number / n < 1.5;
+  return {ratio / n, std::max(0., number / n - 1.) * effective, declared};
+}
+
+} // namespace
+
+DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
+                              const Eigen::VectorXd &cell_chaos, const Repeats &repeats)
+{
+  // Degrees of freedom that the expectation is worth: no noise of the instrument for all
+  // observables together, and the mean of all for a single one.
+  constexpr double weight_of_one = 4., weight_of_mean = 6.;
+  std::vector<Witness> witnesses;
+  double sum = weight_of_one, weight = weight_of_one;
+  for (const Modes::Group &group : modes.groups()) {
+    witnesses.push_back(witness(group, chaos, cell_chaos, repeats));
+    sum += witnesses.back().weight * witnesses.back().ratio;
+    weight += witnesses.back().weight;
+  }
+
+  DataNoise noise;
+  const Eigen::Index n = modes.n_cells();
+  noise.ratio = Eigen::VectorXd::Ones(n);
+  noise.cell_variance = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd instrument(n), share = Eigen::VectorXd::Zero(modes.n_modes());
+  for (std::size_t g = 0; g < witnesses.size(); ++g) {
+    const Witness &w = witnesses[g];
+    const double ratio =
+        w.declared ? std::max(1., w.ratio)
+                   : (weight_of_mean * sum / weight + w.weight * w.ratio) /
+                         (weight_of_mean + w.weight);
+    double repeats_inverse = 0.;
+    for (const Eigen::Index c : modes.groups()[g].cells) {
+      noise.ratio(c) = ratio;
+      instrument(c) = std::max(0., ratio - 1.) * cell_chaos(c) / repeats.number(c);
+      noise.cell_variance(c) = ratio * cell_chaos(c) / repeats.number(c);
+      repeats_inverse += 1. / repeats.number(c);
+    }
+    repeats_inverse /= static_cast<double>(modes.groups()[g].cells.size());
+    for (const Eigen::Index m : modes.groups()[g].modes)
+      share(m) = std::sqrt(std::min(1., ratio) * repeats_inverse);
+  }
+  noise.modes = share.asDiagonal() * chaos * share.asDiagonal();
+  noise.modes += modes.basis() * instrument.asDiagonal() * modes.basis().transpose();
+  return noise;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,360 @@
+#ifndef eunoe_tests_discovery_synthetic_h
+#define eunoe_tests_discovery_synthetic_h
+
+// A laboratory whose models are known in closed form: several observables with chaos that is
+// correlated within and between them, effects whose fingerprints resemble each other and bend with
+// amplitude, runs that fail. It costs nothing, so that a discovery can be made hundreds of times.
+
+#include <eunoe/core/random.h>
+#include <eunoe/discovery/statistics/random_stream.h>
+#include <eunoe/discovery/study.h>
+
+#include <Eigen/Dense>
+
+#include <cstring>
+#include <iostream>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace test {
+
+using namespace eunoe;
+using namespace eunoe::discovery;
+
+inline void check(const std::string &name, bool ok, const std::string &otherwise = "is not so")
+{
+  std::cout << name << ": " << (ok ? "ok" : otherwise) << std::endl;
+}
+
+struct ObservableShape
+{
+  std::string experiment, name;
+  int size;
+};
+
+/// What a synthetic laboratory is like.
+struct Nature
+{
+  std::uint32_t seed = 1; ///< of fingerprints and chaos
+  unsigned int n_effects = 12;
+  double bend = 0.3;             ///< second-order change over the first-order one at one scale
+  double alike = 0.6;            ///< share of fingerprints that stems from a few common patterns
+  double strength_of_scale = 5.; ///< strength at an amplitude of one scale
+  double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
+  double failures = 0.02;        ///< share of runs that fail
+  double skewness = 0.15;        ///< of the chaos
+  double changed_chaos = 0.15;   ///< how much an effect at one scale makes chaos grow
+  unsigned int n_nuisances = 2;
+  double nuisance_strength = 1.; ///< of one prior deviation
+  std::vector<ObservableShape> observables = {
+      {"spreading", "layer density", 6}, {"spreading", "removed mass", 6},
+      {"spreading", "profile", 20},      {"spreading", "force", 1},
+      {"heap", "angle", 1},              {"heap", "profile", 12},
+      {"heap", "mass", 1},               {"thick layers", "layer density", 6},
+      {"thick layers", "profile", 12},   {"shear", "stress", 4}};
+};
+
+class SyntheticLaboratory : public Laboratory
+{
+public:
+  explicit SyntheticLaboratory(const Nature &nature) : nature(nature)
+  {
+    for (const ObservableShape &shape : nature.observables) {
+      if (all_cells.count(shape.experiment) == 0)
+        names.push_back(shape.experiment);
+      for (int i = 0; i < shape.size; ++i)
+        all_cells[shape.experiment].push_back({shape.experiment, shape.name, i});
+    }
+    for (const std::string &name : names)
+      make_chaos(name);
+    for (unsigned int k = 0; k < nature.n_effects; ++k) {
+      Factor f;
+      f.name = std::string(1, static_cast<char>('a' + k));
+      f.scale = 0.1 * (k + 1);
+      f.lower = k % 4 == 3 ? -5. * f.scale : 0.;
+      f.upper = 5. * f.scale;
+      f.sign = k % 4 == 3 ? Factor::Sign::both : Factor::Sign::above;
+      add_factor(f, k, nature.strength_of_scale, nature.alike);
+    }
+    for (unsigned int k = 0; k < nature.n_nuisances; ++k) {
+      Factor f;
+      f.kind = Factor::Kind::nuisance;
+      f.name = "nuisance " + std::to_string(k);
+      f.null_value = 1. + k;
+      f.scale = f.prior_deviation = 0.1;
+      f.lower = -10.;
+      f.upper = 10.;
+      f.sign = Factor::Sign::both;
+      add_factor(f, 50 + k, nature.nuisance_strength, nature.alike);
+    }
+  }
+
+  const std::vector<Cell> &cells(const std::string &experiment) const override
+  {
+    return all_cells.at(experiment);
+  }
+
+  std::vector<RunResult> run(const std::vector<RunRequest> &requests) override
+  {
+    std::vector<RunResult> results;
+    for (const RunRequest &request : requests) {
+      ++made;
+      results.push_back(outcome(request));
+    }
+    return results;
+  }
+
+  std::uint64_t n_runs() const override { return made; }
+  std::uint64_t n_cached() const override { return 0; }
+
+  const std::vector<Factor> &factors() const { return all_factors; }
+  std::vector<Factor> factors_without(const std::string &name) const
+  {
+    std::vector<Factor> result;
+    for (const Factor &f : all_factors)
+      if (f.name != name)
+        result.push_back(f);
+    return result;
+  }
+
+  /// Makes the fingerprint of one effect that of another, but for a share.
+  void make_alike(const std::string &name, const std::string &other, double share,
+                  const std::vector<std::string> &experiments)
+  {
+    for (const std::string &e : experiments) {
+      Pattern &p = patterns[name][e];
+      const Pattern &q = patterns[other][e];
+      p.first = (1. - share) * q.first + share * p.first;
+      p.second = (1. - share) * q.second + share * p.second;
+    }
+  }
+
+  /// Makes an effect invisible in an experiment.
+  void hide(const std::string &name, const std::string &experiment)
+  {
+    patterns[name][experiment].first.setZero();
+    patterns[name][experiment].second.setZero();
+  }
+
+  Eigen::VectorXd mean(const std::string &experiment, const Amplitudes &amplitudes) const
+  {
+    Eigen::VectorXd result = level.at(experiment);
+    double crossed = 1.;
+    for (const Factor &f : all_factors) {
+      const auto found = amplitudes.find(f.name);
+      if (found == amplitudes.end())
+        continue;
+      const double u = (found->second - f.null_value) / f.scale;
+      const Pattern &p = patterns.at(f.name).at(experiment);
+      const double bent = f.kind == Factor::Kind::nuisance ? 0. : u * std::abs(u);
+      result += crossed * (u * p.first + bent * p.second);
+      crossed = 0.9; // effects weaken each other
+    }
+    return result;
+  }
+
+  /// Mahalanobis distance from the base model in the chaos of one run of each experiment.
+  double strength(const Amplitudes &amplitudes, const std::vector<std::string> &experiments) const
+  {
+    double square = 0.;
+    for (const std::string &e : experiments) {
+      const Eigen::VectorXd change = mean(e, amplitudes) - mean(e, {});
+      square += half.at(e).triangularView<Eigen::Lower>().solve(change).squaredNorm();
+    }
+    return std::sqrt(square);
+  }
+
+  /// Amplitude of an effect that has this strength.
+  double amplitude_of(const std::string &name, double wanted,
+                      const std::vector<std::string> &experiments, double side = 1.) const
+  {
+    const Factor &f = factor(name);
+    double low = 0., high = 50.;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (low + high);
+      (strength({{name, f.null_value + side * middle * f.scale}}, experiments) < wanted ? low
+                                                                                        : high) =
+          middle;
+    }
+    return f.null_value + side * low * f.scale;
+  }
+
+  const Factor &factor(const std::string &name) const
+  {
+    for (const Factor &f : all_factors)
+      if (f.name == name)
+        return f;
+    throw std::runtime_error("no factor " + name);
+  }
+
+  /// Means and deviations of repeated measurements of an experiment, with other seeds than any
+  /// study's, and noise of the instrument in shares of each cell's chaos.
+  std::vector<MeasuredCell> measure(const std::string &experiment, const Amplitudes &truth,
+                                    unsigned int repeats, double instrument,
+                                    std::uint32_t seed) const
+  {
+    RandomStream random(seed, 7);
+    const auto n = static_cast<Eigen::Index>(all_cells.at(experiment).size());
+    Eigen::MatrixXd rows(repeats, n);
+    const Eigen::VectorXd chaos = half.at(experiment).rowwise().norm();
+    for (unsigned int r = 0; r < repeats; ++r)
+      rows.row(r) = (value(experiment, truth, 0x80000000u + 100u * seed + r) +
+                     instrument * chaos.cwiseProduct(random.normals(1, n).row(0).transpose()))
+                        .transpose();
+    std::vector<MeasuredCell> result;
+    for (Eigen::Index c = 0; c < n; ++c) {
+      const double m = rows.col(c).mean();
+      const double s =
+          std::sqrt((rows.col(c).array() - m).square().sum() / std::max(1u, repeats - 1));
+      result.push_back({all_cells.at(experiment)[static_cast<std::size_t>(c)], m, s, repeats});
+    }
+    return result;
+  }
+
+  MeasuredData measure(const std::vector<std::string> &fit,
+                       const std::vector<std::string> &held_out, const Amplitudes &truth,
+                       unsigned int repeats, double instrument, std::uint32_t seed) const
+  {
+    MeasuredData data;
+    for (const std::string &e : fit)
+      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed))
+        data.fit.push_back(cell);
+    for (const std::string &e : held_out)
+      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed + 50000))
+        data.held_out.push_back(cell);
+    return data;
+  }
+
+private:
+  struct Pattern
+  {
+    Eigen::VectorXd first, second;
+  };
+
+  static std::uint32_t hash(const std::string &text)
+  {
+    std::uint32_t h = 2166136261u;
+    for (const char c : text)
+      h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
+    return h;
+  }
+
+  /// Smooth along each observable.
+  Eigen::VectorXd smooth_pattern(const std::string &experiment, RandomStream &random) const
+  {
+    Eigen::VectorXd result(static_cast<Eigen::Index>(all_cells.at(experiment).size()));
+    Eigen::Index place = 0;
+    for (const ObservableShape &shape : nature.observables) {
+      if (shape.experiment != experiment)
+        continue;
+      const double a = random.normal(), b = random.normal(), c = random.normal();
+      const double size = std::exp(0.7 * random.normal());
+      for (int i = 0; i < shape.size; ++i) {
+        const double x = shape.size > 1 ? double(i) / (shape.size - 1) : 0.;
+        result(place++) = size * (a + b * (x - 0.5) + c * std::sin(M_PI * x));
+      }
+    }
+    return result;
+  }
+
+  void make_chaos(const std::string &experiment)
+  {
+    RandomStream random(nature.seed, hash(experiment));
+    const auto &list = all_cells.at(experiment);
+    const auto n = static_cast<Eigen::Index>(list.size());
+    Eigen::MatrixXd correlation(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const Cell &a = list[static_cast<std::size_t>(i)], &b = list[static_cast<std::size_t>(j)];
+        correlation(i, j) = i == j                          ? 1.
+                            : a.observable == b.observable ? std::pow(0.7, std::abs(i - j))
+                                                           : 0.;
+      }
+    // A common swing of all observables on top.
+    const Eigen::VectorXd swing = 0.5 * smooth_pattern(experiment, random);
+    correlation += swing * swing.transpose();
+    Eigen::VectorXd size(n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      size(i) = std::exp(0.3 * random.normal());
+    correlation = size.asDiagonal() * correlation * size.asDiagonal();
+    half[experiment] = Eigen::LLT<Eigen::MatrixXd>(correlation).matrixL();
+    level[experiment] = 20. * Eigen::VectorXd::Ones(n) + 3. * smooth_pattern(experiment, random);
+  }
+
+  void add_factor(const Factor &f, unsigned int number, double strength_of_scale, double alike)
+  {
+    constexpr unsigned int n_common = 4;
+    all_factors.push_back(f);
+    double square = 0.;
+    for (const std::string &e : names) {
+      RandomStream random(nature.seed, hash(e) + 1000u * (number + 1));
+      Pattern p{smooth_pattern(e, random), smooth_pattern(e, random)};
+      p.first *= 1. - alike;
+      for (unsigned int l = 0; l < n_common; ++l) {
+        RandomStream shared(nature.seed, hash(e) + 17u + l);
+        RandomStream weights(nature.seed, 900u + 10u * number + l);
+        p.first += alike * weights.normal() * smooth_pattern(e, shared);
+      }
+      const auto &h = half.at(e).triangularView<Eigen::Lower>();
+      p.second *= nature.bend * h.solve(p.first).norm() / h.solve(p.second).norm();
+      if (e == "spreading" || e == "heap")
+        square += h.solve(p.first + p.second).squaredNorm();
+      patterns[f.name][e] = p;
+    }
+    for (auto &[e, p] : patterns[f.name]) {
+      p.first *= strength_of_scale / std::sqrt(square);
+      p.second *= strength_of_scale / std::sqrt(square);
+    }
+  }
+
+  Eigen::VectorXd value(const std::string &experiment, const Amplitudes &amplitudes,
+                        std::uint32_t seed) const
+  {
+    std::string text;
+    double growth = 1.;
+    for (const Factor &f : all_factors) {
+      const auto found = amplitudes.find(f.name);
+      if (found == amplitudes.end() || found->second == f.null_value)
+        continue;
+      text += f.name + std::to_string(found->second);
+      if (f.kind == Factor::Kind::effect)
+        growth += nature.changed_chaos * std::abs(found->second - f.null_value) / f.scale *
+                  (f.name[0] % 2 == 0 ? 1. : -0.3);
+    }
+    RandomStream common(seed, hash(experiment)), own(seed, hash(experiment) ^ hash(text + "|"));
+    const auto n = static_cast<Eigen::Index>(all_cells.at(experiment).size());
+    Eigen::VectorXd z(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      z(i) = std::sqrt(nature.seed_correlation) * common.normal() +
+             std::sqrt(1. - nature.seed_correlation) * own.normal();
+      z(i) += nature.skewness * (z(i) * z(i) - 1.);
+      z(i) /= std::sqrt(1. + 2. * nature.skewness * nature.skewness);
+    }
+    return mean(experiment, amplitudes) + std::max(0.5, growth) * (half.at(experiment) * z);
+  }
+
+  RunResult outcome(const RunRequest &request) const
+  {
+    std::string text = request.experiment;
+    for (const auto &[name, amplitude] : request.amplitudes)
+      text += name + std::to_string(amplitude);
+    if (RandomStream(request.seed, hash(text) + 5u).uniform() < nature.failures)
+      return std::nullopt;
+    const Eigen::VectorXd v = value(request.experiment, request.amplitudes, request.seed);
+    return std::vector<double>(v.data(), v.data() + v.size());
+  }
+
+  const Nature nature;
+  std::vector<std::string> names;
+  std::map<std::string, std::vector<Cell>> all_cells;
+  std::map<std::string, Eigen::MatrixXd> half;
+  std::map<std::string, Eigen::VectorXd> level;
+  std::vector<Factor> all_factors;
+  std::map<std::string, std::map<std::string, Pattern>> patterns;
+  std::uint64_t made = 0;
+};
+
+} // namespace test
+
+#endif
