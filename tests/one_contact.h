@@ -19,7 +19,9 @@ namespace test {
 struct Contact
 {
   Vec3 normal = {1., 0., 0.};
-  double overlap = 0., radius = 1e-3, mass = 1e-6, inertia = 1e-13;
+  double overlap = 0.;
+  double distance = 0.; ///< of the centres (m); 0: as for two equal spheres
+  double radius = 1e-3, mass = 1e-6, inertia = 1e-13;
   double closing_speed = 0.;
   Vec3 slip, roll;
   int kind = 0;
@@ -56,6 +58,7 @@ public:
       set(b.slip_x, b.slip_y, b.slip_z, k, c.slip);
       set(b.roll_x, b.roll_y, b.roll_z, k, c.roll);
       b.overlap[k] = c.overlap;
+      b.distance[k] = c.distance > 0. ? c.distance : 4. * c.radius - c.overlap;
       b.radius[k] = c.radius;
       b.mass[k] = c.mass;
       b.inertia[k] = c.inertia;

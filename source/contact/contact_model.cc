@@ -16,11 +16,14 @@ ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
     : materials(std::move(materials_))
 {
   const auto add = [&](const std::string &family, const std::string &name) {
-    laws.push_back(contact_laws(family).make(name, materials, options));
+    if (auto law = contact_laws(family).make(name, materials, options))
+      laws.push_back(std::move(law));
   };
   add("normal", names.normal);
   for (const std::string &name : names.cohesion)
     add("cohesion", name);
+  for (const std::string &name : contact_laws("further").list())
+    add("further", name);
   add("tangential", names.tangential);
   if (names.rolling != "none")
     add("rolling", names.rolling);

@@ -6,6 +6,9 @@ namespace eunoe {
 namespace {
 
 const std::string section = "model parameters";
+const std::string capillary_section = "capillary bridges";
+/// Volume of a liquid bridge over that of a particle; above it, bridges of neighbours meet.
+constexpr double largest_bridge_share = 0.1;
 
 /// What the names of the input file stand for: the law between particles, the name that the same
 /// laws have for contacts with walls, and the laws.
@@ -20,6 +23,8 @@ const std::vector<NamedModel> &named_models()
   static const std::vector<NamedModel> models = {
       {"hertz_mindlin_limit_overlap", "nonlinear", {"hertz", {}, "mindlin_limit_overlap", "none"}},
       {"hertz_mindlin_limit_force", "nonlinear", {"hertz", {}, "mindlin_limit_force", "none"}},
+      {"hertz_JKR", "JKR", {"jkr", {}, "mindlin_limit_overlap", "none"}},
+      {"JKR", "JKR", {"jkr", {}, "mindlin_limit_overlap", "none"}},
       {"DMT", "DMT", {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"}}};
   return models;
 }
@@ -38,6 +43,21 @@ std::string names_of_models()
   for (const NamedModel &model : named_models())
     names += (names.empty() ? "" : "|") + model.name;
   return names;
+}
+
+void declare_capillary_bridges(dealii::ParameterHandler &prm, ContactLawOptions &options)
+{
+  prm.enter_subsection(capillary_section);
+  declare::positive(prm, "surface tension", options.surface_tension,
+                    "Surface tension of the liquid that forms a bridge where two bodies touch and "
+                    "holds it until they are too far apart (N/m); 0: no bridges.");
+  declare::positive(prm, "contact angle", options.contact_angle,
+                    "Angle at which the liquid meets the bodies (degrees).");
+  declare::positive(prm, "volume share", options.bridge_share,
+                    "Volume of a bridge over that of a particle.");
+  declare::positive(prm, "bridge volume", options.bridge_volume,
+                    "Volume of every bridge (m3); 0: 'volume share' rules.");
+  prm.leave_subsection();
 }
 
 } // namespace
@@ -59,10 +79,11 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
       prm, "particle particle contact force method", contact_method, names_of_models(),
       "Laws of a contact of two particles. All are Hertz's elastic force with Tsuji's "
       "damping and Mindlin's tangential force with memory; 'DMT' adds cohesion with its "
-      "long-range part.");
-  declare::choice(prm, "particle wall contact force method", wall_method, "nonlinear|DMT",
+      "long-range part; 'hertz_JKR' or, in short, 'JKR' has the adhesion of soft contacts, which "
+      "hold until they are drawn out to a neck.");
+  declare::choice(prm, "particle wall contact force method", wall_method, "nonlinear|DMT|JKR",
                   "Laws of a contact with a wall or solid: the same as between particles, so "
-                  "'DMT' where particles use it and 'nonlinear' elsewhere.");
+                  "'DMT' or 'JKR' where particles use it and 'nonlinear' elsewhere.");
   prm.add_parameter("dmt cut-off threshold", options.dmt_cut_off,
                     "Share of the pull-off force below which the long-range attraction is dropped.",
                     declare::Patterns::Double(1e-6, 1.));
@@ -88,6 +109,13 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   prm.add_action("epsd inertia", [this](const std::string &value) {
     options.epsd_inertia_about_contact = value == "contact point";
   });
+
+  declare_capillary_bridges(prm, options);
+  prm.enter_subsection("electrostatic charge");
+  declare::positive(prm, "cut-off share", options.charge_cut_off,
+                    "Gap at which the force between two charged particles has fallen to zero, over "
+                    "the largest radius. The larger, the longer the lists of pairs.");
+  prm.leave_subsection();
 
   prm.enter_subsection("contact detection");
   declare::choice(prm, "contact detection method", detection_method, "constant|dynamic",
@@ -154,6 +182,18 @@ void ModelParameters::check(const ParameterCheck &check) const
   check.require(neighborhood_threshold > 1., {section, "contact detection"},
                 "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
                 "Give a value above 1, for example 1.1.");
+  const ParameterCheck::Path bridges = {section, capillary_section};
+  check.require(options.contact_angle < 90., bridges, "contact angle",
+                "is " + format(options.contact_angle) + " degrees.",
+                "Give an angle below 90: a liquid that does not wet draws nothing together.");
+  check.require(options.surface_tension == 0. || options.bridge_volume > 0. ||
+                    options.bridge_share > 0.,
+                bridges, "volume share", "is 0 while there is a surface tension.",
+                "Give a share, or a 'bridge volume'.");
+  check.require(options.bridge_share <= largest_bridge_share, bridges, "volume share",
+                "is " + format(options.bridge_share) + ".",
+                "Give at most " + format(largest_bridge_share) +
+                    ": more liquid forms no single bridges.");
 }
 
 } // namespace eunoe

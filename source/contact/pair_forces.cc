@@ -121,6 +121,7 @@ EUNOE_MULTIVERSION void describe(PairBlock &b, const ParticleArrays &p, const st
     b.nx[k] = nx;
     b.ny[k] = ny;
     b.nz[k] = nz;
+    b.distance[k] = distance;
     b.overlap[k] = ri[k] + rj[k] - distance;
     b.radius[k] = ri[k] * rj[k] / (ri[k] + rj[k]);
     b.mass[k] = mi[k] * mj[k] / (mi[k] + mj[k]);

@@ -189,6 +189,7 @@ void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &s
   b.nx[k] = n.x;
   b.ny[k] = n.y;
   b.nz[k] = n.z;
+  b.distance[k] = contact.distance;
   b.overlap[k] = radius - contact.distance;
   b.radius[k] = radius;
   b.mass[k] = velocity.w;
@@ -216,8 +217,9 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
 {
   PairBlock &b = *block;
   for (unsigned int k = b.n; k < PairBlock::size; ++k) {
-    for (double *lanes : {b.nx, b.ny, b.nz, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
-                          b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z})
+    for (double *lanes :
+         {b.nx, b.ny, b.nz, b.distance, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
+          b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z})
       lanes[k] = lanes[b.n - 1];
     b.kind[k] = b.kind[b.n - 1];
     for (unsigned int h = 0; h < model.history_size(); ++h)

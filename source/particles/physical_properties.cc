@@ -116,9 +116,17 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     prm.declare_alias("number of particles", "number");
     declare::positive(prm, "density particles", type.density, "Density (kg/m3).");
     declare_material(prm, type.material, "particles");
+    prm.add_parameter("surface charge density particles", type.material.surface_charge,
+                      "Charge of a particle over its surface (C/m2), of either sign; see 'model "
+                      "parameters / electrostatic charge'.");
     prm.leave_subsection();
   }
   declare_material(prm, wall, "wall");
+  declare::positive(prm, "dynamic viscosity gas", gas_viscosity,
+                    "Dynamic viscosity of the still gas around the particles (Pa s); 0: no drag.");
+  declare::positive(prm, "density gas", gas_density,
+                    "Density of that gas (kg/m3). 0: Stokes's drag; else that of Schiller and "
+                    "Naumann.");
   prm.leave_subsection();
 }
 

@@ -83,6 +83,13 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   complete_input = set_entries(prm, entries, repeated, problems);
 }
 
+ContactModel Parameters::contact_model(const double largest_diameter) const
+{
+  ContactLawOptions options = model.options;
+  options.largest_radius = 0.5 * largest_diameter;
+  return {physics.materials(), model.laws(), options};
+}
+
 Parameters Parameters::read(const std::string &text, const std::string &file,
                             const std::vector<std::string> &overrides, Problems &problems,
                             const FileLoader &load)

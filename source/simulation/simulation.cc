@@ -54,7 +54,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
                                  : parameters.physics.largest_diameter()),
       skin(parameters.model.skin(largest_diameter)),
       domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
-      model(parameters.physics.materials(), parameters.model.laws(), parameters.model.options),
+      model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
       fields(make_fields(parameters)),
       sparse(parameters.model.sparse_contacts, fields, parameters.control.time_step),

@@ -30,6 +30,14 @@ SPARSE = "model parameters/adaptive sparse contacts/"
 # Far too easily put to sleep for physics, so that there is much of it.
 SLEEPY = (SPARSE + "enable adaptive sparse contacts = true", SPARSE + "rest time = 2e-4",
           SPARSE + "granular temperature threshold = 0.2", SPARSE + "check frequency = 20")
+# Every law that acts across gaps, with what its contacts remember, and drag.
+PHYSICS = "lagrangian physical properties/"
+ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
+            "model parameters/particle wall contact force method = JKR",
+            "model parameters/capillary bridges/surface tension = 0.01",
+            "model parameters/electrostatic charge/cut-off share = 0.2",
+            PHYSICS + "particle type 0/surface charge density particles = 2e-5",
+            PHYSICS + "dynamic viscosity gas = 1e-3", PHYSICS + "density gas = 10")
 failures = 0
 
 
@@ -104,6 +112,17 @@ def sleeping(program: str, folder: Path) -> None:
     compare(reference, other, "With sleep, restarted")
 
 
+def all_laws(program: str, folder: Path) -> None:
+    """The same bits with every law, with sleep and without, stopped and continued."""
+    for name, settings in (("awake", ALL_LAWS), ("asleep", ALL_LAWS + SLEEPY)):
+        reference = Case(program, CASE, folder / name, list(settings))
+        reference.run(1)
+        other = Case(program, CASE, folder / (name + "_restarted"), list(settings))
+        other.run(2, *EVERY, *FREQUENT, "simulation control/iteration end = 11111")
+        other.run(4, *EVERY, "restart/restart = true")
+        compare(reference, other, f"With all laws, {name}, restarted")
+
+
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 100000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
@@ -127,6 +146,7 @@ def main(program: str, folder: Path) -> int:
     check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
     check("write failure", lambda: write_failure(reference, folder / "full"))
     check("sleep", lambda: sleeping(reference.program, folder / "sleep"))
+    check("all laws", lambda: all_laws(reference.program, folder / "laws"))
     check("kill", lambda: killed(reference.program, folder / "killed"))
     return 1 if failures else 0
 

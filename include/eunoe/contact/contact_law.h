@@ -21,6 +21,16 @@ struct ContactLawOptions
   /// Whether EPSD's effective inertia is taken about the contact point (7/5 m R^2, Ai et al. 2011)
   /// or about the centres (2/5 m R^2).
   bool epsd_inertia_about_contact = true;
+
+  double surface_tension = 0.; ///< of liquid bridges (N/m); 0: there are none
+  double contact_angle = 0.;   ///< of the liquid (degrees)
+  double bridge_share = 1e-3;  ///< volume of a bridge over that of a particle
+  double bridge_volume = 0.;   ///< the same for all bridges if positive (m3)
+  /// Gap at which the forces of charges end, over the largest radius.
+  double charge_cut_off = 1.;
+
+  /// Of the particles (m); laws that act across gaps reach the farther, the larger they are.
+  double largest_radius = 0.;
 };
 
 /// One mechanism of a contact: reads the geometry of a block of pairs (and what earlier laws
@@ -48,7 +58,8 @@ public:
   virtual void apply(PairBlock &block, unsigned int history, double dt) const = 0;
 };
 
-/// Laws by family ("normal", "tangential", "cohesion", "rolling") and name.
+/// Laws by family ("normal", "cohesion", "further", "tangential", "rolling") and name. Those of the
+/// family "further" join every model; their makers return null where their coefficients are zero.
 using ContactLawRegistry =
     Registry<std::unique_ptr<ContactLaw>, const Materials &, const ContactLawOptions &>;
 ContactLawRegistry &contact_laws(const std::string &family);

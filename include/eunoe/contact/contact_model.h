@@ -14,7 +14,8 @@ struct ContactModelNames
   std::string rolling = "constant"; ///< "none" for no resistance
 };
 
-/// The laws of a contact, composed at run time: normal, cohesion, tangential, rolling.
+/// The laws of a contact, composed at run time: normal, cohesion, further ones that the options and
+/// materials ask for, tangential, rolling.
 /// Particle-particle and particle-solid contacts go through the same one.
 class ContactModel
 {

@@ -16,6 +16,7 @@ struct Material
   double rolling_viscous_damping = 0.1;
   double surface_energy = 0.;
   double hamaker_constant = 4e-19;
+  double surface_charge = 0.; ///< of particles (C/m2)
 };
 
 /// Effective constants of a pair of materials (doc/physics.md, "Effective constants").
@@ -45,6 +46,9 @@ public:
 
   /// Row of all pairs of particles if they share one, else -1.
   int only_particle_kind() const { return n_particle_types == 1 ? kind(0, 0) : -1; }
+
+  /// Whether a material is one of walls and solids.
+  bool is_wall(int m) const { return m >= n_particle_types; }
 
   int size() const { return static_cast<int>(materials.size()); }
   int kind(int a, int b) const { return a * size() + b; }

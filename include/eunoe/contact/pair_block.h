@@ -12,9 +12,10 @@ struct alignas(64) ContactForces
   static constexpr unsigned int size = 64;
   using Lanes = double[size];
 
-  alignas(64) Lanes stiffness;     ///< normal secant stiffness k_n (N/m)
-  alignas(64) Lanes contact_force; ///< normal elastic + damping force, repulsion positive (N)
-  alignas(64) Lanes cohesion;      ///< attraction, positive (N)
+  alignas(64) Lanes stiffness;      ///< normal secant stiffness k_n (N/m)
+  alignas(64) Lanes contact_radius; ///< of the area in which the bodies touch, 0 if none (m)
+  alignas(64) Lanes contact_force;  ///< normal elastic + damping force, repulsion positive (N)
+  alignas(64) Lanes cohesion;       ///< attraction positive, remote repulsion negative (N)
   alignas(64) Lanes shear_x, shear_y, shear_z;    ///< tangential force on j (N)
   alignas(64) Lanes torque_x, torque_y, torque_z; ///< rolling-resistance torque on i (N m)
 };
@@ -42,6 +43,7 @@ struct alignas(64) PairBlock : ContactForces
   ///@{
   alignas(64) Lanes nx, ny, nz;    ///< unit normal from i to j
   alignas(64) Lanes overlap;       ///< positive in contact, negative across a gap (m)
+  alignas(64) Lanes distance;      ///< of the centres, or of a centre from a solid's surface (m)
   alignas(64) Lanes radius;        ///< effective radius (m)
   alignas(64) Lanes mass;          ///< effective mass (kg)
   alignas(64) Lanes inertia;       ///< effective moment of inertia about the centres (kg m2)

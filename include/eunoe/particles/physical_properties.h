@@ -23,6 +23,8 @@ struct PhysicalProperties : public ParameterSection
   Vec3 gravity;
   std::vector<ParticleType> types;
   Material wall;
+  double gas_viscosity = 0.; ///< of the still gas around the particles (Pa s); 0: no drag
+  double gas_density = 0.;   ///< (kg/m3)
 
   explicit PhysicalProperties(unsigned int n_types = 1) : types(n_types) {}
 

@@ -46,6 +46,10 @@ public:
     return process_name == "none" ? nullptr : processes.at(process_name).get();
   }
 
+  /// The laws of all contacts.
+  /// @param largest_diameter of the particles (m)
+  ContactModel contact_model(double largest_diameter) const;
+
   ControlParameters control;
   MeshParameters mesh;
   BoundaryParameters boundaries;

@@ -50,7 +50,7 @@ private:
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const bool touching = b.overlap[k] > 0.;
+      const bool touching = b.contact_radius[k] > 0.;
       const double arm = friction[k] * b.radius[k];
       const double stiffness = 2.25 * b.stiffness[k] * arm * arm;
       const double damper = 2. * damping[k] * std::sqrt(inertia_factor * b.inertia[k] * stiffness);

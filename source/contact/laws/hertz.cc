@@ -36,8 +36,10 @@ private:
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double overlap = b.overlap[k] > 0. ? b.overlap[k] : 0.;
-      const double stiffness = 4. / 3. * young[k] * std::sqrt(b.radius[k] * overlap);
+      const double contact_radius = std::sqrt(b.radius[k] * overlap);
+      const double stiffness = 4. / 3. * young[k] * contact_radius;
       const double damper = damping[k] * std::sqrt(1.5 * stiffness * b.mass[k]);
+      b.contact_radius[k] = contact_radius;
       b.stiffness[k] = stiffness;
       b.contact_force[k] = stiffness * overlap + damper * b.closing_speed[k];
     }

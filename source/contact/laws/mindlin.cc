@@ -49,9 +49,8 @@ private:
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const bool touching = b.overlap[k] > 0.;
-      const double overlap = touching ? b.overlap[k] : 0.;
-      const double stiffness = 8. * shear[k] * std::sqrt(b.radius[k] * overlap);
+      const bool touching = b.contact_radius[k] > 0.;
+      const double stiffness = 8. * shear[k] * b.contact_radius[k];
       const double damper = damping[k] * std::sqrt(stiffness * b.mass[k]);
 
       const Vec3 turned = turn_with_plane(hx[k], hy[k], hz[k], b.nx[k], b.ny[k], b.nz[k]);

@@ -55,8 +55,9 @@ void PowderSpreading::prepare(Parameters &parameters)
   apparatus = std::make_unique<Apparatus>(p, largest);
   const Apparatus &a = *apparatus;
 
-  parameters.mesh = box_mesh({0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
-                             parameters.model.skin(largest));
+  parameters.mesh =
+      box_mesh({0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
+               parameters.model.skin(largest) + parameters.contact_model(largest).range());
 
   BoundaryCondition collector, bottom, period;
   collector.type = bottom.type = "outlet";

@@ -1,0 +1,49 @@
+#include <eunoe/forces/load.h>
+#include <eunoe/particles/physical_properties.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe {
+namespace {
+
+/// Drag of a still gas: Stokes's, with the correction of Schiller and Naumann (1933) for inertia
+/// where the gas has a density.
+class Drag : public Load
+{
+public:
+  Drag(const double viscosity, const double density) : viscosity(viscosity), density(density) {}
+
+  void add(ParticleArrays &p, double) const override
+  {
+    p.for_each_awake([&](const std::size_t k) {
+      const Vec3 v = p.velocity[k].vec();
+      const double radius = p.position[k].w;
+      const double stokes = 6. * M_PI * viscosity * radius;
+      p.force[k].add(-stokes * correction(2. * radius * norm(v)) * v);
+    });
+  }
+
+private:
+  /// @param way diameter times speed (m2/s)
+  double correction(const double way) const
+  {
+    // Newton's constant drag coefficient meets the formula there, so that the drag is continuous.
+    constexpr double newton = 0.44;
+    const double reynolds = density * way / viscosity;
+    const double factor = reynolds > 0. ? 1. + 0.15 * std::pow(reynolds, 0.687) : 1.;
+    return std::max(factor, newton / 24. * reynolds);
+  }
+
+  const double viscosity, density;
+};
+
+const LoadRegistry::Registration registration(
+    loads(), "drag", [](const PhysicalProperties &physics) {
+      return physics.gas_viscosity > 0.
+                 ? std::make_unique<Drag>(physics.gas_viscosity, physics.gas_density)
+                 : nullptr;
+    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,74 @@
+// Charged particles: Coulomb's force of the charges 4 pi R^2 sigma over the distance of the
+// centres, less what it is at the cut-off; its sign, its end, and that walls have no part in it.
+
+#include "../one_contact.h"
+
+using namespace test;
+
+namespace {
+
+const double permittivity = 8.8541878128e-12;
+
+struct Pair
+{
+  double r1, r2, charge1, charge2; ///< radii (m), surface charges (C/m2)
+};
+
+double repulsion(Laws &laws, const Pair &pair, double gap, int kind)
+{
+  Contact c;
+  c.radius = pair.r1 * pair.r2 / (pair.r1 + pair.r2);
+  c.overlap = -gap;
+  c.distance = pair.r1 + pair.r2 + gap;
+  c.kind = kind;
+  return -laws.apply(c, 0.).cohesion;
+}
+
+void check_pair(const std::string &name, const Pair &pair)
+{
+  Material first, second;
+  first.surface_charge = pair.charge1;
+  second.surface_charge = pair.charge2;
+  ContactLawOptions options;
+  options.charge_cut_off = 1.5;
+  options.largest_radius = 20e-6;
+  Laws laws({first, second, Material()}, 2, {"hertz", {}, "mindlin_limit_overlap", "none"},
+            options);
+  const double range = 30e-6;
+  check_relative(name + ": range", laws.model.range(), range, 1e-14);
+  const double q1 = 4. * M_PI * pair.r1 * pair.r1 * pair.charge1;
+  const double q2 = 4. * M_PI * pair.r2 * pair.r2 * pair.charge2;
+  const auto coulomb = [&](double gap) {
+    const double distance = pair.r1 + pair.r2 + gap;
+    return q1 * q2 / (4. * M_PI * permittivity * distance * distance);
+  };
+  std::vector<double> force, reference;
+  for (int k = -1; k < 30; ++k) {
+    force.push_back(repulsion(laws, pair, k * 1e-6, 1));
+    reference.push_back(coulomb(k * 1e-6) - coulomb(range));
+  }
+  check_close(name + ": force over gap", relative_error(force, reference), 0., 1e-13);
+  check(name + ": sign", (force[0] > 0.) == (pair.charge1 * pair.charge2 > 0.));
+  check_close(name + ": it ends without a jump",
+              repulsion(laws, pair, (1. - 1e-9) * range, 1) / force[0], 0., 1e-8);
+  check(name + ": nothing beyond", repulsion(laws, pair, (1. + 1e-12) * range, 1) == 0.);
+  check(name + ": nothing at walls",
+        repulsion(laws, pair, 1e-6, 2) == 0. && repulsion(laws, pair, -pair.r1 - pair.r2, 2) == 0.);
+}
+
+} // namespace
+
+int main()
+{
+  check_pair("alike", {20e-6, 20e-6, 1e-5, 1e-5});
+  check_pair("of two sizes", {20e-6, 5e-6, -1e-5, -2e-5});
+  check_pair("of two signs", {10e-6, 20e-6, 1e-5, -3e-6});
+
+  Material m;
+  ContactLawOptions options;
+  options.largest_radius = 20e-6;
+  const ContactModelNames names = {"hertz", {}, "mindlin_limit_overlap", "none"};
+  check("none by default", Laws({m}, 1, names, options).model.range() == 0.);
+  m.surface_charge = -1e-6;
+  check_relative("default range", Laws({m}, 1, names, options).model.range(), 20e-6, 1e-14);
+}
