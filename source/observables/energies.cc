@@ -18,8 +18,34 @@ public:
 
   void step(Simulation &simulation) override
   {
-    if (simulation.step_number() % frequency != 0)
-      return;
+    if (simulation.step_number() % frequency == 0)
+      file->write(look(simulation));
+  }
+
+  void finish(Simulation &simulation) override { last = look(simulation); }
+
+  /// Of the end of the run.
+  std::vector<Measurement> measurements() const override
+  {
+    std::vector<Measurement> all;
+    const auto names = descriptions();
+    for (std::size_t k = 0; k < names.size() && !last.empty(); ++k)
+      all.push_back({names[k].name, 0, last[k + 1]});
+    return all;
+  }
+
+  std::vector<ObservableDescription> descriptions() const override
+  {
+    return {{"particles", "1", "", "number of particles at the end"},
+            {"kinetic_energy", "J", "", "energy of translation at the end"},
+            {"rotational_energy", "J", "", "energy of rotation at the end"},
+            {"potential_energy", "J", "", "potential energy at the end, from the origin"}};
+  }
+
+private:
+  /// A row of the table, at present; collective.
+  static std::vector<double> look(Simulation &simulation)
+  {
     const ParticleArrays &p = simulation.complete_step();
     const Vec3 g = simulation.get_parameters().physics.gravity;
     ExactSum kinetic, rotational, potential;
@@ -40,12 +66,12 @@ public:
       sum->reduce(simulation.communicator());
       row.push_back(sum->value());
     }
-    file->write(row);
+    return row;
   }
 
-private:
   const unsigned long long frequency;
   const std::shared_ptr<CsvFile> file;
+  std::vector<double> last;
 };
 
 const ObservableRegistry::Registration registration(

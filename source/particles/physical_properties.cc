@@ -55,6 +55,7 @@ Materials PhysicalProperties::materials() const
     all.push_back(type.material);
   const auto n_types = static_cast<int>(all.size());
   all.push_back(wall);
+  all.insert(all.end(), other_walls.begin(), other_walls.end());
   return Materials(all, n_types);
 }
 

@@ -258,7 +258,7 @@ void Domain::find_boundaries(const BoundaryParameters &boundaries, const int wal
     }
     Solid wall;
     wall.name = "boundary " + std::to_string(side.id);
-    wall.material = wall_material;
+    wall.material = c.material < 0 ? wall_material : c.material;
     wall.output = false;
     const bool turns = c.type == "rotational";
     const Vec3 centre = turns ? c.rotation_point : Vec3();

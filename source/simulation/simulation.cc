@@ -166,6 +166,7 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
   for (auto &observable : observable_list)
     observable->finish(*this);
   report_progress(true);
+  write_measurements();
   write_summary();
   return true;
 }

@@ -62,6 +62,14 @@ void TriangleMesh::add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const V
   triangles.push_back({first, first + 2, first + 3});
 }
 
+void TriangleMesh::append(const TriangleMesh &other)
+{
+  const auto first = static_cast<std::int32_t>(vertices.size());
+  vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
+  for (const auto &t : other.triangles)
+    triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+}
+
 void TriangleMesh::merge_vertices(const double tolerance)
 {
   std::vector<std::int32_t> order(vertices.size());

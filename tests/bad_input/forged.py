@@ -6,7 +6,7 @@ import json
 import struct
 from typing import Callable
 
-TITLE = b"Eunoe checkpoint 1\n"
+TITLE = b"Eunoe checkpoint 2\n"
 
 
 def checksum(data: bytes) -> int:

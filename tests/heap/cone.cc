@@ -69,6 +69,11 @@ void examine_cone(const double angle)
     spread = std::max(spread, bin.spread);
   }
   check_close("profile of a cone", off_line, 0., 0.02 * r);
+  const std::vector<double> rings = views.rings(5);
+  for (const unsigned int ring : {1u, 2u, 3u}) {
+    const double line = D / 2. * (1. - (ring + 0.5) / 5.) * std::tan(slope);
+    check_close("ring of a cone", rings[ring], line, 0.02 * r);
+  }
   check("spread of a cone", spread < 0.05 * r, std::to_string(spread / r));
 }
 

@@ -104,6 +104,29 @@ void test_lognormal()
   check_relative("lognormal: mean", mean_power(draw(p), 1.), 70e-6, 3e-3);
   p.basis = "volume";
   check_close("lognormal by volume", log_mean(draw(p)), mu - 3. * sigma2, error);
+  p.weighting_exponent = 2.;
+  check_close("lognormal, weighted", log_mean(draw(p)), mu - sigma2, error);
+}
+
+/// Shares of the volume that are weighted with the cube of the diameter are shares of the number.
+void test_weighting()
+{
+  SizeDistributionParameters p;
+  p.type = "custom";
+  p.diameters = {50e-6, 100e-6};
+  p.fractions = {0.3, 0.7};
+  const auto by_number = draw(p);
+  p.basis = "volume";
+  p.weighting_exponent = 3.;
+  check("volume weighted to number", draw(p) == by_number);
+  check_relative("mean cube, weighted", p.make()->mean_cube(), 0.3 * 1.25e-13 + 0.7 * 1e-12, 1e-12);
+  p.weighting_exponent = -2.;
+  double small = 0.;
+  for (const double d : draw(p))
+    small += d == p.diameters[0] ? 1. : 0.;
+  // The shares of the number go with the inverse fifth power.
+  const double share = 0.3 * 32. / (0.3 * 32. + 0.7);
+  check_close("more fines", small / n, share, 4. * std::sqrt(share * (1. - share) / n));
 }
 
 } // namespace
@@ -113,6 +136,7 @@ int main()
   test_classes();
   test_normal();
   test_lognormal();
+  test_weighting();
   SizeDistributionParameters p;
   p.average_diameter = 1e-3;
   check("uniform", draw(p).front() == 1e-3 && draw(p).back() == 1e-3);

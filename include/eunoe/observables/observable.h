@@ -2,6 +2,7 @@
 #define eunoe_observables_observable_h
 
 #include <eunoe/core/registry.h>
+#include <eunoe/observables/measurement.h>
 
 #include <memory>
 
@@ -26,6 +27,10 @@ public:
 
   /// Called once after the last step.
   virtual void finish(Simulation &) {}
+
+  /// What was measured for comparison with data, the same on every rank, and what it is.
+  virtual std::vector<Measurement> measurements() const { return {}; }
+  virtual std::vector<ObservableDescription> descriptions() const { return {}; }
 };
 
 /// A maker returns null where its observable is not asked for.

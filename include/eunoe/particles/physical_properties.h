@@ -25,6 +25,8 @@ struct PhysicalProperties : public ParameterSection
   Material wall;
   double gas_viscosity = 0.; ///< of the still gas around the particles (Pa s); 0: no drag
   double gas_density = 0.;   ///< (kg/m3)
+  /// Materials of walls that differ, which a process may add: rows behind the common wall's.
+  std::vector<Material> other_walls;
 
   explicit PhysicalProperties(unsigned int n_types = 1) : types(n_types) {}
 

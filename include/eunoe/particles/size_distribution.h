@@ -4,6 +4,7 @@
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
 
+#include <cmath>
 #include <memory>
 
 namespace eunoe {
@@ -35,12 +36,21 @@ struct SizeDistributionParameters
   double largest = -1.;
   std::vector<double> diameters = {0.001, 0.0005};
   std::vector<double> fractions = {0.6, 0.4};
-  std::string basis = "number"; ///< what the distribution counts: "number" or "volume"
+  std::string basis = "number";   ///< what the distribution counts: "number" or "volume"
+  double weighting_exponent = 0.; ///< of the diameter, over all shares
   unsigned int seed = 1;
 
   void declare(dealii::ParameterHandler &prm);
   void check(const ParameterCheck &check, const ParameterCheck::Path &path) const;
   std::unique_ptr<SizeDistribution> make() const;
+  /// Factor on the share of a diameter (m), of any scale.
+  double weight(double diameter) const
+  {
+    return weighting_exponent == 0. ? 1. : std::pow(diameter / weighting_scale, weighting_exponent);
+  }
+
+private:
+  static constexpr double weighting_scale = 50e-6;
 };
 
 using SizeDistributionRegistry =

@@ -3,12 +3,9 @@
 
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
-
-#include <nlohmann/json_fwd.hpp>
+#include <eunoe/observables/measurement.h>
 
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace eunoe {
 
@@ -28,20 +25,6 @@ struct RunEstimate
   double particle_steps() const { return particles * steps; }
   /// Measured on a settled bed of 20,000 to 200,000 particles with the full model.
   double core_seconds() const { return particle_steps() / 7e6; }
-};
-
-/// One number that a run has measured, as discovery compares it with measured data. SI units.
-struct Measurement
-{
-  std::string observable;
-  int index; ///< layer or bin; 0 for a single number
-  double value;
-};
-
-/// What an observable is: for lists, and for the header of tables.
-struct ObservableDescription
-{
-  std::string name, unit, index_meaning, text;
 };
 
 /// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from

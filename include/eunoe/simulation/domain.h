@@ -33,6 +33,7 @@ struct BoundaryCondition
   Vec3 rotation_axis = {1., 0., 0.}, rotation_point;
   unsigned int periodic_ids[2] = {0, 0};
   unsigned int periodic_direction = 0;
+  int material = -1; ///< row among the Materials; -1: the common one of walls
 };
 
 /// `subsection DEM boundary conditions`. A boundary without a condition is a fixed wall.

@@ -36,6 +36,11 @@ public:
   /// @return false if the run was asked to stop earlier and has left a checkpoint
   bool run(const std::function<void(Simulation &)> &look = {});
 
+  /// All that the process and the observables have measured so far, the same on every rank, and
+  /// what those observables are.
+  std::vector<Measurement> measurements() const;
+  std::vector<ObservableDescription> described_observables() const;
+
   /// Writes the complete state to a file which is the same on any number of ranks; collective.
   void dump(const std::string &path);
 
@@ -110,6 +115,8 @@ private:
   void report_progress(bool at_end);
   bool finished() const;
   void write_summary();
+  /// Writes measurements.csv, where something was measured.
+  void write_measurements();
 
   Parameters &parameters;
   MPI_Comm comm;

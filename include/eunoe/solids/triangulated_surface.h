@@ -18,6 +18,9 @@ struct TriangleMesh
   /// Appends the quadrilateral a-b-c-d as two triangles.
   void add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d);
 
+  /// Appends another mesh.
+  void append(const TriangleMesh &other);
+
   /// Unites corners that lie closer than @p tolerance (m), as contacts need to know which
   /// triangles are neighbours.
   void merge_vertices(double tolerance);

@@ -44,7 +44,10 @@ private:
 
 const SizeDistributionRegistry::Registration registration(
     size_distributions(), "custom", [](const SizeDistributionParameters &parameters) {
-      return std::make_unique<Custom>(parameters.diameters, parameters.fractions,
+      std::vector<double> shares = parameters.fractions;
+      for (std::size_t c = 0; c < shares.size(); ++c)
+        shares[c] *= parameters.weight(parameters.diameters[c]);
+      return std::make_unique<Custom>(parameters.diameters, std::move(shares),
                                       parameters.basis == "volume");
     });
 

@@ -60,7 +60,7 @@ std::unique_ptr<SizeDistribution> normal(const SizeDistributionParameters &p)
   const double to = p.largest > 0. ? p.largest : mean + default_cut * sigma;
   return std::make_unique<Tabulated>(from, to, p.basis == "volume", [&](double d) {
     const double s = (d - mean) / sigma;
-    return std::exp(-0.5 * s * s);
+    return p.weight(d) * std::exp(-0.5 * s * s);
   });
 }
 
@@ -73,7 +73,7 @@ std::unique_ptr<SizeDistribution> lognormal(const SizeDistributionParameters &p)
   const double to = p.largest > 0. ? p.largest : std::exp(mu + default_cut * sigma);
   return std::make_unique<Tabulated>(from, to, p.basis == "volume", [&](double d) {
     const double s = (std::log(d) - mu) / sigma;
-    return std::exp(-0.5 * s * s) / d;
+    return p.weight(d) * std::exp(-0.5 * s * s) / d;
   });
 }
 

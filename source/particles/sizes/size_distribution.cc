@@ -39,6 +39,11 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
                     declare::Patterns::List(declare::Patterns::Double(0.), 1));
   declare::choice(prm, "distribution weighting basis", basis, "number|volume",
                   "Whether the distribution counts particles or volume.");
+  prm.add_parameter("size weighting exponent", weighting_exponent,
+                    "Every share of the distribution is weighted with this power of its diameter: "
+                    "below 0 for more fines, above 0 for more coarse grains, between the same "
+                    "smallest and largest diameters.",
+                    declare::Patterns::Double(-50., 50.));
   declare::count(prm, "distribution prn seed", seed, "Seed of the random draws of the diameters.");
 }
 
@@ -47,6 +52,9 @@ void SizeDistributionParameters::check(const ParameterCheck &check,
 {
   const std::string d = "custom distribution diameters values";
   const std::string p = "custom distribution diameters probabilities";
+  check.require(weighting_exponent == 0. || type != "uniform", path, "size weighting exponent",
+                "is " + format(weighting_exponent) + ", but all particles have one size.",
+                "Remove the entry, or choose another 'size distribution type'.");
   if (type == "custom") {
     check.require(diameters.size() == fractions.size(), path, p,
                   "has " + std::to_string(fractions.size()) + " values for " +

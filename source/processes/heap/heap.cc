@@ -108,9 +108,13 @@ void Heap::step(Simulation &simulation)
 
 void Heap::save(CheckpointWriter &writer) const
 {
-  writer.head["heap"] = {
-      {"phase", static_cast<int>(phase)}, {"phase_start", phase_start}, {"calm_since", calm_since},
-      {"lift_start", lift_start},         {"lift_way", lift_way},       {"results", results}};
+  writer.head["heap"] = {{"phase", static_cast<int>(phase)},
+                         {"phase_start", phase_start},
+                         {"calm_since", calm_since},
+                         {"lift_start", lift_start},
+                         {"lift_way", lift_way},
+                         {"results", results.keys},
+                         {"measured", to_json(results.measured)}};
 }
 
 void Heap::resume(Simulation &, const Checkpoint &checkpoint)
@@ -121,7 +125,8 @@ void Heap::resume(Simulation &, const Checkpoint &checkpoint)
   calm_since = saved.at("calm_since");
   lift_start = saved.at("lift_start");
   lift_way = saved.at("lift_way");
-  results = saved.at("results");
+  results.keys = saved.at("results");
+  results.measured = measurements_in(saved.at("measured"));
   if (lift_start >= 0.)
     apparatus->tube->begin(lift_start, lift_way);
 }

@@ -78,10 +78,20 @@ void write_profile(Simulation &simulation, const Silhouettes &views, const std::
   }
 }
 
+/// Measurements that have a key of their own in summary.json.
+std::vector<ObservableDescription> single_numbers()
+{
+  return {{"base_angle", "degrees", "", "mean base angle of the views"},
+          {"base_angle_spread", "degrees", "", "standard deviation of the views' base angles"},
+          {"height", "m", "", "mean over the views of the highest point"},
+          {"mass_on_disc", "kg", "", "mass of the heap"},
+          {"mass_drained", "kg", "", "mass that fell over the edge and left the domain"}};
+}
+
 } // namespace
 
-nlohmann::ordered_json measure(Simulation &simulation, const HeapParameters &parameters,
-                               const Apparatus &apparatus, const double tube_height)
+Findings measure(Simulation &simulation, const HeapParameters &parameters,
+                 const Apparatus &apparatus, const double tube_height)
 {
   const auto sizes = simulation.get_parameters().physics.types[0].sizes.make();
   Silhouettes views(parameters.disc_diameter, 2. * sizes->largest(), parameters.n_views,
@@ -106,7 +116,8 @@ nlohmann::ordered_json measure(Simulation &simulation, const HeapParameters &par
   on_disc = on_disc.global(comm);
   clinging = clinging.global(comm);
 
-  nlohmann::ordered_json found;
+  Findings findings;
+  nlohmann::ordered_json &found = findings.keys;
   found["heap_particles_on_disc"] = on_disc.number;
   found["heap_mass_on_disc"] = on_disc.mass.value();
   found["heap_mass_drained"] = drained.global(comm).mass.value();
@@ -114,7 +125,20 @@ nlohmann::ordered_json measure(Simulation &simulation, const HeapParameters &par
   write_views(simulation, views, found);
   write_profile(simulation, views, parameters.measured_profile, found);
   simulation.output_folder().write("heap_map.pgm", views.map());
-  return found;
+  for (const ObservableDescription &single : single_numbers())
+    findings.measured.push_back({single.name, 0, found.at("heap_" + single.name)});
+  const std::vector<double> rings = views.rings(n_rings);
+  for (unsigned int ring = 0; ring < n_rings; ++ring)
+    findings.measured.push_back({"profile", static_cast<int>(ring), rings[ring]});
+  return findings;
+}
+
+std::vector<ObservableDescription> observables()
+{
+  std::vector<ObservableDescription> all = single_numbers();
+  all.push_back({"profile", "m", "ring, from the axis to the edge",
+                 "mean height of the outline over all views and both sides"});
+  return all;
 }
 
 } // namespace eunoe::heap

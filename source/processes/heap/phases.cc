@@ -83,14 +83,14 @@ void Heap::begin_lifting(Simulation &simulation)
 void Heap::finish(Simulation &simulation)
 {
   results = measure(simulation, p, *apparatus, height_of_tube(simulation));
-  results["heap_rest_time"] = simulation.time();
+  results.keys["heap_rest_time"] = simulation.time();
   phase = Phase::done;
-  simulation.get_log().line("The heap is at rest after " + format(simulation.time()) +
-                            " s: base angle " + format(results["heap_base_angle"]) +
-                            " degrees (standard deviation over the views " +
-                            format(results["heap_base_angle_spread"]) + "), " +
-                            std::to_string(results["heap_particles_on_disc"].get<std::uint64_t>()) +
-                            " particles on the disc");
+  simulation.get_log().line(
+      "The heap is at rest after " + format(simulation.time()) + " s: base angle " +
+      format(results.keys["heap_base_angle"]) + " degrees (standard deviation over the views " +
+      format(results.keys["heap_base_angle_spread"]) + "), " +
+      std::to_string(results.keys["heap_particles_on_disc"].get<std::uint64_t>()) +
+      " particles on the disc");
   if (p.picture) {
     const std::string name = simulation.get_parameters().control.output_name + "_heap";
     simulation.write_pictures(*simulation.output_folder().pictures(name));

@@ -84,6 +84,23 @@ std::vector<Silhouettes::Bin> Silhouettes::profile() const
   return profile;
 }
 
+std::vector<double> Silhouettes::rings(const unsigned int n_rings) const
+{
+  std::vector<double> sums(n_rings, 0.);
+  std::vector<unsigned int> counts(n_rings, 0);
+  for (std::size_t k = 0; k < heights.size(); ++k) {
+    const double off_axis = std::abs(left + (static_cast<double>(k % n_columns) + 0.5) * width);
+    const auto ring = static_cast<unsigned int>(off_axis / (0.5 * disc_diameter) * n_rings);
+    if (ring < n_rings) {
+      sums[ring] += heights[k];
+      ++counts[ring];
+    }
+  }
+  for (unsigned int ring = 0; ring < n_rings; ++ring)
+    sums[ring] /= std::max(1u, counts[ring]);
+  return sums;
+}
+
 std::string Silhouettes::map() const
 {
   constexpr unsigned int widest = 600;

@@ -42,32 +42,76 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   rear = round ? p.spreader_radius : p.spreader_thickness;
   x_start = -run_up - front;
 
+  // The bed is that of the nominal strokes, so that the same powder is there however it is dosed.
   const double strokes =
       p.feedstock == "full" ? p.first_stroke + (p.n_layers - 1) * p.stroke : p.first_stroke;
   bed_depth = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
   first_bed_depth = std::max(bed_depth, strokes + p.bed_margin);
 
-  const double pile_height =
-      std::sqrt(2. * std::max(p.first_stroke, p.stroke) * x_transfer * slope);
-  spreader_height = p.spreader_height > 0.
-                        ? p.spreader_height
-                        : std::max(1.2 * front, std::max(p.first_stroke, p.stroke) + pile_height);
-  y_bottom =
-      -std::max(first_bed_depth, p.n_layers * p.layer_thickness + p.lip) - 4. * largest_diameter;
+  const double largest_stroke =
+      std::max(1., 1. + p.stroke_error) * std::max(p.first_stroke, p.stroke);
+  const double pile_height = std::sqrt(2. * largest_stroke * x_transfer * slope);
+  spreader_height = p.spreader_height > 0. ? p.spreader_height
+                                           : std::max(1.2 * front, largest_stroke + pile_height);
+  y_bottom = -std::max(first_bed_depth, p.n_layers * p.plate_stroke() + p.plate_recoil + p.lip) -
+             4. * largest_diameter;
   // Loose particles for the bed need five times its height.
-  y_top = std::max(p.clearance + spreader_height, 4.2 * bed_depth) + 2. * largest_diameter;
+  y_top = std::max(p.mean_clearance() + spreader_height + p.spreader_tilt + p.vibration_amplitude,
+                   4.2 * bed_depth) +
+          2. * largest_diameter;
 
   platform = std::make_shared<StrokeMotion>(Vec3{0., -bed_depth, 0.});
   plate = std::make_shared<StrokeMotion>(Vec3());
+  if (p.plate_recoil > 0.)
+    yielding_plate = std::make_shared<YieldingMotion>(plate, Vec3{0., -p.plate_recoil, 0.});
   for (auto &spreader : spreaders)
-    spreader =
-        std::make_shared<PassMotion>(Vec3{x_start, p.clearance, 0.}, Vec3{p.velocity, 0., 0.},
-                                     path() / p.velocity, Vec3{2. * margin, 0., 0.});
+    spreader = std::make_shared<PassMotion>(Vec3{x_start, p.mean_clearance(), 0.},
+                                            Vec3{p.velocity, 0., 0.}, path() / p.velocity,
+                                            Vec3{2. * margin, 0., 0.});
 }
 
 double Apparatus::pile_length() const
 {
-  return std::sqrt(2. * p.stroke * x_transfer / slope);
+  return std::sqrt(2. * p.actual_stroke(1) * x_transfer / slope);
+}
+
+double Apparatus::tilt(const double z) const
+{
+  const double place = z / depth;
+  if (p.side_walls)
+    return p.spreader_tilt * (place - 0.5);
+  // To and fro, or the spreader would have a step where space repeats.
+  const double share = place - std::floor(place);
+  return p.spreader_tilt * (std::abs(2. * share - 1.) - 0.5);
+}
+
+TriangleMesh Apparatus::spreader_piece(const double z, const double length) const
+{
+  return p.spreader == "half round"
+             ? shapes::half_round_bar({0., 0., z}, length, p.spreader_radius, spreader_height,
+                                      p.spreader_facets)
+             : shapes::flat_blade({0., 0., z}, length, p.spreader_thickness, spreader_height);
+}
+
+TriangleMesh Apparatus::spreader_surface() const
+{
+  if (p.spreader_tilt == 0.)
+    return spreader_piece(-margin, depth + 2. * margin);
+  // Pieces over which the tilt is straight.
+  std::vector<double> ends = {-margin, depth + margin};
+  if (!p.side_walls)
+    for (double z = 0.5 * depth * std::ceil(-2. * margin / depth); z < depth + margin;
+         z += 0.5 * depth)
+      if (z > -margin)
+        ends.insert(ends.end() - 1, z);
+  TriangleMesh all;
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    TriangleMesh piece = spreader_piece(ends[k], ends[k + 1] - ends[k]);
+    for (Vec3 &x : piece.vertices)
+      x.y += tilt(x.z);
+    all.append(piece);
+  }
+  return all;
 }
 
 std::vector<Solid> Apparatus::make_solids(const int material) const
@@ -83,13 +127,14 @@ std::vector<Solid> Apparatus::make_solids(const int material) const
     solid.material = material;
     solids.push_back(solid);
   };
-  const TriangleMesh spreader =
-      p.spreader == "half round"
-          ? shapes::half_round_bar({0., 0., z}, length, p.spreader_radius, spreader_height,
-                                   p.spreader_facets)
-          : shapes::flat_blade({0., 0., z}, length, p.spreader_thickness, spreader_height);
-  for (unsigned int k = 0; k < n_spreaders; ++k)
-    add("spreader " + std::to_string(k), spreader, spreaders[k]);
+  const TriangleMesh spreader = spreader_surface();
+  for (unsigned int k = 0; k < n_spreaders; ++k) {
+    std::shared_ptr<const Motion> motion = spreaders[k];
+    if (p.vibration_amplitude > 0.)
+      motion = std::make_shared<VibratingMotion>(motion, Vec3{0., p.vibration_amplitude, 0.},
+                                                 p.vibration_frequency);
+    add("spreader " + std::to_string(k), spreader, motion);
+  }
   add("feedstock platform", extrude({{-margin, 0., 0.}, {x_transfer, 0., 0.}}, z, length),
       platform);
   add("transfer plate",
@@ -105,7 +150,7 @@ std::vector<Solid> Apparatus::make_solids(const int material) const
                {x_plate_end, 0., 0.},
                {x_plate_end, -p.lip, 0.}},
               z, length),
-      plate);
+      yielding_plate ? std::shared_ptr<const Motion>(yielding_plate) : plate);
   add("exit plate",
       extrude({{x_exit, -p.lip, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
       std::make_shared<AtRest>());

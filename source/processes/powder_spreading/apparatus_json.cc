@@ -22,12 +22,13 @@ std::string Apparatus::as_json(const double density) const
   json["front"] = front;
   json["rear"] = rear;
   json["spreader_height"] = spreader_height;
-  json["clearance"] = p.clearance;
+  json["clearance"] = p.mean_clearance();
   json["n_layers"] = p.n_layers;
   json["layer_thickness"] = p.layer_thickness;
+  json["plate_stroke"] = p.plate_stroke();
   json["velocity"] = p.velocity;
-  json["first_stroke"] = p.first_stroke;
-  json["stroke"] = p.stroke;
+  json["first_stroke"] = p.actual_stroke(0);
+  json["stroke"] = p.actual_stroke(1);
   json["platform_velocity"] = p.platform_velocity;
   json["rest_before_weighing"] = p.rest_before_weighing;
   json["replenished"] = p.feedstock == "replenished";

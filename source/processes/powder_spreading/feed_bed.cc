@@ -26,6 +26,13 @@ std::vector<ParticleId> gather_sorted(const std::vector<ParticleId> &mine, MPI_C
   return all;
 }
 
+/// Numbers of the two walls of the domain at the ends in z.
+std::array<std::uint32_t, 2> find_side_walls(const Simulation &simulation)
+{
+  return {static_cast<std::uint32_t>(simulation.find_solid("boundary 4")),
+          static_cast<std::uint32_t>(simulation.find_solid("boundary 5"))};
+}
+
 } // namespace
 
 std::vector<std::size_t> above_level(const ParticleArrays &p, const Apparatus &apparatus)
@@ -99,11 +106,19 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
   delivery.has_rows = true;
   std::vector<double> history(n_history);
 
+  const bool has_walls = !simulation.get_domain().periods().is_periodic(2);
+  const auto walls = find_side_walls(simulation);
+  const auto opposite_wall = [&](std::uint32_t solid) {
+    return solid == walls[0] ? walls[1] : solid == walls[1] ? walls[0] : solid;
+  };
   const auto n_copies = static_cast<unsigned int>(std::ceil(-platform_height / depth - 1e-9));
   for (unsigned int copy = 0; copy < n_copies; ++copy) {
     const std::uint64_t draw = (static_cast<std::uint64_t>(event) << 32) + copy;
-    const double shift = apparatus.depth * uniform(seed, Draw::feed_copy, draw, 0);
     const bool mirrored = uniform(seed, Draw::feed_copy, draw, 1) < 0.5;
+    // Between side walls a copy can be mirrored alone.
+    const double shift = !has_walls ? apparatus.depth * uniform(seed, Draw::feed_copy, draw, 0)
+                         : mirrored ? apparatus.depth
+                                    : 0.;
     const ParticleId first = simulation.next_id;
     simulation.next_id += static_cast<ParticleId>(n_global);
     for (std::size_t k = 0; k < particles.size(); ++k) {
@@ -124,6 +139,8 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
       for (ContactRows::Record record : rows.records(k)) {
         if (!record.with_solid)
           record.partner += first;
+        else if (mirrored && has_walls)
+          record.partner = opposite_wall(record.partner);
         std::copy_n(record.history, n_history, history.begin());
         if (mirrored) {
           model.mirror(history.data(), 2);

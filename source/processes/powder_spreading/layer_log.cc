@@ -1,6 +1,7 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/processes/powder_spreading/layer_log.h>
 
+#include <cmath>
 #include <limits>
 
 namespace eunoe::spreading {
@@ -18,6 +19,12 @@ enum Extra : unsigned int
 };
 
 constexpr unsigned int outlet_right = 1, outlet_bottom = 2;
+
+/// The column that is no measurement.
+const std::string wall_clock = "wall_seconds";
+
+/// Columns of the surface's heights, in parts of the smallest diameter.
+constexpr double column_width = 0.25;
 
 } // namespace
 
@@ -42,7 +49,7 @@ LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters
                                                    "_layers")),
       solid_pictures(simulation.output_folder().pictures(
           simulation.get_parameters().control.output_name + "_layers_solids")),
-      draws(parameters.layer_pictures), last_wall_time(MPI_Wtime())
+      draws(parameters.layer_pictures), n_bins(parameters.profile_bins), last_wall_time(MPI_Wtime())
 {
 }
 
@@ -117,12 +124,17 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   to_gap -= last_out.gap;
   to_collector -= last_out.collector;
   const double now = MPI_Wtime();
-  file->write({static_cast<double>(layer), simulation.time(), mass,
-               static_cast<double>(present.number),
-               layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing,
-               layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing,
-               removed.value(), to_gap.value(), to_collector.value(),
-               n_forces > 0 ? force_sum / n_forces : 0., force_max, now - last_wall_time});
+  record(layer, simulation.time(),
+         {{"mass", mass},
+          {"particles", static_cast<double>(present.number)},
+          {"LRD", layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing},
+          {"CRD", layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing},
+          {"mass_removed", removed.value()},
+          {"mass_to_gap", to_gap.value()},
+          {"mass_to_collector", to_collector.value()},
+          {"spreader_force_mean", n_forces > 0 ? force_sum / n_forces : 0.},
+          {"spreader_force_max", force_max},
+          {wall_clock, now - last_wall_time}});
   last_present = present.mass;
   last_plate_height = plate_height;
   last_out = out;
@@ -135,6 +147,56 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   }
 }
 
+void LayerLog::record(const unsigned int layer, const double time,
+                      const std::vector<std::pair<std::string, double>> &row)
+{
+  std::vector<double> columns = {static_cast<double>(layer), time};
+  for (const auto &[name, value] : row) {
+    columns.push_back(value);
+    if (std::isfinite(value) && name != wall_clock)
+      measured.push_back({name, static_cast<int>(layer), value});
+  }
+  file->write(columns);
+}
+
+void LayerLog::take_profile(Simulation &simulation, const double plate_height)
+{
+  const auto sizes = simulation.get_parameters().physics.types[0].sizes.make();
+  PlateProfile profile({apparatus.x_plate, apparatus.x_plate_end, apparatus.depth,
+                        simulation.get_domain().periods().is_periodic(2), plate_height},
+                       n_bins, column_width * sizes->smallest());
+  const ParticleArrays &p = simulation.complete_step();
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    profile.add(p.position[row].vec(), p.position[row].w, p.velocity[row].w);
+  profile.reduce(simulation.communicator());
+  for (unsigned int bin = 0; bin < n_bins; ++bin)
+    measured.push_back({"surface_height", static_cast<int>(bin), profile.height(bin)});
+  measured.push_back({"surface_roughness", 0, profile.roughness()});
+  for (unsigned int bin = 0; bin < n_bins; ++bin)
+    if (std::isfinite(profile.mean_diameter(bin)))
+      measured.push_back({"mean_diameter", static_cast<int>(bin), profile.mean_diameter(bin)});
+}
+
+std::vector<ObservableDescription> LayerLog::observables()
+{
+  const std::string layer = "layer", bin = "bin along the plate, from its start";
+  return {
+      {"mass", "kg", layer, "mass of the powder on the plate"},
+      {"particles", "1", layer, "number of particles on the plate"},
+      {"LRD", "1", layer, "layer relative density, from layer 1 on"},
+      {"CRD", "1", layer, "cumulative relative density, from layer 2 on"},
+      {"mass_removed", "kg", layer, "mass taken from the layers below during the pass"},
+      {"mass_to_gap", "kg", layer, "mass lost through the gaps since the last weighing"},
+      {"mass_to_collector", "kg", layer, "mass lost over the end since the last weighing"},
+      {"spreader_force_mean", "N", layer, "mean force on the spreader over the plate"},
+      {"spreader_force_max", "N", layer, "largest force on the spreader over the plate"},
+      {"surface_height", "m", bin,
+       "mean height of the surface after the last layer, over the level of the transfer plate"},
+      {"surface_roughness", "m", "",
+       "standard deviation of the surface's height after the last layer"},
+      {"mean_diameter", "m", bin, "mean diameter by mass of all powder on the plate at the end"}};
+}
+
 nlohmann::ordered_json LayerLog::save() const
 {
   return {{"last_present", last_present.words()},
@@ -144,7 +206,8 @@ nlohmann::ordered_json LayerLog::save() const
           {"last_to_collector", last_out.collector.words()},
           {"force_sum", force_sum},
           {"force_max", force_max},
-          {"n_forces", n_forces}};
+          {"n_forces", n_forces},
+          {"measured", to_json(measured)}};
 }
 
 void LayerLog::load(const nlohmann::ordered_json &saved)
@@ -157,6 +220,7 @@ void LayerLog::load(const nlohmann::ordered_json &saved)
   force_sum = number_in(saved.at("force_sum"));
   force_max = number_in(saved.at("force_max"));
   n_forces = count_in<unsigned int>(saved.at("n_forces"));
+  measured = measurements_in(saved.at("measured"));
 }
 
 } // namespace eunoe::spreading

@@ -4,7 +4,39 @@
 namespace eunoe::spreading {
 
 namespace {
+
 const std::string section = "powder spreading";
+
+void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  using declare::positive;
+  using declare::Patterns::Double;
+  prm.add_parameter("spreader clearance offset", p.clearance_offset,
+                    "Error of the clearance: the spreader is higher by this (m).", Double());
+  positive(prm, "spreader tilt", p.spreader_tilt,
+           "Difference between the largest and the smallest clearance over the depth (m), about "
+           "the same mean. Between side walls the spreader rises along z; in a periodic slice it "
+           "falls over one half of the depth and rises over the other.");
+  positive(prm, "spreader vibration amplitude", p.vibration_amplitude,
+           "Amplitude of a vertical vibration of the spreader (m).");
+  positive(prm, "spreader vibration frequency", p.vibration_frequency,
+           "Frequency of that vibration (Hz).");
+  prm.add_parameter("layer thickness error", p.plate_stroke_error,
+                    "Relative error of the measuring plate's stroke: it falls by delta_l (1 + "
+                    "error), while the relative densities are computed with delta_l.",
+                    Double());
+  prm.add_parameter("feedstock stroke error", p.stroke_error,
+                    "Relative error of the feedstock platform's strokes.", Double());
+  positive(prm, "plate recoil", p.plate_recoil,
+           "Way that the measuring plate yields while the spreader passes over it, and springs "
+           "back (m): a squared sine of the time between the spreader's arrival and its leaving.");
+  prm.add_parameter("side walls", p.side_walls,
+                    "Whether the slice ends at two walls in z, instead of being periodic.");
+  prm.add_parameter("side wall friction", p.side_wall_friction,
+                    "Sliding friction coefficient of the side walls; -1: that of all walls.",
+                    Double(-1.));
+}
+
 } // namespace
 
 void SpreadingParameters::declare(dealii::ParameterHandler &prm)
@@ -76,6 +108,12 @@ void SpreadingParameters::declare(dealii::ParameterHandler &prm)
            "Longest time that the bed is given to come to rest (s).");
   declare::count(prm, "seed", seed, "Seed of the random positions, shifts and mirrorings.");
 
+  declare_imperfections(prm, *this);
+
+  declare::count(prm, "profile bins", profile_bins,
+                 "Number of bins along the plate in which the surface's height and the mean "
+                 "diameter are measured after the last layer.",
+                 1);
   prm.add_parameter("layer pictures", layer_pictures,
                     "Whether the particles are written at every weighing (<name>_layers.pvd).");
   declare::count(prm, "spreader force sampling", force_sampling,
@@ -117,6 +155,46 @@ void SpreadingParameters::check(const ParameterCheck &check) const
       spreader_height == 0. || spreader != "half round" || spreader_height >= spreader_radius,
       {section}, "spreader height", "is " + format(spreader_height) + " m, less than the radius.",
       "Give at least the radius, or 0 for a height made to measure.");
+  check_imperfections(check);
+}
+
+void SpreadingParameters::check_imperfections(const ParameterCheck &check) const
+{
+  const double lowest = clearance - 0.5 * spreader_tilt;
+  check.require(lowest > 0. || clearance <= 0., {section}, "spreader tilt",
+                "is " + format(spreader_tilt) +
+                    " m, so that one side of the spreader would stand inside the transfer plate.",
+                "Give less than twice the clearance.");
+  check.require(
+      lowest <= 0. || lowest + clearance_offset > 0., {section}, "spreader clearance offset",
+      "is " + format(clearance_offset) + " m, which takes away all of the smallest clearance of " +
+          format(lowest) + " m: the spreader would stand inside the transfer plate.",
+      "Give a larger offset.");
+  check.require(
+      vibration_amplitude == 0. || lowest + clearance_offset <= 0. ||
+          vibration_amplitude < lowest + clearance_offset,
+      {section}, "spreader vibration amplitude",
+      "is " + format(vibration_amplitude) + " m, not less than the smallest clearance of " +
+          format(lowest + clearance_offset) + " m: the spreader would hit the transfer plate.",
+      "Give a smaller amplitude.");
+  check.require(vibration_amplitude == 0. || vibration_frequency > 0., {section},
+                "spreader vibration frequency", "is 0 while there is an amplitude.",
+                "Give a positive frequency, for example 100.");
+  check.require(plate_stroke_error > -1., {section}, "layer thickness error",
+                "is " + format(plate_stroke_error) + ", so that the plate would not fall.",
+                "Give more than -1.");
+  check.require(stroke_error > -1., {section}, "feedstock stroke error",
+                "is " + format(stroke_error) + ", so that no powder would come.",
+                "Give more than -1.");
+  check.require(side_wall_friction == -1. || side_wall_friction >= 0., {section},
+                "side wall friction", "is " + format(side_wall_friction) + ".",
+                "Give at least 0, or -1 for the friction of all walls.");
+  check.advise(side_wall_friction == -1. || side_walls, {section}, "side wall friction",
+               "is set, but there are no side walls.", "Set 'side walls = true'.");
+  check.require(plate_recoil < layer_thickness, {section}, "plate recoil",
+                "is " + format(plate_recoil) + " m, not less than a layer of " +
+                    format(layer_thickness) + " m.",
+                "Give less; real plates yield by some micrometres.");
 }
 
 } // namespace eunoe::spreading

@@ -10,7 +10,7 @@ void PowderSpreading::schedule_passes(const double beginning)
   double height = -apparatus->first_bed_depth;
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pass &pass = passes[k];
-    const double stroke = k == 0 ? p.first_stroke : p.stroke;
+    const double stroke = p.actual_stroke(static_cast<unsigned int>(k));
     if (k > 0 && p.feedstock == "replenished") {
       apparatus->platform->add(pass.feed, 0., {0., -apparatus->bed_depth - height, 0.});
       height = -apparatus->bed_depth;
@@ -18,8 +18,10 @@ void PowderSpreading::schedule_passes(const double beginning)
     apparatus->platform->add(pass.feed, stroke / p.platform_velocity, {0., stroke, 0.});
     height += stroke;
     apparatus->spreaders[k % Apparatus::n_spreaders]->add(pass.start);
-    apparatus->plate->add(pass.weighing, p.layer_thickness / p.plate_velocity,
-                          {0., -p.layer_thickness, 0.});
+    apparatus->plate->add(pass.weighing, p.plate_stroke() / p.plate_velocity,
+                          {0., -p.plate_stroke(), 0.});
+    if (apparatus->yielding_plate)
+      apparatus->yielding_plate->add(pass.over_plate, pass.past_plate - pass.over_plate);
   }
 }
 
@@ -39,10 +41,12 @@ void PowderSpreading::step_passes(Simulation &simulation)
     if (t < passes[k].past_plate)
       pass_over_plate = static_cast<int>(k);
   if (t >= passes[next_weighing].weighing) {
-    layers->weigh(simulation, static_cast<unsigned int>(next_weighing),
-                  apparatus->plate->at(t).centre.y);
-    if (++next_weighing == passes.size())
+    const double plate_height = apparatus->plate->at(t).centre.y;
+    layers->weigh(simulation, static_cast<unsigned int>(next_weighing), plate_height);
+    if (++next_weighing == passes.size()) {
+      layers->take_profile(simulation, plate_height);
       phase = Phase::done;
+    }
   }
 }
 

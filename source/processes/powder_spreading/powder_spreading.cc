@@ -40,6 +40,16 @@ void PowderSpreading::check_with(const Parameters &parameters, const ParameterCh
   check.require(p.depth >= 2. * largest, {section}, "depth",
                 "is " + format(p.depth) + " m, less than two of the largest particles.",
                 "Give a larger depth, 2e-3 in the paper.");
+  // The powder that is there does not depend on how it is dosed.
+  const double bed = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
+  const double first_bed = std::max(bed, p.first_stroke + p.bed_margin);
+  check.require(p.actual_stroke(0) <= first_bed && p.actual_stroke(1) <= bed, {section},
+                "feedstock stroke error",
+                "is " + format(p.stroke_error) +
+                    ": the platform would rise above the level of the "
+                    "transfer plate, as the bed is only " +
+                    format(bed) + " m deep, and " + format(first_bed) + " m for the first layer.",
+                "Give a smaller error or a larger 'feedstock margin'.");
   for (const char *const other : {"mesh", "DEM boundary conditions", "insertion info"})
     check.require(!check.has_changes(other), {other}, "", "is set, but the process makes its own.",
                   "Remove the subsection.");
@@ -59,20 +69,39 @@ void PowderSpreading::prepare(Parameters &parameters)
       box_mesh({0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
                parameters.model.skin(largest) + parameters.contact_model(largest).range());
 
-  BoundaryCondition collector, bottom, period;
-  collector.type = bottom.type = "outlet";
-  collector.id = 1;
-  bottom.id = 2;
-  period.type = "periodic";
-  period.periodic_ids[0] = 4;
-  period.periodic_ids[1] = 5;
-  period.periodic_direction = 2;
-  parameters.boundaries.conditions = {collector, bottom, period};
-
+  set_boundaries(parameters);
   // The process decides when all is done; this is no more than an upper bound.
   parameters.control.end_control = "time";
   parameters.control.time_end =
       make_schedule(p, a, 22. * p.settling_time).back().end + p.settling_time;
+}
+
+void PowderSpreading::set_boundaries(Parameters &parameters) const
+{
+  BoundaryCondition collector, bottom;
+  collector.type = bottom.type = "outlet";
+  collector.id = 1;
+  bottom.id = 2;
+  parameters.boundaries.conditions = {collector, bottom};
+  if (p.side_walls) {
+    PhysicalProperties &physics = parameters.physics;
+    physics.other_walls = {physics.wall};
+    if (p.side_wall_friction >= 0.)
+      physics.other_walls[0].friction = p.side_wall_friction;
+    for (const unsigned int id : {4u, 5u}) {
+      BoundaryCondition wall;
+      wall.id = id;
+      wall.material = physics.wall_material() + 1;
+      parameters.boundaries.conditions.push_back(wall);
+    }
+  } else {
+    BoundaryCondition period;
+    period.type = "periodic";
+    period.periodic_ids[0] = 4;
+    period.periodic_ids[1] = 5;
+    period.periodic_direction = 2;
+    parameters.boundaries.conditions.push_back(period);
+  }
 }
 
 double PowderSpreading::bed_particles(const Parameters &parameters, const double bed_depth) const
@@ -90,7 +119,7 @@ RunEstimate PowderSpreading::estimate(const Parameters &parameters) const
   const double later = p.feedstock == "full"
                            ? 0.5 * (first + bed_particles(parameters, p.bed_margin))
                            : bed_particles(parameters, a.bed_depth);
-  const double transit = bed_particles(parameters, p.stroke);
+  const double transit = bed_particles(parameters, p.actual_stroke(1));
   const auto schedule = make_schedule(p, a, 0.25 * p.settling_time);
   RunEstimate estimate;
   estimate.steps = schedule.back().weighing / parameters.control.time_step;

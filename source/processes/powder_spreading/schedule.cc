@@ -10,10 +10,10 @@ std::vector<Pass> make_schedule(const SpreadingParameters &p, const Apparatus &a
   std::vector<Pass> passes;
   const double v = p.velocity;
   const double duration = a.path() / v;
-  const double fall = p.layer_thickness / p.plate_velocity;
+  const double fall = p.plate_stroke() / p.plate_velocity;
   for (unsigned int k = 0; k < p.n_layers; ++k) {
     Pass pass;
-    const double rise = (k == 0 ? p.first_stroke : p.stroke) / p.platform_velocity;
+    const double rise = p.actual_stroke(k) / p.platform_velocity;
     if (k == 0) {
       pass.feed = beginning;
       pass.start = pass.feed + rise;

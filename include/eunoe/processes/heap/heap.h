@@ -27,7 +27,12 @@ public:
   double progress(const Simulation &simulation) const override;
   std::string stage() const override;
   bool finished() const override { return phase == Phase::done; }
-  void add_to_summary(nlohmann::ordered_json &summary) const override { summary.update(results); }
+  void add_to_summary(nlohmann::ordered_json &summary) const override
+  {
+    summary.update(results.keys);
+  }
+  std::vector<Measurement> measurements() const override { return results.measured; }
+  std::vector<ObservableDescription> observables() const override { return heap::observables(); }
 
 private:
   enum class Phase
@@ -58,7 +63,7 @@ private:
   double phase_start = 0.;                ///< (s)
   double calm_since = -1.;                ///< (s); negative: the powder moves
   double lift_start = -1., lift_way = 0.; ///< (s), (m); negative: not lifted yet
-  nlohmann::ordered_json results = nlohmann::ordered_json::object();
+  Findings results;
 };
 
 } // namespace eunoe::heap

@@ -23,11 +23,23 @@ struct MeasuredProfile
 /// Reads a table with the columns "x" and "height". Throws a UserError that says what is wrong.
 MeasuredProfile read_profile(const std::string &file);
 
+/// What was found: the keys of summary.json, and the same as measurements, with the profile.
+struct Findings
+{
+  nlohmann::ordered_json keys = nlohmann::ordered_json::object();
+  std::vector<Measurement> measured;
+};
+
+/// Number of rings between axis and edge in which the profile is a measurement.
+constexpr unsigned int n_rings = 5;
+
 /// Measures the heap, now: writes heap.csv, heap_profile.csv and heap_map.pgm; collective.
 /// @param tube_height of the tube's lower end (m)
-/// @return the keys of summary.json
-nlohmann::ordered_json measure(Simulation &simulation, const HeapParameters &parameters,
-                               const Apparatus &apparatus, double tube_height);
+Findings measure(Simulation &simulation, const HeapParameters &parameters,
+                 const Apparatus &apparatus, double tube_height);
+
+/// What measure() finds.
+std::vector<ObservableDescription> observables();
 
 } // namespace eunoe::heap
 

@@ -47,6 +47,10 @@ public:
   };
   std::vector<Bin> profile() const;
 
+  /// Mean heights over all views and both sides in rings of equal width from the axis to the disc's
+  /// edge (m).
+  std::vector<double> rings(unsigned int n_rings) const;
+
   /// The mean of all views as a picture (a portable grey map): black where the heap is seen in
   /// every view, white where it is seen in none. A comment states its scale.
   std::string map() const;

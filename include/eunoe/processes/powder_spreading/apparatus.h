@@ -2,13 +2,15 @@
 #define eunoe_processes_powder_spreading_apparatus_h
 
 #include <eunoe/processes/powder_spreading/parameters.h>
+#include <eunoe/solids/disturbed_motion.h>
 #include <eunoe/solids/scheduled_motion.h>
 #include <eunoe/solids/solid.h>
+#include <eunoe/solids/triangulated_surface.h>
 
 namespace eunoe::spreading {
 
 /// The spreading apparatus: x along the passes with the platform's left end at 0, y upwards with
-/// the transfer plate's surface at 0, z periodic. SI units.
+/// the transfer plate's surface at 0, z periodic or between side walls. SI units.
 ///
 ///     |  platform  | transfer plate | gap | measuring plate | gap | exit plate | collector
 ///     0            x_transfer       x_gap x_plate           ...                x_end
@@ -54,8 +56,16 @@ public:
 
   std::shared_ptr<PassMotion> spreaders[n_spreaders];
   std::shared_ptr<StrokeMotion> platform, plate;
+  /// The plate's motion where it yields under the spreader, else null.
+  std::shared_ptr<YieldingMotion> yielding_plate;
 
 private:
+  /// Height of a tilted spreader's lowest line over its mean at a place in z (m).
+  double tilt(double z) const;
+  /// The level spreader from a place in z on.
+  TriangleMesh spreader_piece(double z, double length) const;
+  TriangleMesh spreader_surface() const;
+
   const SpreadingParameters p;
   double margin; ///< by which surfaces reach out of the periodic slice
 };

@@ -2,6 +2,7 @@
 #define eunoe_processes_powder_spreading_layer_log_h
 
 #include <eunoe/processes/powder_spreading/apparatus.h>
+#include <eunoe/processes/powder_spreading/plate_profile.h>
 #include <eunoe/simulation/simulation.h>
 
 namespace eunoe::spreading {
@@ -24,6 +25,12 @@ public:
   /// @param plate_height of the measuring plate (m)
   void weigh(Simulation &simulation, unsigned int layer, double plate_height);
 
+  /// Measures the profile of the powder on the plate, now; collective.
+  void take_profile(Simulation &simulation, double plate_height);
+
+  const std::vector<Measurement> &measurements() const { return measured; }
+  static std::vector<ObservableDescription> observables();
+
   /// What has been measured so far, and its return.
   nlohmann::ordered_json save() const;
   void load(const nlohmann::ordered_json &saved);
@@ -34,12 +41,17 @@ private:
     ExactSum gap, collector;
   };
   OutletTotals outlet_totals(const Simulation &simulation) const;
+  /// Writes the row of a layer and takes it into the measurements.
+  void record(unsigned int layer, double time,
+              const std::vector<std::pair<std::string, double>> &row);
 
   const Apparatus &apparatus;
   const double full_layer_mass; ///< of solid material that fills a layer (kg)
   const std::shared_ptr<CsvFile> file;
   const std::shared_ptr<PictureSeries> pictures, solid_pictures;
   const bool draws;
+  const unsigned int n_bins;
+  std::vector<Measurement> measured;
   ExactSum last_present;
   double first_mass = 0., last_plate_height = 0.;
   OutletTotals last_out;

@@ -3,6 +3,8 @@
 
 #include <eunoe/core/parameter_section.h>
 
+#include <cmath>
+
 namespace eunoe::spreading {
 
 /// `subsection powder spreading`: the apparatus and the procedure of Gaboriault et al. (2025), in
@@ -38,11 +40,37 @@ struct SpreadingParameters : public ParameterSection
   double settling_time = 0.2;
   unsigned int seed = 1;
 
+  /// @name How the real apparatus departs from the one that was meant
+  ///@{
+  double clearance_offset = 0.;                              ///< (m)
+  double spreader_tilt = 0.;                                 ///< (m)
+  double vibration_amplitude = 0., vibration_frequency = 0.; ///< (m), (Hz)
+  double plate_stroke_error = 0., stroke_error = 0.;         ///< relative
+  double plate_recoil = 0.;                                  ///< (m)
+  bool side_walls = false;
+  double side_wall_friction = -1.; ///< -1: that of all walls
+  ///@}
+
   bool layer_pictures = true;
+  unsigned int profile_bins = 8;
   unsigned int force_sampling = 50;
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
+
+  double mean_clearance() const { return clearance + clearance_offset; }
+  /// Stroke of the measuring plate.
+  double plate_stroke() const { return layer_thickness * (1. + plate_stroke_error); }
+  /// Stroke of the feedstock platform before a layer.
+  double actual_stroke(unsigned int layer) const
+  {
+    return (layer == 0 ? first_stroke : stroke) * (1. + stroke_error);
+  }
+  /// Largest speed of the vibration (m/s).
+  double vibration_speed() const { return 2. * M_PI * vibration_frequency * vibration_amplitude; }
+
+private:
+  void check_imperfections(const ParameterCheck &check) const;
 };
 
 } // namespace eunoe::spreading

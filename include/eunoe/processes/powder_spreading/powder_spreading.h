@@ -27,7 +27,8 @@ public:
   double fastest_solid() const override
   {
     // A smooth stroke is at most twice as fast as on average.
-    return std::max({p.velocity, 2. * p.plate_velocity, 2. * p.platform_velocity});
+    return std::max({std::hypot(p.velocity, p.vibration_speed()),
+                     2. * p.plate_velocity + recoil_speed(), 2. * p.platform_velocity});
   }
   void start(Simulation &simulation) override;
   void save(CheckpointWriter &writer) const override;
@@ -40,6 +41,14 @@ public:
   double progress(const Simulation &simulation) const override;
   std::string stage() const override;
   bool finished() const override { return phase == Phase::done; }
+  std::vector<Measurement> measurements() const override
+  {
+    return layers ? layers->measurements() : std::vector<Measurement>();
+  }
+  std::vector<ObservableDescription> observables() const override
+  {
+    return LayerLog::observables();
+  }
 
 private:
   enum class Phase
@@ -50,6 +59,13 @@ private:
     done
   };
 
+  /// What happens at the sides of the domain.
+  void set_boundaries(Parameters &parameters) const;
+  /// Largest speed at which the plate yields under the spreader (m/s).
+  double recoil_speed() const
+  {
+    return M_PI * p.plate_recoil * p.velocity / (p.length_factor * p.w3);
+  }
   void insert_loose_bed(Simulation &simulation);
   void fill_reservoir(Simulation &simulation, double platform_height);
   bool has_settled(Simulation &simulation);

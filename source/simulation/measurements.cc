@@ -1,0 +1,57 @@
+// What a run has measured, as discovery asks for it.
+
+#include <eunoe/core/files.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <cstdio>
+#include <map>
+
+namespace eunoe {
+
+std::vector<Measurement> Simulation::measurements() const
+{
+  std::vector<Measurement> all;
+  const auto append = [&all](const std::vector<Measurement> &more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  if (const Process *const process = parameters.process())
+    append(process->measurements());
+  for (const auto &observable : observable_list)
+    append(observable->measurements());
+  return all;
+}
+
+std::vector<ObservableDescription> Simulation::described_observables() const
+{
+  std::vector<ObservableDescription> all;
+  const auto append = [&all](const std::vector<ObservableDescription> &more) {
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  if (const Process *const process = parameters.process())
+    append(process->observables());
+  for (const auto &observable : observable_list)
+    append(observable->descriptions());
+  return all;
+}
+
+void Simulation::write_measurements()
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  const std::vector<Measurement> all = measurements();
+  if (rank != 0 || all.empty())
+    return;
+  std::map<std::string, std::string> units;
+  for (const ObservableDescription &description : described_observables())
+    units[description.name] = description.unit;
+  std::string text = "observable,index,value,unit\n";
+  for (const Measurement &m : all) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%.17g", m.value);
+    text += m.observable + "," + std::to_string(m.index) + "," + value + "," + units[m.observable] +
+            "\n";
+  }
+  write_file(output_file("measurements.csv"), text);
+}
+
+} // namespace eunoe

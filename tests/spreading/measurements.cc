@@ -1,0 +1,83 @@
+// What a spreading run has measured: the same bits on one rank and on all, and after a restart,
+// with and without side walls; and no observable without a description.
+
+#include "small_case.h"
+#include "tests.h"
+
+using namespace test;
+
+namespace {
+
+bool are_same(const std::vector<Measurement> &a, const std::vector<Measurement> &b)
+{
+  return !a.empty() && std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                                  [](const Measurement &x, const Measurement &y) {
+                                    return x.observable == y.observable && x.index == y.index &&
+                                           x.value == y.value;
+                                  });
+}
+
+std::size_t count(const std::vector<Measurement> &all, const std::string &observable)
+{
+  return static_cast<std::size_t>(std::count_if(
+      all.begin(), all.end(), [&](const Measurement &m) { return m.observable == observable; }));
+}
+
+void examine(const std::string &name, const std::string &more)
+{
+  int rank, n_ranks;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  const std::string checkpoints =
+      "subsection restart\n set checkpoint = true\n set frequency = 15000\n";
+  const std::string folder = "results_" + name;
+  Case all(small_spreading(folder, more, checkpoints + "end\n"));
+  all.run();
+  const auto measured = all->measurements();
+  if (n_ranks > 1) {
+    Case alone(small_spreading(folder + std::to_string(rank), more), MPI_COMM_SELF);
+    alone.run();
+    check(name + ": on one rank", are_same(measured, alone->measurements()));
+  }
+  // Goes on from the last checkpoint.
+  Case again(small_spreading(folder, more, checkpoints + " set restart = true\nend\n"));
+  std::size_t n_before = 0;
+  again.run([&n_before](Simulation &simulation) {
+    if (n_before == 0)
+      n_before = simulation.measurements().size();
+  });
+  check(name + ": a layer was weighed before the restart",
+        n_before > 0 && n_before < measured.size());
+  check(name + ": after a restart", are_same(measured, again->measurements()));
+
+  if (n_ranks > 1)
+    return;
+  const auto described = all->described_observables();
+  check(name + ": every measurement is described",
+        std::all_of(measured.begin(), measured.end(), [&](const Measurement &m) {
+          return std::any_of(
+              described.begin(), described.end(),
+              [&](const ObservableDescription &d) { return d.name == m.observable; });
+        }));
+  check(name + ": layers and bins", count(measured, "mass") == 2 && count(measured, "LRD") == 1 &&
+                                        count(measured, "CRD") == 0 &&
+                                        count(measured, "surface_height") == 4 &&
+                                        count(measured, "surface_roughness") == 1);
+  for (const Measurement &m : measured) {
+    if (m.observable == "surface_height")
+      check(name + ": surface between plate and spreader",
+            m.value > -layer_thickness && m.value < clearance);
+    if (m.observable == "mean_diameter")
+      check(name + ": mean diameter between the smallest and the largest",
+            m.value >= 60e-6 && m.value <= 80e-6);
+  }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  examine("periodic", "");
+  examine("walls", "  set side walls = true");
+}
