@@ -6,7 +6,11 @@
 #include <eunoe/discovery/results.h>
 #include <eunoe/discovery/twin.h>
 
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
 #include <cstdlib>
+#include <memory>
 
 namespace eunoe::discovery {
 
@@ -33,13 +37,23 @@ void list_observables(Log &log)
   }
 }
 
+std::string word_for(const Factor::Sign sign)
+{
+  return sign == Factor::Sign::above ? "above" : sign == Factor::Sign::below ? "below" : "both";
+}
+
 void list_effects(const std::vector<Effect> &effects, Log &log)
 {
   for (const Effect &effect : effects) {
     const Factor &f = effect.factor;
+    if (f.kind != Factor::Kind::effect)
+      continue;
+    const std::string others = boost::join(f.confounders, ", ");
     log.line(f.name + ": " + f.mechanism + "\n  amplitude: " + f.parameter + " (" + f.unit +
              "), null value " + format(f.null_value) + ", scale " + format(f.scale) + ", range " +
-             format(f.lower) + " to " + format(f.upper) + "; process: " + effect.process);
+             format(f.lower) + " to " + format(f.upper) + "; sign: " + word_for(f.sign) +
+             "; confounders: " + (others.empty() ? "none" : others) +
+             "; process: " + effect.process);
   }
 }
 
@@ -62,7 +76,7 @@ std::unique_ptr<DemLaboratory> open_laboratory(const StudyInput &study, MPI_Comm
   for (const Experiment &experiment : study.experiments)
     cells[experiment.name()] = laboratory->cells(experiment.name());
   Problems problems;
-  check_cells(study.data, cells, p.path_of(p.measured_data), problems);
+  check_cells(study.data, cells, p.measured_data, problems);
   refuse_if_any(problems);
   std::vector<Cell> required;
   for (const auto *list : {&study.data.fit, &study.data.held_out})
@@ -111,10 +125,8 @@ int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
     options.further_experiments = further_experiments(study);
     const Discovery discovery =
         discover(options, study.data, study.plain_factors(), *laboratory, folder, log);
-    Amplitudes after = discovery.nuisances;
-    for (const auto &[name, amplitude] : discovery.model_after)
-      after[name] = amplitude;
-    write_models(study, after, folder);
+    // Nuisances stay as they are: it is this model that was validated.
+    write_models(study, discovery.model_after, folder);
     write_answer(study, discovery, *laboratory, folder);
     write_page(study, comm, log);
     print_answer(discovery, folder, log);

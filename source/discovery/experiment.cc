@@ -7,10 +7,10 @@
 
 namespace eunoe::discovery {
 
-Experiment::Experiment(const ExperimentParameters &parameters, const std::string &case_file,
-                       MPI_Comm comm, Problems &problems)
-    : parameters(parameters), file(case_file)
+Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems)
+    : parameters(parameters)
 {
+  const std::string &file = parameters.case_file;
   try {
     texts[file] = read_file(file, comm);
   } catch (const UserError &error) {
@@ -71,6 +71,7 @@ std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) con
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
 {
+  const std::string &file = parameters.case_file;
   return Parameters::read(texts.at(file), file, overrides, problems,
                           [this](const std::string &path) { return texts.at(path); });
 }

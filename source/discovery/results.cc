@@ -79,7 +79,7 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
       origin["sha256"][name] = sha256(text);
   origin["seed"] = study.parameters.options.seed;
   origin["measured_data"] = study.data.header;
-  auto &effects = answer["effects"];
+  auto &effects = answer["catalogue"];
   for (const Effect &effect : study.factors) {
     const Factor &f = effect.factor;
     effects.push_back({{"name", f.name},
@@ -101,13 +101,18 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                              {"unit", o.unit},
                              {"index", o.index_meaning},
                              {"text", o.text}});
+  // The order of the values in the runs that the stages list.
+  auto &cells = answer["cells"];
+  for (const Experiment &experiment : study.experiments)
+    for (const Cell &cell : laboratory.cells(experiment.name()))
+      cells[experiment.name()].push_back({cell.observable, cell.index});
   double core_seconds = 0.;
   for (const auto &run : laboratory.ledger())
     core_seconds += run.at("core_seconds").get<double>();
   answer["simulations"] = {{"made_now", laboratory.n_runs()},
                            {"from_cache", laboratory.n_cached()},
                            {"core_hours", core_seconds / 3600.}};
-  answer["runs"] = laboratory.ledger();
+  answer["ledger"] = laboratory.ledger();
   folder.write("discovery.json", answer.dump(1) + "\n");
 }
 
@@ -128,10 +133,9 @@ std::string page_command(const std::string &folder)
 
 void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log)
 {
-  log.line("Verdict: " + name_of(discovery.verdict));
   for (const auto &[name, amplitude] : discovery.model_after)
     log.line("  " + name + ": " + format(amplitude));
-  log.line("Results are in " + folder.file("discovery.json"));
+  log.line("The answer is in " + folder.file("discovery.json"));
 }
 
 void print_check(const StudyInput &study, MPI_Comm comm, Log &log)

@@ -67,13 +67,17 @@ bool StudyFolder::open(const std::map<std::string, std::string> &identity)
 
 std::optional<nlohmann::ordered_json> StudyFolder::load(const std::string &stage)
 {
-  return read_json(file("stages/" + stage + ".json"), comm);
+  auto table = read_json(file("stages/" + stage + ".json"), comm);
+  // The laboratory's cache remembers runs, with the engine that made them.
+  if (table && table->contains("runs"))
+    table->at("runs") = nlohmann::ordered_json::array();
+  return table;
 }
 
 void StudyFolder::save(const std::string &stage, const nlohmann::ordered_json &table)
 {
   write("stages/" + stage + ".json", table.dump(1) + "\n");
-  for (const auto &[name, list] : table.items()) {
+  for (const auto &[name, list] : table.at("table").items()) {
     const std::string csv = as_csv(list);
     if (!csv.empty())
       write("stages/" + stage + "_" + boost::replace_all_copy(name, " ", "_") + ".csv", csv);

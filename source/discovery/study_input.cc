@@ -4,6 +4,7 @@
 #include <eunoe/discovery/study_input.h>
 
 #include <algorithm>
+#include <set>
 
 namespace eunoe::discovery {
 
@@ -28,11 +29,11 @@ std::map<std::string, std::string> StudyInput::identity() const
   parts["engine"] = engine_digest();
   parts["measured data"] = data_text;
   // Where things are kept and how ranks are used decides nothing.
+  static const std::set<std::string> places = {"output path",   "cache path", "ranks per run",
+                                               "measured data", "write page", "effect folders",
+                                               "case file"};
   for (const auto &[place, value] : values_in(parameters.as_input_file()))
-    if (place.first.size() > 1 ||
-        (place.second != "output path" && place.second != "cache path" &&
-         place.second != "ranks per run" && place.second != "write page" &&
-         place.second != "measured data" && place.second != "effect folders"))
+    if (places.count(place.second) == 0)
       parts["study file"] += describe(place.first, place.second) + value + "\n";
   Problems none;
   for (const Experiment &experiment : experiments)
@@ -82,13 +83,10 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
   if (!problems.empty())
     return study;
   for (const ExperimentParameters &e : p.experiments)
-    study.experiments.emplace_back(e, p.path_of(e.case_file), comm, problems);
+    study.experiments.emplace_back(e, comm, problems);
 
-  std::vector<std::string> folders = {"standard"};
-  if (!p.effect_folders.empty())
-    folders.clear();
-  for (const std::string &folder : p.effect_folders)
-    folders.push_back(folder == "standard" ? folder : p.path_of(folder));
+  const std::vector<std::string> standard = {"standard"};
+  const std::vector<std::string> &folders = p.effect_folders.empty() ? standard : p.effect_folders;
   for (Effect &effect : select(read_effects(folders, comm, problems), p.effects, p.excluded_effects,
                                file + ": subsection 'discovery'", problems))
     if (std::any_of(study.experiments.begin(), study.experiments.end(),
@@ -110,7 +108,7 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
 
 void read_data(StudyInput &study, MPI_Comm comm, Problems &problems)
 {
-  const std::string file = study.parameters.path_of(study.parameters.measured_data);
+  const std::string file = study.parameters.measured_data;
   study.data_text = read_file(file, comm);
   study.data = read_measured(study.data_text, file, study.experiments, problems);
 }

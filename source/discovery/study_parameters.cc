@@ -138,6 +138,45 @@ void check_name(const ParameterCheck &check, const Path &path, const std::string
                 "is '" + name + "', like that of another one.", "Give each its own name.");
 }
 
+/// A file that is named in an input file, or an empty name.
+std::string beside(const std::string &name, const std::string &input_file)
+{
+  if (name.empty())
+    return name;
+  return (std::filesystem::path(input_file).parent_path() / name).lexically_normal().string();
+}
+
+/// Makes names of files relative to the folder in which the program was started, as their entries
+/// give them relative to the input file in which they are written.
+void resolve_files(std::vector<InputEntry> &entries, const std::string &file, const bool with_twin)
+{
+  // Defaults first, so that what is written overrides them.
+  InputEntry data, sealed;
+  data.path = {section};
+  data.name = "measured data";
+  data.value = StudyParameters().measured_data;
+  sealed.path = {"twin"};
+  sealed.name = "sealed file";
+  sealed.value = TwinParameters().sealed_file;
+  data.where = sealed.where = file + ":0";
+  if (with_twin)
+    entries.insert(entries.begin(), sealed);
+  entries.insert(entries.begin(), data);
+  for (InputEntry &entry : entries) {
+    if (entry.where.rfind("--set", 0) == 0)
+      continue;
+    const std::string written_in = entry.where.substr(0, entry.where.rfind(':'));
+    if (entry.name == "measured data" || entry.name == "case file" || entry.name == "sealed file")
+      entry.value = beside(entry.value, written_in);
+    if (entry.name == "effect folders") {
+      std::vector<std::string> folders = dealii::Utilities::split_string_list(entry.value, ',');
+      for (std::string &folder : folders)
+        folder = folder == "standard" ? folder : beside(folder, written_in);
+      entry.value = boost::join(folders, ", ");
+    }
+  }
+}
+
 } // namespace
 
 void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twin)
@@ -221,8 +260,8 @@ StudyParameters StudyParameters::read(const std::string &text, const std::string
     if (!entry.name.empty())
       entries.push_back(entry);
   }
+  resolve_files(entries, file, with_twin);
   StudyParameters study;
-  study.folder = std::filesystem::path(file).parent_path().string();
   study.experiments.resize(repeated_sections()[0].count(entries));
   study.nuisances.resize(repeated_sections()[1].count(entries));
   dealii::ParameterHandler prm;
@@ -231,11 +270,6 @@ StudyParameters StudyParameters::read(const std::string &text, const std::string
   if (problems.empty())
     study.check(ParameterCheck(entries, file, problems));
   return study;
-}
-
-std::string StudyParameters::path_of(const std::string &name) const
-{
-  return (std::filesystem::path(folder) / name).lexically_normal().string();
 }
 
 } // namespace eunoe::discovery

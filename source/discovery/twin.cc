@@ -74,7 +74,7 @@ std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm co
   std::vector<Experiment> experiments;
   for (ExperimentParameters e : study.experiments) {
     e.overrides.insert(e.overrides.end(), study.twin.overrides.begin(), study.twin.overrides.end());
-    experiments.emplace_back(e, study.path_of(e.case_file), comm, problems);
+    experiments.emplace_back(e, comm, problems);
   }
   if (!problems.empty())
     throw UserError(problems);
@@ -144,8 +144,7 @@ void make_twin(const StudyParameters &study, const std::vector<Effect> &factors,
                Log &log)
 {
   const TwinParameters &twin = study.twin;
-  const std::string data_file = study.path_of(study.measured_data),
-                    sealed_file = study.path_of(twin.sealed_file);
+  const std::string data_file = study.measured_data, sealed_file = twin.sealed_file;
   refuse_existing(data_file, comm);
   refuse_existing(sealed_file, comm);
 

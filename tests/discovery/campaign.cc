@@ -5,10 +5,10 @@
 #include <eunoe/discovery/dem_laboratory.h>
 #include <eunoe/discovery/study_input.h>
 
-#include <filesystem>
-
 #include "../tests.h"
 #include "drop_process.h"
+
+#include <filesystem>
 
 namespace {
 
@@ -48,11 +48,11 @@ int main(int argc, char **argv)
   Problems problems;
   ExperimentParameters box, gentle;
   box.name = "box";
+  box.case_file = gentle.case_file = folder + "/drop.prm";
   gentle.name = "gentle";
   gentle.overrides = {"drop/largest speed = 0.28"};
-  const std::vector<Experiment> experiments = {
-      Experiment(box, folder + "/drop.prm", comm, problems),
-      Experiment(gentle, folder + "/drop.prm", comm, problems)};
+  const std::vector<Experiment> experiments = {Experiment(box, comm, problems),
+                                               Experiment(gentle, comm, problems)};
   const std::vector<Effect> effects = read_effects({folder + "/effects"}, comm, problems);
   check("in order", problems.empty());
 

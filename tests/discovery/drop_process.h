@@ -70,8 +70,8 @@ public:
       particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
       particle.mass = sphere_mass(particle.radius, type.density);
       const auto place = [&](const std::size_t cell, const std::uint32_t d) {
-        return 2e-3 * (static_cast<double>(cell) +
-                       0.3 * uniform(seed, Draw::offset, particle.id, d));
+        return 2e-3 *
+               (static_cast<double>(cell) + 0.3 * uniform(seed, Draw::offset, particle.id, d));
       };
       particle.position = {-5e-3 + place(k % 4, 0), 1e-3 + place(k / 16, 1),
                            -5e-3 + place(k / 4 % 4, 2)};
@@ -97,8 +97,7 @@ public:
       fastest = std::max(fastest, norm_square(p.velocity[k].vec()));
     }
     std::vector<double> all;
-    for (const auto &part :
-         dealii::Utilities::MPI::all_gather(simulation.communicator(), heights))
+    for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), heights))
       all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end());
     drift.reduce(simulation.communicator());

@@ -4,9 +4,9 @@
 #include <eunoe/discovery/laboratory.h>
 #include <eunoe/discovery/work_queue.h>
 
-#include <numeric>
-
 #include "../tests.h"
+
+#include <numeric>
 
 int main(int argc, char **argv)
 {
@@ -54,6 +54,6 @@ int main(int argc, char **argv)
     check("a stop reaches all ranks", everywhere == 1);
     check("and ends the handing out", begun < 1000);
   }
-  check("texts in order", concatenate(std::to_string(size), MPI_COMM_WORLD).size() ==
-                              static_cast<std::size_t>(size));
+  check("texts in order",
+        concatenate(std::to_string(size), MPI_COMM_WORLD).size() == static_cast<std::size_t>(size));
 }

@@ -47,10 +47,11 @@ std::vector<Experiment> experiments()
   Problems problems;
   ExperimentParameters first, second;
   first.name = "box";
+  first.case_file = second.case_file = folder + "/drop.prm";
   second.name = "other_box";
   second.held_out = true;
-  return {Experiment(first, folder + "/drop.prm", MPI_COMM_WORLD, problems),
-          Experiment(second, folder + "/drop.prm", MPI_COMM_WORLD, problems)};
+  return {Experiment(first, MPI_COMM_WORLD, problems),
+          Experiment(second, MPI_COMM_WORLD, problems)};
 }
 
 void measured(const std::string &title, const std::string &text)
@@ -80,16 +81,17 @@ void studies()
 void effects()
 {
   effect("empty", "");
-  effect("range, scale and null value",
-         "subsection effect\n set mechanism = m\n set source = s\n set range = 0, 1\n"
-         " set null value = -1\n set scale = 3\n set sing = both\nend\nset process = ${amplitude}\n");
+  effect(
+      "range, scale and null value",
+      "subsection effect\n set mechanism = m\n set source = s\n set range = 0, 1\n"
+      " set null value = -1\n set scale = 3\n set sing = both\nend\nset process = ${amplitude}\n");
   effect("range, scale and null value",
          "subsection effect\n set mechanism = m\n set source = s\n set range = 0, 1\n"
          " set null value = -1\n set scale = 3\nend\nset process = ${amplitude}\n");
   Problems problems;
-  const std::vector<Effect> all = read_catalogue(
-      folder + "/effects", problems,
-      [](const std::string &path) { return read_file(path, MPI_COMM_WORLD); });
+  const std::vector<Effect> all =
+      read_catalogue(folder + "/effects", problems,
+                     [](const std::string &path) { return read_file(path, MPI_COMM_WORLD); });
   check("three effects", all.size() == 3 && problems.empty());
   select(all, {"all"}, {"bonce"}, "study.prm", problems);
   select(all, {"humidity"}, {}, "study.prm", problems);

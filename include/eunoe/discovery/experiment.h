@@ -16,8 +16,7 @@ class Experiment
 {
 public:
   /// What is wrong with the case goes to @p problems; collective.
-  Experiment(const ExperimentParameters &parameters, const std::string &case_file, MPI_Comm comm,
-             Problems &problems);
+  Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems);
 
   const std::string &name() const { return parameters.name; }
   bool is_held_out() const { return parameters.held_out; }
@@ -39,7 +38,7 @@ public:
 
 private:
   ExperimentParameters parameters;
-  std::string file, process;
+  std::string process;
   std::vector<ObservableDescription> described;
   std::map<std::string, std::string> texts; ///< of the case file and those that it includes
   EntryValues base;                         ///< all entries of the base case

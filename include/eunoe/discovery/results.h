@@ -26,7 +26,7 @@ std::string page_command(const std::string &folder);
 /// What a study would cost, for `--check`; writes it to the log. Collective.
 void print_check(const StudyInput &study, MPI_Comm comm, Log &log);
 
-/// Verdict, effects and files in sentences.
+/// Named effects and the place of the answer.
 void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log);
 
 } // namespace eunoe::discovery

@@ -21,7 +21,8 @@ public:
   bool open(const std::map<std::string, std::string> &identity);
 
   std::optional<nlohmann::ordered_json> load(const std::string &stage) override;
-  /// Also writes every list of the table that looks like one as "<stage>_<list>.csv".
+  /// Also writes every list in the member "table" that looks like a table as
+  /// "<stage>_<list>.csv".
   void save(const std::string &stage, const nlohmann::ordered_json &table) override;
 
   /// Writes a file on the first rank. Throws a UserError on every rank; collective.

@@ -39,7 +39,9 @@ struct TwinParameters
 class StudyParameters
 {
 public:
-  /// Reads a study file, then the overrides; all that is wrong goes to @p problems.
+  /// Reads a study file, then the overrides; all that is wrong goes to @p problems. Files that it
+  /// names are meant relative to the file in which their entry stands, those of overrides relative
+  /// to the folder in which the program was started.
   /// @param with_twin whether `subsection twin` may be there
   static StudyParameters read(const std::string &text, const std::string &file,
                               const std::vector<std::string> &overrides, bool with_twin,
@@ -47,9 +49,6 @@ public:
 
   /// A complete, documented study file with the same content.
   const std::string &as_input_file() const { return complete_input; }
-
-  /// Place of a file that an entry names: relative to the study file.
-  std::string path_of(const std::string &name) const;
 
   /// Where the results go.
   std::string output_file(const std::string &name) const { return output_path + "/" + name; }
@@ -68,7 +67,7 @@ private:
   void declare(dealii::ParameterHandler &prm, bool with_twin);
   void check(const ParameterCheck &check) const;
 
-  std::string folder, complete_input;
+  std::string complete_input;
 };
 
 } // namespace eunoe::discovery

@@ -2,7 +2,6 @@
 #define eunoe_discovery_statistics_covariance_h
 
 #include <Eigen/Dense>
-
 #include <vector>
 
 namespace eunoe::discovery {

@@ -4,7 +4,6 @@
 #include <eunoe/discovery/cell.h>
 
 #include <Eigen/Dense>
-
 #include <vector>
 
 namespace eunoe::discovery {

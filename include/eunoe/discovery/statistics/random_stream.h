@@ -2,7 +2,6 @@
 #define eunoe_discovery_statistics_random_stream_h
 
 #include <Eigen/Dense>
-
 #include <array>
 #include <cstdint>
 
