@@ -14,12 +14,15 @@ from . import style
 from .discovery_results import Fingerprint, Study
 
 COLUMNS = 3  # of panels
+LEGEND = 0.3  # height of the legend above them (inch)
 MOST_EFFECTS = 12  # in the picture of the ranking
 
 
 def _panels(n: int, height: float) -> tuple[Figure, list[Axes]]:
     rows = ceil(n / COLUMNS)
-    figure = Figure(figsize=(style.WIDTH, 0.45 + height * rows), layout="constrained")
+    total = LEGEND + height * rows
+    figure = Figure(figsize=(style.WIDTH, total), layout="constrained")
+    figure.get_layout_engine().set(rect=(0., 0., 1., 1. - LEGEND / total))
     axes = figure.subplots(rows, COLUMNS, squeeze=False).ravel()
     for unused in axes[n:]:
         unused.set_axis_off()
@@ -75,7 +78,7 @@ def envelope_figure(study: Study, held_out: bool) -> Figure:
                                  linewidth=0.8, label="measured, flagged"))
     if any("after" in row for rows in groups.values() for row in rows):
         handles.append(Patch(color=style.GREEN, alpha=0.4, label="with what was added"))
-    figure.legend(handles=handles, loc="outside upper center", ncol=len(handles))
+    figure.legend(handles=handles, loc="upper center", ncol=len(handles))
     return figure
 
 
