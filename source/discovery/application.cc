@@ -178,7 +178,7 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
       read_data(study, comm, problems);
     refuse_if_any(problems);
     if (line.check) {
-      print_check(study, comm, log);
+      print_check(study, log);
       return exit_success;
     }
   } catch (const UserError &error) {

@@ -149,7 +149,7 @@ RunRecord DemLaboratory::simulate(const Case &one)
     Parameters parameters = one.experiment->make(one.overrides, problems);
     Simulation simulation(parameters, queue.group(), silent);
     simulation.run([this](Simulation &s) { look(s.step_number()); });
-    record.measurements = parameters.process()->measurements();
+    record.measurements = simulation.measurements();
     if (record.measurements.empty())
       record.failure = "The run ended before anything was measured. Check 'time end'.";
   } catch (const UserError &error) {

@@ -1,5 +1,6 @@
 #include <eunoe/core/files.h>
 #include <eunoe/discovery/experiment.h>
+#include <eunoe/simulation/simulation.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -18,16 +19,28 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     return;
   }
   const std::size_t n_before = problems.all().size();
-  const Parameters read = Parameters::read(
+  Parameters read = Parameters::read(
       texts[file], file, parameters.overrides, problems,
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
   base = values_in(read.as_input_file());
   process = read.process_name;
-  if (const Process *const chosen = read.process())
-    described = chosen->observables();
-  if (problems.all().size() == n_before && described.empty())
-    problems.add(file + ": entry 'process'", "is '" + process + "', which measures nothing.",
-                 "Give a case with a process that eunoe-discovery --list-observables names.");
+  if (problems.all().size() != n_before)
+    return;
+  try {
+    // Building the parts finds what reading alone cannot.
+    Log silent(comm, true);
+    Simulation simulation(read, comm, silent);
+    simulation.make_observables();
+    described = simulation.described_observables();
+    cost = simulation.estimate();
+  } catch (const UserError &error) {
+    problems.add(file + ":", error.what(), "");
+    return;
+  }
+  if (described.empty())
+    problems.add(file + ": entry 'process'", "is '" + process + "', and nothing is measured.",
+                 "Give a process that eunoe-discovery --list-observables names, or switch on an "
+                 "observable that measures.");
 }
 
 std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factors,

@@ -1,7 +1,6 @@
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/results.h>
-#include <eunoe/simulation/simulation.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -138,12 +137,11 @@ void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &lo
   log.line("The answer is in " + folder.file("discovery.json"));
 }
 
-void print_check(const StudyInput &study, MPI_Comm comm, Log &log)
+void print_check(const StudyInput &study, Log &log)
 {
   const StudyOptions &options = study.parameters.options;
   const double n_effects = static_cast<double>(study.n_effects());
   const auto n_factors = static_cast<double>(study.factors.size());
-  Log silent(comm, true);
   double runs = 0., core_hours = 0.;
   log.line("The study is in order.");
   for (const Experiment &experiment : study.experiments) {
@@ -159,10 +157,7 @@ void print_check(const StudyInput &study, MPI_Comm comm, Log &log)
                                     : options.null_runs + 2. * options.screen_runs * n_factors +
                                           options.confirm_rounds * options.confirm_runs * leaders +
                                           options.fit_runs * options.max_effects;
-    Problems none;
-    Parameters parameters = experiment.make(experiment.overrides({}, {}), none);
-    const Simulation simulation(parameters, comm, silent);
-    const RunEstimate estimate = simulation.estimate();
+    const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
              (experiment.is_held_out() ? ", held out" : "") + "): " + std::to_string(n_cells) +

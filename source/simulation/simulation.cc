@@ -124,6 +124,11 @@ void Simulation::open_output()
     resume_output();
   particle_pictures = output.pictures(parameters.control.output_name);
   solid_pictures = output.pictures(parameters.control.output_name + "_solids");
+  make_observables();
+}
+
+void Simulation::make_observables()
+{
   for (const std::string &name : eunoe::observables().list())
     if (auto observable = eunoe::observables().make(name, parameters.observables, *this))
       observable_list.push_back(std::move(observable));
@@ -140,6 +145,8 @@ int Simulation::find_solid(const std::string &name) const
 
 bool Simulation::run(const std::function<void(Simulation &)> &look)
 {
+  if (!output.is_open() && observable_list.empty())
+    make_observables();
   print_overview();
   if (parameters.restart.checkpoint)
     stop_request::listen();

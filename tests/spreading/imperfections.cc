@@ -138,9 +138,9 @@ void examine_run()
   const double stroke = layer_thickness * (1. + plate_error);
   check_close("stroke of the plate", seen.final_plate, -stroke, 1e-12);
   check_relative("recoil of the plate", seen.lowest_plate, -stroke - recoil, 1e-4);
-  // The bed for the first pass is one stroke and the margin deep, whatever the error.
+  // The bed of the second pass is one stroke and the margin deep, whatever the error.
   check_relative("stroke of the platform", seen.highest_platform,
-                 -0.45e-3 + first_stroke * (1. + feed_error), 1e-9);
+                 -(later_stroke + margin) + later_stroke * (1. + feed_error), 1e-9);
   check_relative("spreader at its lowest", seen.lowest_spreader, clearance + 10e-6 - 5e-6, 1e-4);
   check_relative("spreader at its highest", seen.highest_spreader, clearance + 10e-6 + 5e-6, 1e-4);
   check("powder stays between the side walls", seen.deepest_in_wall < 0.1);

@@ -142,7 +142,7 @@ def cosine_figure(study: Study) -> Figure:
     matrix = np.array([[np.nan if value is None else value for value in row]
                        for row in similarity["cosines"]], dtype=float)
     size = 1.9 + 0.24 * len(names)
-    figure = Figure(figsize=(min(style.WIDTH, size + 0.7), size), layout="constrained")
+    figure = Figure(figsize=(style.WIDTH, min(size, style.WIDTH)), layout="constrained")
     axes = figure.subplots()
     image = axes.imshow(matrix, cmap="RdBu_r", vmin=-1., vmax=1., interpolation="nearest")
     axes.set_xticks(range(len(names)), names, rotation=90)

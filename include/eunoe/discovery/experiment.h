@@ -20,8 +20,9 @@ public:
 
   const std::string &name() const { return parameters.name; }
   bool is_held_out() const { return parameters.held_out; }
-  /// Name of the process that is run, and what it measures.
+  /// Name of the process that is run, what is measured, and what the base case costs.
   const std::string &process_name() const { return process; }
+  const RunEstimate &estimate() const { return cost; }
   const std::vector<ObservableDescription> &observables() const { return described; }
 
   /// Overrides of the case file that put factors at amplitudes: the experiment's own, then
@@ -40,6 +41,7 @@ private:
   ExperimentParameters parameters;
   std::string process;
   std::vector<ObservableDescription> described;
+  RunEstimate cost;
   std::map<std::string, std::string> texts; ///< of the case file and those that it includes
   EntryValues base;                         ///< all entries of the base case
 };

@@ -23,8 +23,8 @@ std::string differences(const EntryValues &before, const EntryValues &after);
 /// Command that makes discovery.html of a folder; empty if the script is not there.
 std::string page_command(const std::string &folder);
 
-/// What a study would cost, for `--check`; writes it to the log. Collective.
-void print_check(const StudyInput &study, MPI_Comm comm, Log &log);
+/// What a study would cost, for `--check`; writes it to the log.
+void print_check(const StudyInput &study, Log &log);
 
 /// Named effects and the place of the answer.
 void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log);

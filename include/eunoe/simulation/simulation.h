@@ -31,6 +31,9 @@ public:
   /// run without it writes nothing.
   void open_output();
 
+  /// Makes the observables without any output, so that they can be asked what they measure.
+  void make_observables();
+
   /// Runs to the end and leaves all results in the output folder.
   /// @param look called before the first step and after every step, for tests and other programs
   /// @return false if the run was asked to stop earlier and has left a checkpoint
