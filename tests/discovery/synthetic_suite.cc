@@ -15,6 +15,7 @@ namespace {
 
 using namespace test;
 
+unsigned int n_nuisances = 2;
 const std::vector<std::string> fit = {"spreading", "heap"}, held_out = {"thick layers"};
 
 struct Case
@@ -114,6 +115,7 @@ Discovery study(const Case &which, std::uint32_t seed, const StudyOptions &base_
   nature.seed = seed;
   nature.strength_of_scale = 3. + 4. * random.uniform();
   nature.seed_correlation = 0.6 * random.uniform();
+  nature.n_nuisances = n_nuisances;
   SyntheticLaboratory laboratory(nature);
   std::vector<std::string> effects;
   for (const Factor &f : laboratory.factors())
@@ -182,6 +184,8 @@ int main(int argc, char **argv)
       options.confirm = false;
     else if (option == "chi-square")
       options.bootstrap = false;
+    else if (option == "no-nuisances")
+      n_nuisances = 0;
     else
       only = option;
   }

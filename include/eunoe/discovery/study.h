@@ -19,6 +19,7 @@ struct StudyOptions
 {
   double level = 0.05;           ///< probability of a false alarm that is accepted
   unsigned int null_runs = 30;   ///< sets of runs of the base model, at least 8
+  unsigned int nuisance_runs = 4; ///< sets on either side of each nuisance
   unsigned int screen_runs = 2;  ///< sets at each of an effect's two amplitudes
   unsigned int confirm_runs = 8; ///< further sets for each leader, in each round
   unsigned int confirm_rounds = 3;

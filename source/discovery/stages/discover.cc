@@ -11,22 +11,10 @@ namespace {
 std::string study_key(const StudyOptions &o, const MeasuredData &data,
                       const std::vector<Factor> &factors)
 {
-  Table all = {o.level,
-               o.null_runs,
-               o.screen_runs,
-               o.confirm_runs,
-               o.confirm_rounds,
-               o.n_leaders,
-               o.fit_runs,
-               o.validate_runs,
-               o.budget,
-               o.max_effects,
-               o.seed,
-               o.further_experiments,
-               o.model_tolerance,
-               o.common_random_numbers,
-               o.confirm,
-               o.bootstrap};
+  Table all = {o.level,         o.null_runs, o.nuisance_runs, o.screen_runs,   o.confirm_runs,
+               o.confirm_rounds, o.n_leaders, o.fit_runs,      o.validate_runs,
+               o.budget,        o.max_effects, o.seed,         o.further_experiments,
+               o.model_tolerance, o.common_random_numbers, o.confirm, o.bootstrap};
   for (const auto *cells : {&data.fit, &data.held_out})
     for (const MeasuredCell &cell : *cells)
       all.push_back({cell.cell.experiment, cell.cell.observable, cell.cell.index, cell.value,
@@ -63,7 +51,8 @@ public:
     const std::uint64_t before = bench.archive.n_requests();
     tables[name] = stage();
     tables[name]["runs"] = bench.archive.n_requests() - before;
-    store.save(name, {{"key", key}, {"table", tables[name]}, {"runs", bench.archive.take_new()}});
+    store.save(name,
+               {{"key", key}, {"table", tables[name]}, {"runs", bench.archive.take_new()}});
     bench.log.line("  " + name + ": " + std::to_string(bench.archive.n_requests() - before) +
                    " runs" + (usable ? ", found from an earlier start" : ""));
   }
@@ -130,9 +119,11 @@ Table gaps_on_fit(const Workbench &bench, const Findings &findings)
 {
   const auto of = [&](const Fit &fit) {
     const Response response = bench.response_of_columns(fit.effects);
-    const Eigen::VectorXd model = bench.measured(response.origin() + response.change(fit.position));
+    const Eigen::VectorXd model =
+        bench.measured(response.origin() + response.change(fit.position));
     return gap((bench.value - model).cwiseQuotient(bench.modes.deviations()),
-               bench.noise.cell_variance + bench.cell_chaos * response.leverage(fit.position));
+               bench.noise.cell_variance +
+                   bench.cell_chaos * response.leverage(fit.position));
   };
   const Gap before = of(fit_model(bench, {}));
   Table table = {{"cells", bench.cells.size()},
@@ -222,7 +213,8 @@ Discovery discover(const StudyOptions &options, const MeasuredData &data,
   discovery.content["measurements that would break the tie"] = separating;
   discovery.content["remainder"] = remainder;
   discovery.n_runs = bench.archive.n_requests();
-  const bool has_model = findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
+  const bool has_model =
+      findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
   if (has_model)
     discovery.model_after =
         bench.amplitudes(findings.chosen.fit.effects, findings.chosen.fit.position);

@@ -139,6 +139,12 @@ void settle_nuisances(Workbench &bench)
         mean_at(bench, has_up ? up : Amplitudes()) - mean_at(bench, has_down ? down : Amplitudes());
     bench.nuisance_cells.col(static_cast<Eigen::Index>(k)) =
         change.cwiseQuotient(bench.modes.deviations()) / (has_up && has_down ? 2. : 1.);
+    const auto variance = [&](const Amplitudes &amplitudes) {
+      return 1. / static_cast<double>(bench.runs.at(amplitudes).size());
+    };
+    bench.nuisance_noise += has_up && has_down
+                                ? 0.25 * (variance(up) + variance(down))
+                                : variance(has_up ? up : down) + variance({});
   }
 }
 
@@ -150,8 +156,14 @@ Table stage_null(Workbench &bench)
   std::vector<Workbench::Order> orders = {{{}, bench.options.null_runs}};
   for (const Factor &nuisance : bench.nuisances)
     for (const double side : {1., -1.})
+<<<<<<< HEAD
       orders.push_back({{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
                         std::max(2u, bench.options.screen_runs)});
+=======
+      orders.push_back(
+          {{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
+           bench.options.nuisance_runs});
+>>>>>>> stats
   bench.ask(orders);
   if (bench.base().size() < 8)
     throw UserError("Only " + std::to_string(bench.base().size()) + " of " +
@@ -161,7 +173,7 @@ Table stage_null(Workbench &bench)
   settle_cells(bench);
   settle_chaos(bench);
   settle_nuisances(bench);
-  bench.misfit = Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise));
+  bench.misfit = Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise, bench.chaos.matrix));
 
   Table table = {{"base runs", bench.base().size()},
                  {"cells", bench.cells.size()},

@@ -92,12 +92,13 @@ public:
     const DataNoise noise = estimate_data_noise(bench.modes, chaos.matrix, cell_chaos, repeats);
     const Eigen::VectorXd cells = data - base.colwise().mean().transpose();
     const double leverage = 1. / static_cast<double>(base.rows());
-    misfit = Misfit(chaos.matrix, bench.other_covariance(noise));
+    misfit = Misfit(chaos.matrix, bench.other_covariance(noise, chaos.matrix));
     misfit.tail = bench.misfit.tail;
     deviation = misfit.coordinates(bench.modes.basis() * cells);
     evidence = {};
     evidence.distance = misfit.distance(deviation, leverage);
-    Eigen::VectorXd variance = noise.cell_variance + leverage * cell_chaos;
+    Eigen::VectorXd variance =
+        noise.cell_variance + (leverage + bench.nuisance_noise) * cell_chaos;
     variance += bench.nuisance_cells.rowwise().squaredNorm() + bench.tolerance().cwiseAbs2();
     evidence.cell = (cells.array() / variance.array().sqrt()).abs().maxCoeff();
   }
@@ -128,6 +129,7 @@ private:
     const Eigen::VectorXd jitter =
         random.normals(1, bench.nuisance_cells.cols()).row(0).transpose();
     Eigen::VectorXd mean = bench.nuisance_cells * jitter;
+    mean += std::sqrt(bench.nuisance_noise) * runs(1, random).row(0).transpose();
     const Eigen::VectorXd tolerance = bench.tolerance() * std::sqrt(0.5);
     for (const Modes::Group &group : bench.modes.groups()) {
       const double common = random.normal();
@@ -169,7 +171,9 @@ double largest_gain(const Workbench &bench, const Misfit &misfit,
 Eigen::VectorXd cell_errors(const Workbench &bench)
 {
   Eigen::VectorXd variance =
-      bench.noise.cell_variance + bench.cell_chaos / static_cast<double>(bench.base().size());
+      bench.noise.cell_variance +
+      bench.cell_chaos *
+          (1. / static_cast<double>(bench.base().size()) + bench.nuisance_noise);
   variance += bench.nuisance_cells.rowwise().squaredNorm() + bench.tolerance().cwiseAbs2();
   return variance.cwiseSqrt();
 }

@@ -162,9 +162,10 @@ Eigen::VectorXd Workbench::tolerance() const
   return options.model_tolerance * value.cwiseAbs().cwiseQuotient(modes.deviations());
 }
 
-Eigen::MatrixXd Workbench::other_covariance(const DataNoise &data_noise) const
+Eigen::MatrixXd Workbench::other_covariance(const DataNoise &data_noise,
+                                            const Eigen::MatrixXd &run_chaos) const
 {
-  Eigen::MatrixXd result = data_noise.modes;
+  Eigen::MatrixXd result = data_noise.modes + nuisance_noise * run_chaos;
   const Eigen::MatrixXd changes = modes.basis() * nuisance_cells;
   result += changes * changes.transpose();
   if (options.model_tolerance > 0.) {

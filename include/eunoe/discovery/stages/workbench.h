@@ -57,6 +57,7 @@ struct Workbench
   Eigen::VectorXd cell_chaos; ///< variance of each cell, in squared units of modes.deviations()
   DataNoise noise;
   Eigen::MatrixXd nuisance_cells; ///< change by one prior deviation, cells x nuisances, scaled
+  double nuisance_noise = 0.; ///< variance of all nuisances' changes together, in units of chaos
   Misfit misfit;
 
   /// Runs by amplitudes.
@@ -79,8 +80,10 @@ struct Workbench
   /// Values of the cells that are measured and used.
   Eigen::VectorXd measured(const Eigen::VectorXd &all) const;
 
-  /// Covariance of the data's modes and of the nuisances together, E in Misfit.
-  Eigen::MatrixXd other_covariance(const DataNoise &data_noise) const;
+  /// Covariance of the data's modes and of the nuisances together, E in Misfit: what is known of
+  /// the nuisances' changes, and what is not as it comes from few runs.
+  Eigen::MatrixXd other_covariance(const DataNoise &data_noise,
+                                   const Eigen::MatrixXd &run_chaos) const;
   /// What each cell is forgiven, in units of its chaos.
   Eigen::VectorXd tolerance() const;
 
