@@ -10,6 +10,7 @@
 #include <eunoe/discovery/study.h>
 
 #include <Eigen/Dense>
+
 #include <cstring>
 #include <iostream>
 #include <map>
@@ -46,16 +47,12 @@ struct Nature
   double changed_chaos = 0.15;   ///< how much an effect at one scale makes chaos grow
   unsigned int n_nuisances = 2;
   double nuisance_strength = 1.; ///< of one prior deviation
-  std::vector<ObservableShape> observables = {{"spreading", "layer density", 6},
-                                              {"spreading", "removed mass", 6},
-                                              {"spreading", "profile", 20},
-                                              {"spreading", "force", 1},
-                                              {"heap", "angle", 1},
-                                              {"heap", "profile", 12},
-                                              {"heap", "mass", 1},
-                                              {"thick layers", "layer density", 6},
-                                              {"thick layers", "profile", 12},
-                                              {"shear", "stress", 4}};
+  std::vector<ObservableShape> observables = {
+      {"spreading", "layer density", 6}, {"spreading", "removed mass", 6},
+      {"spreading", "profile", 20},      {"spreading", "force", 1},
+      {"heap", "angle", 1},              {"heap", "profile", 12},
+      {"heap", "mass", 1},               {"thick layers", "layer density", 6},
+      {"thick layers", "profile", 12},   {"shear", "stress", 4}};
 };
 
 class SyntheticLaboratory : public Laboratory
@@ -270,7 +267,7 @@ private:
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j) {
         const Cell &a = list[static_cast<std::size_t>(i)], &b = list[static_cast<std::size_t>(j)];
-        correlation(i, j) = i == j                         ? 1.
+        correlation(i, j) = i == j                          ? 1.
                             : a.observable == b.observable ? std::pow(0.7, std::abs(i - j))
                                                            : 0.;
       }

@@ -4,11 +4,12 @@
 
 #include "synthetic.h"
 
+#include <mpi.h>
+
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <mpi.h>
+#include <cstdio>
 #include <set>
 
 namespace {
@@ -57,7 +58,8 @@ void score(const Discovery &d, const Amplitudes &truth, const Case &which, Tally
   const bool detected = d.verdict != Verdict::none && d.verdict != Verdict::underpowered;
   t.detected += detected;
   t.off += d.verdict == Verdict::off_catalogue;
-  const std::string result = c["gaps"]["held-out"].value("result", std::string());
+  const std::string result =
+      c["gaps"]["held-out"].value("result", std::string());
   t.withdrawn += result.find("withdrawn") != std::string::npos;
   if (!detected)
     return;
@@ -128,7 +130,8 @@ Discovery study(const Case &which, std::uint32_t seed, const StudyOptions &base_
   std::vector<Factor> factors = laboratory.factors();
   for (unsigned int k = 0; k < which.n_truths; ++k) {
     const Factor &f = laboratory.factor(effects[at]);
-    const double side = f.sign == Factor::Sign::both && random.uniform() < 0.5 ? -1. : 1.;
+    const double side =
+        f.sign == Factor::Sign::both && random.uniform() < 0.5 ? -1. : 1.;
     truth[f.name] = laboratory.amplitude_of(f.name, which.strength, fit, side);
     at = (at + 1 + random.index(effects.size() - 1)) % effects.size();
   }
@@ -151,16 +154,16 @@ void print(const Case &which, Tally &t)
 {
   std::sort(t.shrinks.begin(), t.shrinks.end());
   const double median = t.shrinks.empty() ? 0. : t.shrinks[t.shrinks.size() / 2];
-  std::printf(
-      "%-16s n %3.0f detected %.3f first %.3f | sets %.0f cover %.3f size %.2f extra %.2f | "
-      "off %.3f wrong %.3f withdrawn %.2f | confidence %.2f amplitude %.3f error %.2f | "
-      "shrink %.2f runs %.0f |",
-      which.name.c_str(), t.studies, t.detected / t.studies, t.first / std::max(1., t.detected),
-      t.sets, t.covered / std::max(1., t.sets), t.set_size / std::max(1., t.sets),
-      t.extra / std::max(1., t.sets), t.off / t.studies, t.wrong / t.studies,
-      t.withdrawn / t.studies, t.confidence / std::max(1., t.detected),
-      t.amplitude_covered / std::max(1., t.amplitudes), t.error / std::max(1., t.amplitudes),
-      median, t.runs / t.studies);
+  std::printf("%-16s n %3.0f detected %.3f first %.3f | sets %.0f cover %.3f size %.2f extra %.2f | "
+              "off %.3f wrong %.3f withdrawn %.2f | confidence %.2f amplitude %.3f error %.2f | "
+              "shrink %.2f runs %.0f |",
+              which.name.c_str(), t.studies, t.detected / t.studies,
+              t.first / std::max(1., t.detected), t.sets, t.covered / std::max(1., t.sets),
+              t.set_size / std::max(1., t.sets), t.extra / std::max(1., t.sets),
+              t.off / t.studies, t.wrong / t.studies, t.withdrawn / t.studies,
+              t.confidence / std::max(1., t.detected),
+              t.amplitude_covered / std::max(1., t.amplitudes),
+              t.error / std::max(1., t.amplitudes), median, t.runs / t.studies);
   for (const auto &[name, count] : t.verdicts)
     std::printf(" %s %d", name.c_str(), count);
   std::printf("\n");

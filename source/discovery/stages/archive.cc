@@ -32,8 +32,8 @@ std::vector<RunResult> Archive::get(const std::vector<RunRequest> &requests)
 
 std::uint64_t Archive::n_failed() const
 {
-  return static_cast<std::uint64_t>(std::count_if(results.begin(), results.end(),
-                                                  [](const auto &entry) { return !entry.second; }));
+  return static_cast<std::uint64_t>(std::count_if(
+      results.begin(), results.end(), [](const auto &entry) { return !entry.second; }));
 }
 
 std::uint64_t Archive::remaining() const

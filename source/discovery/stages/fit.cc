@@ -117,8 +117,8 @@ Table stage_iterate(Workbench &bench, Findings &findings)
   findings.chosen = find_scored(findings.posterior, findings.chosen.fit.effects);
   const double modes = findings.reference.n_modes;
   const auto size = static_cast<double>(findings.chosen.fit.effects.size());
-  findings.p_fit = findings.reference.p_distance(findings.chosen.fit.distance,
-                                                 std::max(1., modes - size) / modes);
+  findings.p_fit =
+      findings.reference.p_distance(findings.chosen.fit.distance, std::max(1., modes - size) / modes);
   return {{"rounds", rounds},
           {"p of the fit", findings.p_fit},
           {"models", describe_models(bench, findings.posterior.models)}};
@@ -130,7 +130,8 @@ Table describe_amplitudes(const Workbench &bench, const Findings &findings)
   const Fit &fit = findings.chosen.fit;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
     const Factor &effect = bench.effects[fit.effects[k]];
-    const Interval interval = profile_interval(bench, fit, k, findings.reference.direction_limit);
+    const Interval interval =
+        profile_interval(bench, fit, k, findings.reference.direction_limit);
     const auto amplitude = [&](double u) { return effect.null_value + u * effect.scale; };
     rows.push_back({{"effect", effect.name},
                     {"unit", effect.unit},
@@ -148,7 +149,8 @@ Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit)
 {
   const Eigen::MatrixXd changes =
       bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
-  return changes.transpose() * fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
+  return changes.transpose() *
+         fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
 }
 
 } // namespace eunoe::discovery

@@ -18,9 +18,9 @@ Eigen::VectorXd chaos_of_cells(const Workbench &bench, const std::vector<Measure
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(bench.base().size()), n);
   for (std::size_t r = 0; r < bench.base().size(); ++r)
     rows.row(static_cast<Eigen::Index>(r)) = bench.measured(bench.base()[r].values).transpose();
-  const Eigen::VectorXd deviation =
-      (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
-          .cwiseSqrt();
+  const Eigen::VectorXd deviation = (centred(rows).colwise().squaredNorm().transpose() /
+                                     static_cast<double>(rows.rows() - 1))
+                                        .cwiseSqrt();
   Eigen::VectorXd result = deviation;
   for (Eigen::Index c = 0; c < n; ++c) {
     std::vector<double> same;
@@ -96,18 +96,20 @@ void settle_chaos(Workbench &bench)
   for (Eigen::Index r = 0; r < runs; ++r) {
     const RunSet &run = bench.base()[static_cast<std::size_t>(r)];
     rows.row(r) = run.modes.transpose();
-    cells.row(r) = bench.measured(run.values).cwiseQuotient(bench.modes.deviations()).transpose();
+    cells.row(r) = bench.measured(run.values)
+                       .cwiseQuotient(bench.modes.deviations())
+                       .transpose();
   }
   bench.chaos = shrunk_covariance(centred(rows), static_cast<double>(runs - 1),
                                   bench.modes.experiment_of_mode());
   // Modes that hardly vary are no better known than the cells that they are made of.
   bench.chaos.matrix.diagonal() += Eigen::VectorXd::Constant(bench.modes.n_modes(), 1e-3);
-  bench.cell_chaos =
-      (centred(cells).colwise().squaredNorm().transpose() / static_cast<double>(runs - 1))
-          .cwiseMax(0.04);
-  bench.noise =
-      estimate_data_noise(bench.modes, bench.chaos.matrix, bench.cell_chaos,
-                          {bench.deviation.cwiseQuotient(bench.modes.deviations()), bench.repeats});
+  bench.cell_chaos = (centred(cells).colwise().squaredNorm().transpose() /
+                      static_cast<double>(runs - 1))
+                         .cwiseMax(0.04);
+  bench.noise = estimate_data_noise(
+      bench.modes, bench.chaos.matrix, bench.cell_chaos,
+      {bench.deviation.cwiseQuotient(bench.modes.deviations()), bench.repeats});
 }
 
 Eigen::VectorXd mean_at(const Workbench &bench, const Amplitudes &amplitudes)
@@ -123,8 +125,9 @@ Eigen::VectorXd mean_at(const Workbench &bench, const Amplitudes &amplitudes)
 /// one side fails, on one.
 void settle_nuisances(Workbench &bench)
 {
-  bench.nuisance_cells = Eigen::MatrixXd::Zero(bench.modes.n_cells(),
-                                               static_cast<Eigen::Index>(bench.nuisances.size()));
+  bench.nuisance_cells =
+      Eigen::MatrixXd::Zero(bench.modes.n_cells(),
+                            static_cast<Eigen::Index>(bench.nuisances.size()));
   for (std::size_t k = 0; k < bench.nuisances.size(); ++k) {
     const Factor &nuisance = bench.nuisances[k];
     const Amplitudes up = {{nuisance.name, nuisance.null_value + nuisance.prior_deviation}};
@@ -156,14 +159,9 @@ Table stage_null(Workbench &bench)
   std::vector<Workbench::Order> orders = {{{}, bench.options.null_runs}};
   for (const Factor &nuisance : bench.nuisances)
     for (const double side : {1., -1.})
-<<<<<<< HEAD
-      orders.push_back({{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
-                        std::max(2u, bench.options.screen_runs)});
-=======
       orders.push_back(
           {{{nuisance.name, nuisance.null_value + side * nuisance.prior_deviation}},
            bench.options.nuisance_runs});
->>>>>>> stats
   bench.ask(orders);
   if (bench.base().size() < 8)
     throw UserError("Only " + std::to_string(bench.base().size()) + " of " +

@@ -35,8 +35,8 @@ double score_off_catalogue(const Workbench &bench, const Decision &decision,
 {
   constexpr double share_of_fingerprints = 0.7;
   const Eigen::Index n = bench.misfit.size();
-  Eigen::MatrixXd directions =
-      Eigen::MatrixXd::Identity(n, n) * ((1. - share_of_fingerprints) / static_cast<double>(n));
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Identity(n, n) *
+                               ((1. - share_of_fingerprints) / static_cast<double>(n));
   for (const std::size_t k : simulated) {
     const Response response = bench.response({k});
     const Bounds range = bounds(bench, {k}, response);
@@ -44,22 +44,25 @@ double score_off_catalogue(const Workbench &bench, const Decision &decision,
         response.change(range.upper(0) > -range.lower(0) ? range.upper : range.lower);
     if (change.norm() > 0.)
       change.normalize();
-    directions +=
-        change * change.transpose() * share_of_fingerprints / static_cast<double>(simulated.size());
+    directions += change * change.transpose() * share_of_fingerprints /
+                  static_cast<double>(simulated.size());
   }
   const Fit base = fit_model(bench, {});
   const Eigen::VectorXd deviation = bench.misfit.variance(base.leverage).cwiseSqrt().cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(deviation.asDiagonal() * directions *
-                                                             deviation.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+      deviation.asDiagonal() * directions * deviation.asDiagonal());
   const Eigen::ArrayXd square =
-      (eigen.eigenvectors().transpose() * deviation.cwiseProduct(base.remainder)).array().square();
+      (eigen.eigenvectors().transpose() * deviation.cwiseProduct(base.remainder))
+          .array()
+          .square();
   const double determinant = bench.misfit.log_determinant(base.leverage);
 
   std::vector<double> deviances;
   for (double strength = 1.; strength < 130.; strength *= std::sqrt(2.)) {
-    const Eigen::ArrayXd variance = 1. + strength * strength * eigen.eigenvalues().array().max(0.);
-    deviances.push_back(
-        bench.misfit.deviance((square / variance).sum(), determinant + variance.log().sum()));
+    const Eigen::ArrayXd variance =
+        1. + strength * strength * eigen.eigenvalues().array().max(0.);
+    deviances.push_back(bench.misfit.deviance((square / variance).sum(),
+                                              determinant + variance.log().sum()));
   }
   const double least = *std::min_element(deviances.begin(), deviances.end());
   double mean = 0.;
@@ -87,7 +90,8 @@ void add_triples(const Workbench &bench, const Decision &decision,
         triples.insert(triple);
       }
   for (const EffectSet &triple : triples)
-    models.push_back(score(bench, decision, triple, static_cast<double>(simulated.size())));
+    models.push_back(
+        score(bench, decision, triple, static_cast<double>(simulated.size())));
 }
 
 } // namespace
@@ -115,7 +119,8 @@ Posterior compare_models(const Workbench &bench, const Decision &decision)
   if (bench.options.max_effects >= 2)
     for (std::size_t a = 0; a < simulated.size(); ++a)
       for (std::size_t b = a + 1; b < simulated.size(); ++b)
-        posterior.models.push_back(score(bench, decision, {simulated[a], simulated[b]}, n_effects));
+        posterior.models.push_back(
+            score(bench, decision, {simulated[a], simulated[b]}, n_effects));
   std::stable_sort(posterior.models.begin(), posterior.models.end(), better);
   if (bench.options.max_effects >= 3) {
     add_triples(bench, decision, simulated, posterior.models);

@@ -81,12 +81,12 @@ public:
   {
     const Eigen::MatrixXd base = runs(static_cast<Eigen::Index>(bench.base().size()), random);
     const Eigen::Index n = bench.modes.n_cells();
-    Covariance chaos =
-        shrunk_covariance(centred(base * bench.modes.basis().transpose()),
-                          static_cast<double>(base.rows() - 1), bench.modes.experiment_of_mode());
-    const Eigen::VectorXd cell_chaos =
-        (centred(base).colwise().squaredNorm().transpose() / static_cast<double>(base.rows() - 1))
-            .cwiseMax(1e-6);
+    Covariance chaos = shrunk_covariance(centred(base * bench.modes.basis().transpose()),
+                                         static_cast<double>(base.rows() - 1),
+                                         bench.modes.experiment_of_mode());
+    const Eigen::VectorXd cell_chaos = (centred(base).colwise().squaredNorm().transpose() /
+                                        static_cast<double>(base.rows() - 1))
+                                           .cwiseMax(1e-6);
     Repeats repeats{Eigen::VectorXd(n), bench.repeats};
     const Eigen::VectorXd data = measure(random, repeats);
     const DataNoise noise = estimate_data_noise(bench.modes, chaos.matrix, cell_chaos, repeats);
@@ -123,9 +123,10 @@ private:
   {
     const Eigen::Index n = bench.modes.n_cells();
     const Eigen::VectorXd &ratio = bench.noise.ratio;
-    Eigen::MatrixXd rows = runs(most_repeats, random) * ratio.cwiseMin(1.).cwiseSqrt().asDiagonal();
-    rows +=
-        random.normals(most_repeats, n) * (ratio.array() - 1.).max(0.).sqrt().matrix().asDiagonal();
+    Eigen::MatrixXd rows =
+        runs(most_repeats, random) * ratio.cwiseMin(1.).cwiseSqrt().asDiagonal();
+    rows += random.normals(most_repeats, n) *
+            (ratio.array() - 1.).max(0.).sqrt().matrix().asDiagonal();
     const Eigen::VectorXd jitter =
         random.normals(1, bench.nuisance_cells.cols()).row(0).transpose();
     Eigen::VectorXd mean = bench.nuisance_cells * jitter;
@@ -137,10 +138,10 @@ private:
         const auto number = static_cast<Eigen::Index>(bench.repeats(c));
         const Eigen::VectorXd column = rows.col(c).head(number);
         mean(c) += column.mean() + tolerance(c) * (common + random.normal());
-        repeats.deviation(c) = number > 1
-                                   ? std::sqrt((column.array() - column.mean()).square().sum() /
-                                               static_cast<double>(number - 1))
-                                   : bench.deviation(c) / bench.modes.deviations()(c);
+        repeats.deviation(c) =
+            number > 1 ? std::sqrt((column.array() - column.mean()).square().sum() /
+                                   static_cast<double>(number - 1))
+                       : bench.deviation(c) / bench.modes.deviations()(c);
       }
     }
     return mean;
@@ -161,7 +162,8 @@ double largest_gain(const Workbench &bench, const Misfit &misfit,
     const Eigen::VectorXd data = deviation + responses[k].origin();
     const Objective objective(misfit, responses[k], data);
     const double base = objective.at(Eigen::VectorXd::Zero(1)).deviance;
-    gain = std::max(gain, base - minimise(objective, bounds(bench, {k}, responses[k])).deviance);
+    gain =
+        std::max(gain, base - minimise(objective, bounds(bench, {k}, responses[k])).deviance);
   }
   return gain;
 }
@@ -206,8 +208,9 @@ Reference make_reference(const Workbench &bench, const std::vector<Response> &re
   reference.n_cells = static_cast<double>(bench.modes.n_cells());
   reference.n_effects = static_cast<double>(responses.size());
   if (reference.chi_square) {
-    reference.direction_limit = boost::math::quantile(
-        boost::math::complement(boost::math::chi_squared(1.), bench.options.level));
+    reference.direction_limit =
+        boost::math::quantile(boost::math::complement(boost::math::chi_squared(1.),
+                                                      bench.options.level));
     return reference;
   }
 
@@ -220,7 +223,8 @@ Reference make_reference(const Workbench &bench, const std::vector<Response> &re
     for (const Response &response : responses) {
       in_coordinates.push_back(response.transformed(draw.misfit.matrix()));
       const Bounds range = bounds(bench, {in_coordinates.size() - 1}, in_coordinates.back());
-      const Eigen::VectorXd end = range.upper(0) > -range.lower(0) ? range.upper : range.lower;
+      const Eigen::VectorXd end =
+          range.upper(0) > -range.lower(0) ? range.upper : range.lower;
       along.push_back(gain_along(draw.misfit, in_coordinates.back().change(end), draw.deviation,
                                  1. / static_cast<double>(bench.base().size())));
     }
@@ -230,8 +234,8 @@ Reference make_reference(const Workbench &bench, const std::vector<Response> &re
   reference.tail = fit_tail(reference.draws, reference.n_modes);
   if (!along.empty()) {
     std::sort(along.begin(), along.end());
-    const auto place =
-        static_cast<std::size_t>((1. - bench.options.level) * static_cast<double>(along.size()));
+    const auto place = static_cast<std::size_t>((1. - bench.options.level) *
+                                                static_cast<double>(along.size()));
     reference.direction_limit = along[std::min(place, along.size() - 1)];
   }
   return reference;
@@ -261,8 +265,8 @@ double Reference::p_gain(const double gain) const
 double Reference::gain_limit(const double probability) const
 {
   if (chi_square)
-    return boost::math::quantile(
-        boost::math::complement(boost::math::chi_squared(1.), probability / n_effects));
+    return boost::math::quantile(boost::math::complement(boost::math::chi_squared(1.),
+                                                         probability / n_effects));
   std::vector<double> gains;
   for (const Evidence &draw : draws)
     gains.push_back(draw.gain);

@@ -59,10 +59,11 @@ void make_fingerprints(Workbench &bench)
 /// noise explains taken off.
 double clearness(const Workbench &bench, const Response &response, const Eigen::VectorXd &position)
 {
-  const Eigen::VectorXd weight = bench.misfit.variance(response.origin_leverage()).cwiseInverse();
+  const Eigen::VectorXd weight =
+      bench.misfit.variance(response.origin_leverage()).cwiseInverse();
   const Eigen::VectorXd change = response.change(position);
-  const double square =
-      change.dot(weight.cwiseProduct(change)) - response.change_leverage(position) * weight.sum();
+  const double square = change.dot(weight.cwiseProduct(change)) -
+                        response.change_leverage(position) * weight.sum();
   return std::sqrt(std::max(0., square));
 }
 
@@ -139,8 +140,7 @@ Table cosines(const Workbench &bench)
       continue;
     const Response response = bench.response({k});
     const Bounds range = bounds(bench, {k}, response);
-    const Eigen::VectorXd end =
-        (range.upper(0) > -range.lower(0) ? range.upper : range.lower) / 1.5;
+    const Eigen::VectorXd end = (range.upper(0) > -range.lower(0) ? range.upper : range.lower) / 1.5;
     names.push_back(bench.effects[k].name);
     changes.push_back(response.change(end).cwiseQuotient(
         bench.misfit.variance(response.origin_leverage()).cwiseSqrt()));

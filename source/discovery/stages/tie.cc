@@ -30,9 +30,9 @@ double separation(const Rows &rows, const std::vector<Eigen::Index> &columns)
   }
   if (!base.allFinite())
     return 0.;
-  const Eigen::VectorXd deviation =
-      (centred(base).colwise().squaredNorm().transpose() / static_cast<double>(base.rows() - 1))
-          .cwiseSqrt();
+  const Eigen::VectorXd deviation = (centred(base).colwise().squaredNorm().transpose() /
+                                     static_cast<double>(base.rows() - 1))
+                                        .cwiseSqrt();
   const double floor = 0.2 * deviation.maxCoeff();
   if (floor <= 0.)
     return 0.;
@@ -48,7 +48,8 @@ double separation(const Rows &rows, const std::vector<Eigen::Index> &columns)
   for (std::size_t m = 1; m < rows.means.size(); ++m) {
     Eigen::VectorXd change(static_cast<Eigen::Index>(columns.size()));
     for (std::size_t c = 0; c < columns.size(); ++c)
-      change(static_cast<Eigen::Index>(c)) = rows.means[m](columns[c]) - rows.means[0](columns[c]);
+      change(static_cast<Eigen::Index>(c)) =
+          rows.means[m](columns[c]) - rows.means[0](columns[c]);
     if (!change.allFinite())
       return 0.;
     const Eigen::VectorXd z = modes.reduce(change);
@@ -106,8 +107,8 @@ Rows rows_of_experiment(Workbench &bench, const std::vector<Scored> &tie,
     requests.push_back({experiment, {}, seed + k});
   for (const Scored &member : tie)
     for (std::uint32_t k = 0; k < member_runs; ++k)
-      requests.push_back(
-          {experiment, bench.amplitudes(member.fit.effects, member.fit.position), seed + k});
+      requests.push_back({experiment,
+                          bench.amplitudes(member.fit.effects, member.fit.position), seed + k});
   Rows rows;
   if (requests.size() > bench.archive.remaining())
     return rows;

@@ -59,9 +59,9 @@ Eigen::MatrixXd run_rows(Workbench &bench, const std::vector<MeasuredCell> &cell
 HeldOut in_units_of_chaos(const std::vector<MeasuredCell> &cells, const Eigen::MatrixXd &before,
                           const Eigen::MatrixXd &after)
 {
-  const Eigen::VectorXd chaos =
-      (centred(before).colwise().squaredNorm().transpose() / static_cast<double>(before.rows() - 1))
-          .cwiseSqrt();
+  const Eigen::VectorXd chaos = (centred(before).colwise().squaredNorm().transpose() /
+                                 static_cast<double>(before.rows() - 1))
+                                    .cwiseSqrt();
   HeldOut result;
   std::vector<Eigen::Index> used;
   std::vector<double> scales;
@@ -70,13 +70,12 @@ HeldOut in_units_of_chaos(const std::vector<MeasuredCell> &cells, const Eigen::M
     double typical = 0., number = 0.;
     for (std::size_t d = 0; d < cells.size(); ++d)
       if (cells[d].cell.experiment == cells[c].cell.experiment &&
-          cells[d].cell.observable == cells[c].cell.observable)
-      {
+          cells[d].cell.observable == cells[c].cell.observable) {
         typical += chaos(static_cast<Eigen::Index>(d));
         number += 1.;
       }
-    const double scale =
-        std::max({chaos(k), 0.3 * typical / number, 0.3 * cells[c].standard_deviation});
+    const double scale = std::max(
+        {chaos(k), 0.3 * typical / number, 0.3 * cells[c].standard_deviation});
     if (scale <= 0.)
       continue;
     used.push_back(k);
@@ -106,8 +105,8 @@ HeldOut in_units_of_chaos(const std::vector<MeasuredCell> &cells, const Eigen::M
 /// Variance of each cell's deviation between data and the mean of some runs.
 Eigen::VectorXd noise_variance(const HeldOut &held_out, const Eigen::MatrixXd &runs)
 {
-  const Eigen::VectorXd chaos =
-      centred(runs).colwise().squaredNorm().transpose() / static_cast<double>(runs.rows() - 1);
+  const Eigen::VectorXd chaos = centred(runs).colwise().squaredNorm().transpose() /
+                                static_cast<double>(runs.rows() - 1);
   return held_out.deviation.cwiseAbs2().cwiseQuotient(held_out.repeats) +
          chaos / static_cast<double>(runs.rows());
 }
@@ -153,8 +152,7 @@ Progress progress(const HeldOut &held_out)
   const Eigen::VectorXd change = mean_of(held_out.after) - before;
   const Eigen::MatrixXd chaos = centred(held_out.before), chaos_after = centred(held_out.after);
   const auto m = static_cast<double>(chaos.rows()), n = static_cast<double>(chaos_after.rows());
-  const double noise =
-      chaos.squaredNorm() / (m - 1.) / m + chaos_after.squaredNorm() / (n - 1.) / n;
+  const double noise = chaos.squaredNorm() / (m - 1.) / m + chaos_after.squaredNorm() / (n - 1.) / n;
   const double square = change.squaredNorm() - noise;
   if (square <= 0.)
     return {};
@@ -256,9 +254,8 @@ Table stage_validate(Workbench &bench, Findings &findings)
   Table table = compare(bench, held_out);
   table["envelopes"] = describe_cells(held_out);
   if (after.rows() < 3) {
-    table["result"] = fit.effects.empty() ? "base model only"
-                                          : "runs of the model with the "
-                                            "effect failed";
+    table["result"] = fit.effects.empty() ? "base model only" : "runs of the model with the "
+                                                                "effect failed";
     return table;
   }
   // Between the models, with one standard error against the name: shrinks are rarely so unlucky.
@@ -267,7 +264,7 @@ Table stage_validate(Workbench &bench, Findings &findings)
   findings.withdrawn = informative && between.value < 0.5 - between.error;
   table["position between the models"] = informative ? Table(between.value) : Table(nullptr);
   table["standard error of the position"] = informative ? Table(between.error) : Table(nullptr);
-  table["result"] = !informative         ? "held-out data cannot tell the two models apart"
+  table["result"] = !informative          ? "held-out data cannot tell the two models apart"
                     : findings.withdrawn ? "the gap does not shrink: the name is withdrawn"
                                          : "the gap shrinks";
   return table;

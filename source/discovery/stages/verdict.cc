@@ -103,8 +103,9 @@ Table describe_remainder(const Workbench &bench, const Findings &findings)
                    [](const auto &a, const auto &b) { return a.first > b.first; });
   Table similar = Table::array();
   for (std::size_t k = 0; k < std::min<std::size_t>(3, family.size()); ++k)
-    similar.push_back(
-        {{"effect", family[k].second}, {"mechanism", ""}, {"cosine", family[k].first}});
+    similar.push_back({{"effect", family[k].second},
+                       {"mechanism", ""},
+                       {"cosine", family[k].first}});
   for (auto &row : similar)
     for (const Factor &effect : bench.effects)
       if (effect.name == row["effect"].get<std::string>())
@@ -126,13 +127,14 @@ Table describe_envelopes(const Workbench &bench, const Findings &findings)
       mean += set.values(bench.column_of_cell[static_cast<std::size_t>(c)]) /
               static_cast<double>(sets.size());
     for (const RunSet &set : sets)
-      square += std::pow(set.values(bench.column_of_cell[static_cast<std::size_t>(c)]) - mean, 2);
+      square +=
+          std::pow(set.values(bench.column_of_cell[static_cast<std::size_t>(c)]) - mean, 2);
     return std::pair<double, double>(
         mean, std::sqrt(square / std::max(1., static_cast<double>(sets.size()) - 1.)));
   };
   const auto found = bench.runs.find(near_amplitudes(bench, fit.effects, fit.position));
-  const bool has_runs =
-      !fit.effects.empty() && found != bench.runs.end() && found->second.size() > 2;
+  const bool has_runs = !fit.effects.empty() && found != bench.runs.end() &&
+                        found->second.size() > 2;
   Table rows = Table::array();
   for (std::size_t k = 0; k < bench.cells.size(); ++k) {
     const auto c = static_cast<Eigen::Index>(k);

@@ -28,9 +28,8 @@ void check_options(const StudyOptions &options)
 void check_cell(const MeasuredCell &cell, const std::vector<Cell> &known)
 {
   if (std::find(known.begin(), known.end(), cell.cell) == known.end())
-    throw UserError(
-        "The measured data have a value for " + describe(cell.cell) +
-        ", which its simulation does not give: see eunoe-discovery --list-observables.");
+    throw UserError("The measured data have a value for " + describe(cell.cell) +
+                    ", which its simulation does not give: see eunoe-discovery --list-observables.");
   if (!std::isfinite(cell.value) || !std::isfinite(cell.standard_deviation) ||
       cell.standard_deviation < 0. || cell.repeats == 0)
     throw UserError("The measured data for " + describe(cell.cell) +
@@ -242,8 +241,9 @@ double Workbench::estimate_correlation(const EffectSet &active) const
   return correlation > 3. * error ? std::min(correlation, 0.98) : 0.;
 }
 
-std::vector<Response::Run> Workbench::runs_of(
-    const EffectSet &set, const std::function<Eigen::VectorXd(const RunSet &)> &values) const
+std::vector<Response::Run>
+Workbench::runs_of(const EffectSet &set,
+                   const std::function<Eigen::VectorXd(const RunSet &)> &values) const
 {
   std::vector<Response::Run> result;
   Eigen::VectorXd base_mean;
@@ -251,8 +251,8 @@ std::vector<Response::Run> Workbench::runs_of(
   for (const RunSet &run : base()) {
     base_of_seed[run.seed] = values(run);
     base_mean = result.empty() ? base_of_seed[run.seed] : base_mean + base_of_seed[run.seed];
-    result.push_back(
-        {Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.size())), base_of_seed[run.seed], 1.});
+    result.push_back({Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.size())),
+                      base_of_seed[run.seed], 1.});
   }
   base_mean /= static_cast<double>(result.size());
 
@@ -266,7 +266,8 @@ std::vector<Response::Run> Workbench::runs_of(
       const auto found = amplitudes.find(effect.name);
       if (found == amplitudes.end())
         continue;
-      position(static_cast<Eigen::Index>(k)) = (found->second - effect.null_value) / effect.scale;
+      position(static_cast<Eigen::Index>(k)) =
+          (found->second - effect.null_value) / effect.scale;
       active.push_back(set[k]);
     }
     if (active.size() != amplitudes.size())

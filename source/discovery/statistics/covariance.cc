@@ -36,7 +36,8 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
   }
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j)
-      if (i != j && block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)]) {
+      if (i != j &&
+          block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)]) {
         squares += correlation(i, j) * correlation(i, j);
         products += std::pow(correlation(i, j) * dof, 2) / static_cast<double>(runs);
       }
@@ -49,7 +50,8 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
       if (i == j)
         result.matrix(i, i) = sigma(i) * sigma(i);
       else if (block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)])
-        result.matrix(i, j) = (1. - result.shrinkage) * correlation(i, j) * sigma(i) * sigma(j);
+        result.matrix(i, j) =
+            (1. - result.shrinkage) * correlation(i, j) * sigma(i) * sigma(j);
   // With correlations unshrunk and few runs the matrix could be singular.
   const double least = 0.02;
   if (result.shrinkage < least)

@@ -58,9 +58,10 @@ DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
   Eigen::VectorXd instrument(n), share = Eigen::VectorXd::Zero(modes.n_modes());
   for (std::size_t g = 0; g < witnesses.size(); ++g) {
     const Witness &w = witnesses[g];
-    const double ratio = w.declared ? std::max(1., w.ratio)
-                                    : (weight_of_mean * sum / weight + w.weight * w.ratio) /
-                                          (weight_of_mean + w.weight);
+    const double ratio =
+        w.declared ? std::max(1., w.ratio)
+                   : (weight_of_mean * sum / weight + w.weight * w.ratio) /
+                         (weight_of_mean + w.weight);
     double repeats_inverse = 0.;
     for (const Eigen::Index c : modes.groups()[g].cells) {
       noise.ratio(c) = ratio;

@@ -13,8 +13,9 @@ Misfit::Misfit(const Eigen::MatrixXd &chaos, const Eigen::MatrixXd &other)
   white = 0.5 * (white + white.transpose().eval());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(white);
   other_variance = eigen.eigenvalues().cwiseMax(0.);
-  transform = eigen.eigenvectors().transpose() *
-              lower.solve(Eigen::MatrixXd::Identity(chaos.rows(), chaos.cols())).eval();
+  transform =
+      eigen.eigenvectors().transpose() *
+      lower.solve(Eigen::MatrixXd::Identity(chaos.rows(), chaos.cols())).eval();
 }
 
 double Misfit::deviance(const double distance, const double log_determinant) const

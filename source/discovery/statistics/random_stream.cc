@@ -15,7 +15,8 @@ double RandomStream::uniform()
         key);
   }
   ++count;
-  const std::uint64_t bits = (std::uint64_t(block[2 * place]) << 32 | block[2 * place + 1]) >> 11;
+  const std::uint64_t bits =
+      (std::uint64_t(block[2 * place]) << 32 | block[2 * place + 1]) >> 11;
   return (static_cast<double>(bits) + 0.5) * 0x1p-53;
 }
 

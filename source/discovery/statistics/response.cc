@@ -15,7 +15,8 @@ int n_levels(const std::vector<Response::Run> &runs, const Eigen::Index effect)
   std::vector<double> all;
   for (const Response::Run &run : runs)
     all.push_back(run.position(effect));
-  std::sort(all.begin(), all.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  std::sort(all.begin(), all.end(),
+            [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (const double x : all)
     if (std::all_of(levels.begin(), levels.end(),
                     [&](double level) { return std::abs(x - level) > apart; }))
@@ -49,8 +50,7 @@ Response::Response(const std::vector<Run> &runs, const Eigen::Index n_effects)
     for (Eigen::Index l = 0; l < k; ++l)
       if (std::any_of(runs.begin(), runs.end(), [&](const Run &run) {
             return run.position(k) != 0. && run.position(l) != 0.;
-          }))
-      {
+          })) {
         terms.push_back(none);
         terms.back()[static_cast<std::size_t>(k)] = terms.back()[static_cast<std::size_t>(l)] = 1;
       }

@@ -59,7 +59,7 @@ Fit fit_model(const Workbench &bench, const EffectSet &set);
 /// within `allowed` of the best.
 struct Interval
 {
-  double lower, upper;         ///< in scales from the null value
+  double lower, upper;       ///< in scales from the null value
   bool open_below, open_above; ///< whether it ends where the search does
 };
 Interval profile_interval(const Workbench &bench, const Fit &fit, std::size_t member,

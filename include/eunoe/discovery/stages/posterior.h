@@ -18,10 +18,10 @@ struct Decision
   double cost_of_effect = 5.2;
   /// Deviances are divided by this before they become probabilities.
   double temperature = 1.;
-  double credible = 0.95;        ///< probability that a tie set covers
-  double off_catalogue = 0.5;    ///< least probability for this verdict
-  double p_of_bad_fit = 0.01;    ///< below: the best model does not describe the data
-  double least_inclusion = 0.02; ///< an effect less likely than this is not confirmed
+  double credible = 0.95;          ///< probability that a tie set covers
+  double off_catalogue = 0.5;      ///< least probability for this verdict
+  double p_of_bad_fit = 0.01;      ///< below: the best model does not describe the data
+  double least_inclusion = 0.02;   ///< an effect less likely than this is not confirmed
 };
 
 /// A set of effects and how likely it is.

@@ -25,7 +25,7 @@ struct Findings
 
   // confirm, fit, iterate
   Posterior posterior;
-  Scored chosen;     ///< the effects that go into the model, with no effect if nothing was detected
+  Scored chosen; ///< the effects that go into the model, with no effect if nothing was detected
   double p_fit = 1.; ///< whether the chosen model describes the data
 
   Verdict verdict = Verdict::none;

@@ -10,6 +10,7 @@
 #include <eunoe/discovery/study.h>
 
 #include <Eigen/Dense>
+
 #include <functional>
 #include <map>
 #include <string>
@@ -111,7 +112,7 @@ private:
   std::uint32_t first_seed(const Amplitudes &amplitudes);
 
   std::map<Amplitudes, std::uint32_t> seed_offsets;
-  std::map<Amplitudes, std::uint32_t> tried;        ///< seeds that were used so far
+  std::map<Amplitudes, std::uint32_t> tried; ///< seeds that were used so far
   mutable std::map<EffectSet, double> correlations; ///< that are known; renewed after each run
 };
 

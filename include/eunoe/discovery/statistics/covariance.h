@@ -2,6 +2,7 @@
 #define eunoe_discovery_statistics_covariance_h
 
 #include <Eigen/Dense>
+
 #include <vector>
 
 namespace eunoe::discovery {

@@ -4,6 +4,7 @@
 #include <eunoe/discovery/cell.h>
 
 #include <Eigen/Dense>
+
 #include <vector>
 
 namespace eunoe::discovery {

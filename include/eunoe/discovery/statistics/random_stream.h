@@ -2,6 +2,7 @@
 #define eunoe_discovery_statistics_random_stream_h
 
 #include <Eigen/Dense>
+
 #include <array>
 #include <cstdint>
 
