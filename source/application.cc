@@ -1,103 +1,36 @@
-#include <eunoe/application.h>
+#include <eunoe/core/command_line.h>
 #include <eunoe/core/files.h>
-#include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
-
-#include <boost/program_options.hpp>
-
-#include <iostream>
-#include <sstream>
 
 namespace eunoe {
 
 namespace {
 
-namespace po = boost::program_options;
-
-struct CommandLine
-{
-  std::string file;
-  std::vector<std::string> overrides;
-  std::string dump;
-  bool check = false, print_parameters = false, help = false, version = false, quiet = false;
-  std::string help_text, error;
-};
-
-CommandLine parse_command_line(int argc, char **argv)
-{
-  CommandLine line;
-  po::options_description visible("Options");
-  visible.add_options()("set", po::value<std::vector<std::string>>(&line.overrides),
-                        "\"subsection/entry = value\": override an entry of the input file; may be "
-                        "given several times")(
-      "check", po::bool_switch(&line.check),
-      "read and check the case, say what would run (particles, memory, steps, core-hours), run "
-      "nothing")(
-      "print-parameters", po::bool_switch(&line.print_parameters),
-      "print a complete input file with documentation and exit; with a case, its values")(
-      "dump", po::value<std::string>(&line.dump),
-      "at the end, write the complete state to this file, which is the same on any number of "
-      "ranks")("quiet", po::bool_switch(&line.quiet), "print nothing but errors")(
-      "version", po::bool_switch(&line.version),
-      "print the version and exit")("help", po::bool_switch(&line.help), "print this and exit");
-  po::options_description all;
-  all.add(visible).add_options()("input", po::value<std::string>(&line.file));
-  po::positional_options_description positional;
-  positional.add("input", 1);
-  std::ostringstream text;
-  text << "Usage: eunoe-particles [options] case.prm\n       mpirun -np 4 eunoe-particles "
-          "case.prm\n\n"
-          "Simulates powders by the discrete element method as the input file says.\n\n"
-       << visible;
-  line.help_text = text.str();
-  try {
-    po::variables_map map;
-    po::store(po::command_line_parser(argc, argv).options(all).positional(positional).run(), map);
-    po::notify(map);
-  } catch (const po::error &error) {
-    line.error = error.what();
-  }
-  return line;
-}
+const ProgramText program = {
+    "eunoe-particles", "case.prm",
+    "Simulates powders by the discrete element method as the input file says.",
+    "read and check the case, say what would run (particles, memory, steps, core-hours), run "
+    "nothing"};
 
 void print_check(const RunEstimate &estimate, const double time_step, Log &log)
 {
-  // Measured on a settled bed of 20,000 to 200,000 particles with the full model.
-  constexpr double bytes_per_particle = 1500., particle_steps_per_core_second = 7e6;
-  const double particle_steps = estimate.particles * estimate.steps;
-  const double core_seconds = particle_steps / particle_steps_per_core_second;
+  constexpr double bytes_per_particle = 1500.;
   log.line("The case is in order. It would run with");
   log.line("  particles:  " + format(estimate.most_particles) + " at most, " +
            format(estimate.particles) + " on average");
   log.line("  memory:     about " + format(estimate.most_particles * bytes_per_particle / 1e6) +
            " MB for the particles, and 200 MB a rank");
   log.line("  steps:      " + format(estimate.steps) + " of " + format(time_step) + " s");
-  log.line("  core-hours: about " + format(core_seconds / 3600.) + " (" + format(particle_steps) +
-           " particle-steps at 7 million a second and core)");
+  log.line("  core-hours: about " + format(estimate.core_seconds() / 3600.) + " (" +
+           format(estimate.particle_steps()) + " particle-steps at 7 million a second and core)");
 }
 
-int run(const CommandLine &line, MPI_Comm comm)
+int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
 {
+  if (const auto code = answer(line, program, !line.print_parameters, comm))
+    return *code;
   Log log(comm, line.quiet);
   Log errors(comm);
-  if (!line.error.empty() ||
-      (line.file.empty() && !line.help && !line.version && !line.print_parameters))
-  {
-    errors.error(line.error.empty() ? "An input file is missing."
-                                    : "Command line: " + line.error + ".");
-    errors.error("Try eunoe-particles --help.");
-    return exit_bad_input;
-  }
-  if (line.help) {
-    log.line(line.help_text);
-    return exit_success;
-  }
-  if (line.version) {
-    log.line("Eunoe " + std::string(version()) + " (revision " + git_revision() + ", deal.II " +
-             deal_ii_version() + ")");
-    return exit_success;
-  }
-
   Problems problems;
   Parameters parameters;
   std::unique_ptr<Simulation> simulation;
@@ -126,8 +59,8 @@ int run(const CommandLine &line, MPI_Comm comm)
     return exit_bad_input;
   }
   const bool complete = simulation->run();
-  if (!line.dump.empty())
-    simulation->dump(line.dump);
+  if (!dump.empty())
+    simulation->dump(dump);
   return complete ? exit_success : exit_stopped;
 }
 
@@ -135,18 +68,16 @@ int run(const CommandLine &line, MPI_Comm comm)
 
 int run_particles(int argc, char **argv, MPI_Comm comm)
 {
-  try {
-    return run(parse_command_line(argc, argv), comm);
-  } catch (const UserError &error) {
-    // Thrown on every rank alike, so all can leave in good order.
-    Log(comm).error(error.what());
-    return exit_failure;
-  } catch (const std::exception &error) {
-    // Only this rank knows, and the others wait for it.
-    std::cerr << "Internal error: " << error.what() << std::endl;
-    MPI_Abort(comm, exit_failure);
-    return exit_failure;
-  }
+  return guarded(comm, [&] {
+    std::string dump;
+    const CommandLine line = parse_command_line(
+        argc, argv, program,
+        {{"dump",
+          "at the end, write the complete state to this file, which is the same on any number of "
+          "ranks",
+          nullptr, &dump}});
+    return run(line, dump, comm);
+  });
 }
 
 } // namespace eunoe

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes doc/parameters.md: every entry of the input file with its default, its kind and its
-documentation, as the program itself states them.
+"""Writes doc/parameters.md, or doc/study_parameters.md: every entry of a program's input file with its
+default, its kind and its documentation, as the program itself states them.
 
-Usage: contrib/utilities/document_parameters.py path/to/eunoe-particles [--check]
+Usage: contrib/utilities/document_parameters.py path/to/eunoe-particles|eunoe-discovery [--check]
 
 Names, defaults and documentation come from --print-parameters. That does not tell what values an
 entry takes, so some of every kind are tried: the program names all that do not fit.
@@ -21,36 +21,55 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "doc" / "parameters.md"
 
-# One of each of the numbered subsections.
-COUNTS = {
-    "lagrangian physical properties/number of wall materials": "1",
-    "DEM boundary conditions/number of boundary conditions": "1",
-    "floating walls/number of floating walls": "1",
-    "solid objects/solid surfaces/number of solids": "1",
-}
-# Entries whose defaults the program refuses, as the user has to choose. Their defaults stand beside
-# these values in what it prints.
-CHOSEN = {
-    "lagrangian physical properties/wall material 0/surfaces": "floating wall",
-    "floating walls/wall 0/end time": "1",
-    "solid objects/solid surfaces/solid object 0/mesh/type": "shape",
-}
 
-HEAD = """# Parameters
+@dataclass(frozen=True)
+class Subject:
+    """A program whose input is documented."""
 
-All entries of the input file. [input.md](input.md) says how such a file is written. This page is
+    page: Path
+    head: str
+    counts: dict[str, str]  # one of each of the numbered subsections
+    # Entries whose defaults the program refuses, as the user has to choose. Their defaults stand beside
+    # these values in what it prints.
+    chosen: dict[str, str]
+    check: tuple[str, ...]  # arguments that have a file checked
+
+
+HEAD = """# {title}
+
+All entries of {what}. {link} says how such a file is written. This page is
 written by `contrib/utilities/document_parameters.py` from what the program says of itself: do not
 edit it. A complete input file with the same texts comes from
 
 ```sh
-eunoe-particles --print-parameters
+{program} --print-parameters
 ```
 
 Subsections that end in a number are repeated: the first entry of the section around them says how
 often, and they are numbered from 0. They are shown once, as number 0. Values are in SI units.
 """
+
+SUBJECTS = {
+    "eunoe-particles": Subject(
+        ROOT / "doc" / "parameters.md",
+        HEAD.format(title="Parameters", what="the input file", link="[input.md](input.md)",
+                    program="eunoe-particles"),
+        {"lagrangian physical properties/number of wall materials": "1",
+         "DEM boundary conditions/number of boundary conditions": "1",
+         "floating walls/number of floating walls": "1",
+         "solid objects/solid surfaces/number of solids": "1"},
+        {"lagrangian physical properties/wall material 0/surfaces": "floating wall",
+         "floating walls/wall 0/end time": "1",
+         "solid objects/solid surfaces/solid object 0/mesh/type": "shape"},
+        ("--check",)),
+    "eunoe-discovery": Subject(
+        ROOT / "doc" / "study_parameters.md",
+        HEAD.format(title="Parameters of a study", what="the study file of eunoe-discovery",
+                    link="[discovery.md](discovery.md)", program="eunoe-discovery"),
+        {"discovery/number of experiments": "1", "discovery/number of nuisances": "1"}, {},
+        ("--check", "--make-twin")),
+}
 
 
 @dataclass
@@ -70,9 +89,14 @@ def run(program: str, *arguments: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
+def subject_of(program: str) -> Subject:
+    return SUBJECTS[Path(program).name]
+
+
 def read_entries(program: str) -> list[Entry]:
+    subject = subject_of(program)
     overrides = []
-    for key, value in {**COUNTS, **CHOSEN}.items():
+    for key, value in {**subject.counts, **subject.chosen}.items():
         overrides += ["--set", f"{key} = {value}"]
     code, text = run(program, "--print-parameters", *overrides)
     if code != 0:
@@ -95,7 +119,7 @@ def read_entries(program: str) -> list[Entry]:
             value, *default = re.split(r"\s# default:", value)
             entry = Entry(tuple(path), " ".join(name.split()),
                           (default[0] if default else value).strip(), " ".join(comment).strip())
-            if entry.key in COUNTS:
+            if entry.key in subject.counts:
                 entry.default = "0"
             entries.append(entry)
         comment = []
@@ -106,7 +130,7 @@ def refused(program: str, trials: list[tuple[str, str]]) -> set[tuple[str, str]]
     """Those of the trials (entry, value) whose value the program says does not fit."""
     lines = []
     at: dict[int, tuple[str, str]] = {}
-    for key, value in [*COUNTS.items(), *trials]:
+    for key, value in [*subject_of(program).counts.items(), *trials]:
         *path, name = key.split("/")
         lines += [f"subsection {p}" for p in path]
         lines.append(f"set {name} = {value}")
@@ -115,7 +139,7 @@ def refused(program: str, trials: list[tuple[str, str]]) -> set[tuple[str, str]]
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "trials.prm"
         file.write_text("\n".join(lines) + "\n")
-        _, text = run(program, str(file), "--check")
+        _, text = run(program, *subject_of(program).check, str(file))
     return {at[int(line)] for line in
             re.findall(r"trials\.prm:(\d+): [^\n]*which does not fit", text)}
 
@@ -175,8 +199,8 @@ def cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def page(entries: list[Entry], kinds: dict[str, str]) -> str:
-    text = HEAD
+def page(head: str, entries: list[Entry], kinds: dict[str, str]) -> str:
+    text = head
     sections: dict[tuple[str, ...], list[Entry]] = {}
     for entry in entries:
         sections.setdefault(entry.path, []).append(entry)
@@ -192,17 +216,18 @@ def page(entries: list[Entry], kinds: dict[str, str]) -> str:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", 1)[0])
-    parser.add_argument("program", help="eunoe-particles")
+    parser.add_argument("program", help="eunoe-particles or eunoe-discovery")
     parser.add_argument("--check", action="store_true",
                         help="change nothing, and fail if the page is out of date")
     options = parser.parse_args()
     entries = read_entries(options.program)
-    text = page(entries, read_kinds(options.program, entries))
+    subject = subject_of(options.program)
+    text = page(subject.head, entries, read_kinds(options.program, entries))
     if not options.check:
-        PAGE.write_text(text, encoding="utf-8")
+        subject.page.write_text(text, encoding="utf-8")
         return 0
-    if not PAGE.exists() or PAGE.read_text(encoding="utf-8") != text:
-        print(f"{PAGE} is out of date: run {Path(__file__).name} with the program.")
+    if not subject.page.exists() or subject.page.read_text(encoding="utf-8") != text:
+        print(f"{subject.page} is out of date: run {Path(__file__).name} with the program.")
         return 1
     return 0
 

@@ -1,13 +1,12 @@
 #include <eunoe/core/expressions.h>
+#include <eunoe/core/silent_errors.h>
 
 #include <deal.II/base/function_parser.h>
 #include <deal.II/base/utilities.h>
 
 #include <cmath>
 #include <cstdlib>
-#include <iostream>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 namespace eunoe {
@@ -49,17 +48,16 @@ Expressions::Expressions(const std::string &text, const std::string &constants,
                                 (n == 1   ? "one expression"
                                  : n == 3 ? "three expressions"
                                           : std::to_string(n) + " expressions"));
-  // The parser writes of errors by itself; the sentence that is thrown here is enough.
-  std::ostringstream unwanted;
-  std::streambuf *const errors = std::cerr.rdbuf(unwanted.rdbuf());
   bool understood = true;
-  try {
-    parser->function.initialize("x,y,z,t", parts, values, true);
-    value(0, {}, 0.);
-  } catch (const std::exception &) {
-    understood = false;
+  {
+    const SilentErrors silence; // the sentence that is thrown here is enough
+    try {
+      parser->function.initialize("x,y,z,t", parts, values, true);
+      value(0, {}, 0.);
+    } catch (const std::exception &) {
+      understood = false;
+    }
   }
-  std::cerr.rdbuf(errors);
   if (!understood)
     throw std::invalid_argument("'" + text + "' is not understood");
 }

@@ -17,17 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Gives a string of the first rank to all others.
-void broadcast(std::string &text, MPI_Comm comm)
-{
-  unsigned long long size = text.size();
-  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, comm);
-  text.resize(size);
-  constexpr unsigned long long part = 1u << 30;
-  for (unsigned long long first = 0; first < size; first += part)
-    MPI_Bcast(&text[first], static_cast<int>(std::min(part, size - first)), MPI_CHAR, 0, comm);
-}
-
 bool is_first(MPI_Comm comm)
 {
   int rank;
@@ -36,6 +25,17 @@ bool is_first(MPI_Comm comm)
 }
 
 } // namespace
+
+std::string broadcast(std::string text, MPI_Comm comm)
+{
+  unsigned long long size = text.size();
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, comm);
+  text.resize(size);
+  constexpr unsigned long long part = 1u << 30;
+  for (unsigned long long first = 0; first < size; first += part)
+    MPI_Bcast(&text[first], static_cast<int>(std::min(part, size - first)), MPI_CHAR, 0, comm);
+  return text;
+}
 
 std::string read_file(const std::string &path, MPI_Comm comm)
 {
@@ -56,11 +56,10 @@ std::string read_file(const std::string &path, MPI_Comm comm)
         error = "reading failed";
     }
   }
-  broadcast(error, comm);
+  error = broadcast(error, comm);
   if (!error.empty())
     throw UserError(path + " cannot be read: " + error + ". Check the name and the permissions.");
-  broadcast(text, comm);
-  return text;
+  return broadcast(text, comm);
 }
 
 void write_file(const std::string &path, const std::string &text)
@@ -99,7 +98,7 @@ void create_folder(const std::string &path, MPI_Comm comm)
       error = std::strerror(errno);
     fs::remove(probe, failure);
   }
-  broadcast(error, comm);
+  error = broadcast(error, comm);
   if (!error.empty())
     throw UserError("The folder " + path + " cannot be written to: " + error +
                     ". Choose another 'output path' in 'simulation control', or mend the "

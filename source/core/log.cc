@@ -96,6 +96,18 @@ void Log::progress(const Progress &p)
   bar_shown = true;
 }
 
+void Log::status(const std::string &text)
+{
+  if (terminal) {
+    std::printf("\r\033[K%s", text.c_str());
+    std::fflush(stdout);
+    bar_shown = true;
+  } else if (active && MPI_Wtime() - last_status > 60.) {
+    last_status = MPI_Wtime();
+    line(text);
+  }
+}
+
 std::string format_duration(const double seconds)
 {
   char text[48];

@@ -1,4 +1,3 @@
-#include <eunoe/core/files.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
@@ -41,10 +40,7 @@ public:
         text += cell;
       }
     }
-    int rank;
-    MPI_Comm_rank(simulation.communicator(), &rank);
-    if (rank == 0)
-      write_file(simulation.output_file(name + ".csv"), text);
+    simulation.output_folder().write(name + ".csv", text);
   }
 
 private:

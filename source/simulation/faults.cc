@@ -56,12 +56,15 @@ std::vector<std::size_t> Simulation::inspect()
 
 void Simulation::stop_for(const std::string &first, const std::uint64_t number)
 {
-  const std::string file = output_file(parameters.restart.filename + "_fault.checkpoint");
-  std::string place = " The state is in " + file + ".";
-  try {
-    dump(file);
-  } catch (const UserError &error) {
-    place = std::string(" ") + error.what();
+  std::string place;
+  if (output.is_open()) {
+    const std::string file = output.file(parameters.restart.filename + "_fault.checkpoint");
+    place = " The state is in " + file + ".";
+    try {
+      dump(file);
+    } catch (const UserError &error) {
+      place = std::string(" ") + error.what();
+    }
   }
   throw UserError(
       "At t = " + format(present_time) + " s (step " + std::to_string(step) + "), " + first +

@@ -1,6 +1,5 @@
 // What a run has measured, as discovery asks for it.
 
-#include <eunoe/core/files.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <cstdio>
@@ -36,10 +35,8 @@ std::vector<ObservableDescription> Simulation::described_observables() const
 
 void Simulation::write_measurements()
 {
-  int rank;
-  MPI_Comm_rank(comm, &rank);
   const std::vector<Measurement> all = measurements();
-  if (rank != 0 || all.empty())
+  if (all.empty())
     return;
   std::map<std::string, std::string> units;
   for (const ObservableDescription &description : described_observables())
@@ -51,7 +48,7 @@ void Simulation::write_measurements()
     text += m.observable + "," + std::to_string(m.index) + "," + value + "," + units[m.observable] +
             "\n";
   }
-  write_file(output_file("measurements.csv"), text);
+  output.write("measurements.csv", text);
 }
 
 } // namespace eunoe

@@ -161,6 +161,8 @@ void PictureSeries::resume(const Files &earlier)
 void PictureSeries::write(const double time, const ParticleArrays &particles,
                           const std::vector<Process::Field> &fields)
 {
+  if (folder.empty())
+    return;
   const std::string path = folder + "/" + next_file(time);
   ParticlePatches patches(particles, fields);
   patches.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
@@ -177,7 +179,8 @@ void PictureSeries::write(const double time, const ParticleArrays &particles,
 
 void PictureSeries::write(const double time, const std::vector<Solid> &solids)
 {
-  if (std::none_of(solids.begin(), solids.end(), [](const Solid &s) { return s.output; }))
+  if (folder.empty() ||
+      std::none_of(solids.begin(), solids.end(), [](const Solid &s) { return s.output; }))
     return;
   const std::string path = folder + "/" + next_file(time);
   bool written = true;

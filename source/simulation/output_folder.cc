@@ -1,22 +1,37 @@
 #include <eunoe/checkpoint/head_values.h>
+#include <eunoe/core/files.h>
 #include <eunoe/simulation/output_folder.h>
 
 #include <nlohmann/json.hpp>
 
 namespace eunoe {
 
+void OutputFolder::open()
+{
+  create_folder(path, comm);
+  opened = true;
+}
+
+void OutputFolder::write(const std::string &name, const std::string &text) const
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  if (opened && rank == 0)
+    write_file(file(name), text);
+}
+
 std::shared_ptr<CsvFile> OutputFolder::table(const std::string &name,
                                              const std::vector<std::string> &columns)
 {
   const auto before = sizes_before.find(name);
-  tables[name] = std::make_shared<CsvFile>(file(name), columns, comm,
+  tables[name] = std::make_shared<CsvFile>(opened ? file(name) : "", columns, comm,
                                            before == sizes_before.end() ? 0 : before->second);
   return tables[name];
 }
 
 std::shared_ptr<PictureSeries> OutputFolder::pictures(const std::string &name)
 {
-  series[name] = std::make_shared<PictureSeries>(path, name, comm);
+  series[name] = std::make_shared<PictureSeries>(opened ? path : "", name, comm);
   const auto before = files_before.find(name);
   if (before != files_before.end())
     series[name]->resume(before->second);

@@ -1,6 +1,5 @@
 // What a run says of itself: the overview at its start, its progress, and summary.json.
 
-#include <eunoe/core/files.h>
 #include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -43,10 +42,7 @@ void Simulation::print_overview()
   log.line("Domain: " + std::to_string(domain.n_cells()) + " cells of at least " +
            format(1e6 * domain.smallest_cell_width()) + " um, " + std::to_string(solids.size()) +
            " solids and walls, " + std::to_string(domain.outlets().size()) + " outlets");
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  if (rank == 0)
-    write_file(output_file("used.prm"), parameters.as_input_file());
+  output.write("used.prm", parameters.as_input_file());
 }
 
 void Simulation::report_progress(const bool at_end)
@@ -81,8 +77,7 @@ void Simulation::report_progress(const bool at_end)
 
 void Simulation::write_summary()
 {
-  int rank, n_ranks;
-  MPI_Comm_rank(comm, &rank);
+  int n_ranks;
   MPI_Comm_size(comm, &n_ranks);
   nlohmann::ordered_json summary;
   summary["version"] = version();
@@ -161,8 +156,7 @@ void Simulation::write_summary()
       shares += (shares.empty() ? "" : ", ") + Timers::name(s) + " " +
                 percent(mean / std::max(known, loop_seconds));
   }
-  if (rank == 0)
-    write_file(output_file("summary.json"), summary.dump(2) + "\n");
+  output.write("summary.json", summary.dump(2) + "\n");
   log.line("Finished " + std::to_string(step) + " steps in " + format_duration(loop_seconds) +
            ": " + format(loop_seconds > 0. ? particle_steps / loop_seconds * 1e-6 : 0.) +
            " million particle-steps/s. Share of time: " + shares);

@@ -121,16 +121,21 @@ RunEstimate Simulation::estimate() const
 
 void Simulation::open_output()
 {
-  create_folder(parameters.control.output_path, comm);
+  output.open();
   int rank;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0)
     // One of an earlier run would make this one look finished.
-    remove_file(output_file("summary.json"));
+    remove_file(output.file("summary.json"));
   if (checkpoint)
     resume_output();
   particle_pictures = output.pictures(parameters.control.output_name);
   solid_pictures = output.pictures(parameters.control.output_name + "_solids");
+  make_observables();
+}
+
+void Simulation::make_observables()
+{
   for (const std::string &name : eunoe::observables().list())
     if (auto observable = eunoe::observables().make(name, parameters.observables, *this))
       observable_list.push_back(std::move(observable));
@@ -147,6 +152,8 @@ int Simulation::find_solid(const std::string &name) const
 
 bool Simulation::run(const std::function<void(Simulation &)> &look)
 {
+  if (!output.is_open() && observable_list.empty())
+    make_observables();
   print_overview();
   if (parameters.restart.checkpoint)
     stop_request::listen();
@@ -373,10 +380,9 @@ void Simulation::do_what_is_due()
           : control.output_frequency > 0 && step % control.output_frequency == 0;
   const bool in_window = present_time >= control.output_window[0] - half_step &&
                          present_time <= control.output_window[1] + half_step;
-  if (output_due) {
+  if (output_due)
     next_output += control.output_time;
-  }
-  if (output_due && in_window) {
+  if (output_due && in_window && output.is_open()) {
     write_pictures(*particle_pictures);
     const Timers::Scope scope(timers, Section::output);
     solid_pictures->write(present_time, solids);

@@ -10,7 +10,7 @@
 namespace eunoe {
 
 /// A table that grows row by row, written by the first rank of a communicator; every row is on
-/// disk when `write` returns.
+/// disk when `write` returns. Without a path it goes nowhere.
 class CsvFile
 {
 public:

@@ -7,6 +7,9 @@
 
 namespace eunoe {
 
+/// A text of the first rank, given to every rank; collective.
+std::string broadcast(std::string text, MPI_Comm comm);
+
 /// The whole text of a file, read once and given to every rank; collective.
 /// Throws a UserError on every rank if it cannot be read.
 std::string read_file(const std::string &path, MPI_Comm comm);

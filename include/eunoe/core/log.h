@@ -37,12 +37,16 @@ public:
   /// Renews the bar on a terminal, else writes a line.
   void progress(const Progress &progress);
 
+  /// Renews a line of text on a terminal; elsewhere writes one a minute.
+  void status(const std::string &text);
+
   bool is_terminal() const { return terminal; }
 
 private:
   void clear_bar();
 
   bool active, terminal, bar_shown = false;
+  double last_status = 0.;
 };
 
 /// "1 h 05 min", "2 min 03 s", "4.2 s".

@@ -7,6 +7,11 @@ namespace eunoe {
 const char *version();
 /// Revision from which it was built, "unknown" outside a git checkout.
 const char *git_revision();
+/// Folder of the sources from which it was built.
+const char *source_folder();
+/// Digest of all that decides what a simulation gives: the engine's sources and its compiler. Two
+/// programs with the same digest give the same bits.
+const char *engine_digest();
 /// Version of deal.II that it was built with.
 const char *deal_ii_version();
 

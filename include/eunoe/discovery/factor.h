@@ -32,6 +32,7 @@ struct Factor
   double prior_deviation = 0.; ///< a nuisance's standard deviation about its null value
   std::string mechanism, unit, source;
   std::vector<std::string> confounders; ///< names of effects that are likely to look alike
+  std::string parameter;                ///< what the amplitude is
 };
 
 } // namespace eunoe::discovery

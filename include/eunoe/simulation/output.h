@@ -11,7 +11,8 @@
 
 namespace eunoe {
 
-/// A series of .vtu files with their exact times in a .pvd file, for ParaView.
+/// A series of .vtu files with their exact times in a .pvd file, for ParaView. Without a folder it
+/// goes nowhere.
 class PictureSeries
 {
 public:

@@ -12,7 +12,8 @@
 namespace eunoe {
 
 /// The folder of the results and what grows in it, so that a run which continues another one finds
-/// its tables and series of pictures as they were at the checkpoint.
+/// its tables and series of pictures as they were at the checkpoint. Nothing is written before it
+/// is opened, so that a run inside another program leaves no trace.
 class OutputFolder
 {
 public:
@@ -20,7 +21,14 @@ public:
 
   const std::string path;
 
+  /// Creates the folder. Throws a UserError on every rank if that fails; collective.
+  void open();
+  bool is_open() const { return opened; }
+
   std::string file(const std::string &name) const { return path + "/" + name; }
+
+  /// Writes the file "name" at once, on the first rank. Throws a UserError there.
+  void write(const std::string &name, const std::string &text) const;
 
   /// A table "name", new or continued. Throws a UserError on every rank; collective.
   std::shared_ptr<CsvFile> table(const std::string &name, const std::vector<std::string> &columns);
@@ -35,6 +43,7 @@ public:
 
 private:
   MPI_Comm comm;
+  bool opened = false;
   std::map<std::string, std::shared_ptr<CsvFile>> tables;
   std::map<std::string, std::shared_ptr<PictureSeries>> series;
   std::map<std::string, std::uint64_t> sizes_before;

@@ -27,8 +27,12 @@ public:
   /// What the run will cost, as far as it can be known.
   RunEstimate estimate() const;
 
-  /// Creates the output folder and the tables of the observables. Throws like the constructor.
+  /// Creates the output folder and the tables of the observables. Throws like the constructor. A
+  /// run without it writes nothing.
   void open_output();
+
+  /// Makes the observables without any output, so that they can be asked what they measure.
+  void make_observables();
 
   /// Runs to the end and leaves all results in the output folder.
   /// @param look called before the first step and after every step, for tests and other programs
@@ -78,7 +82,6 @@ public:
   /// Writes the particles to a series of their own, beside the regular output.
   void write_pictures(PictureSeries &series);
   OutputFolder &output_folder() { return output; }
-  std::string output_file(const std::string &name) const { return output.file(name); }
   ///@}
 
 private:

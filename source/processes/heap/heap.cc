@@ -1,5 +1,4 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
-#include <eunoe/core/files.h>
 #include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/heap/heap.h>
 
@@ -90,11 +89,8 @@ RunEstimate Heap::estimate(const Parameters &parameters) const
 
 void Heap::start(Simulation &simulation)
 {
-  int rank;
-  MPI_Comm_rank(simulation.communicator(), &rank);
-  if (rank == 0)
-    write_file(simulation.output_file("apparatus.json"),
-               apparatus->as_json(simulation.get_parameters().physics.types[0].density));
+  simulation.output_folder().write(
+      "apparatus.json", apparatus->as_json(simulation.get_parameters().physics.types[0].density));
   fill(simulation);
 }
 

@@ -1,4 +1,3 @@
-#include <eunoe/core/files.h>
 #include <eunoe/processes/heap/measurement.h>
 
 #include <limits>
@@ -125,10 +124,7 @@ Findings measure(Simulation &simulation, const HeapParameters &parameters,
   found["heap_mass_clinging"] = clinging.mass.value();
   write_views(simulation, views, found);
   write_profile(simulation, views, parameters.measured_profile, found);
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  if (rank == 0)
-    write_file(simulation.output_file("heap_map.pgm"), views.map());
+  simulation.output_folder().write("heap_map.pgm", views.map());
   for (const ObservableDescription &single : single_numbers())
     findings.measured.push_back({single.name, 0, found.at("heap_" + single.name)});
   const std::vector<double> rings = views.rings(n_rings);

@@ -1,6 +1,5 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
-#include <eunoe/core/files.h>
 #include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/powder_spreading.h>
 
@@ -132,11 +131,8 @@ RunEstimate PowderSpreading::estimate(const Parameters &parameters) const
 void PowderSpreading::start(Simulation &simulation)
 {
   layers = std::make_unique<LayerLog>(simulation, p, *apparatus);
-  int rank;
-  MPI_Comm_rank(simulation.communicator(), &rank);
-  if (rank == 0)
-    write_file(simulation.output_file("apparatus.json"),
-               apparatus->as_json(simulation.get_parameters().physics.types[0].density));
+  simulation.output_folder().write(
+      "apparatus.json", apparatus->as_json(simulation.get_parameters().physics.types[0].density));
   insert_loose_bed(simulation);
 }
 

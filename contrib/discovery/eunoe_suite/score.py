@@ -1,0 +1,164 @@
+"""How well truths were found."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from dataclasses import dataclass, field
+from math import sqrt
+from pathlib import Path
+from statistics import median
+
+from .case import Case
+
+SOMETHING = ("named", "tie", "off catalogue")
+CONFIDENT = 0.8
+
+
+@dataclass
+class Outcome:
+    case: Case
+    verdict: str
+    named: set[str]  # effects that are named
+    first: str  # likeliest candidate
+    covering: list[set[str]]  # sets of effects among which the truth is said to be
+    confidence: dict[str, float]
+    amplitudes: dict[str, dict]
+    shrink: float | None
+    runs: int
+
+    @property
+    def truth(self) -> set[str]:
+        return set(self.case.strengths)
+
+    @property
+    def strength(self) -> float:
+        return max((abs(value) for value in self.case.strengths.values()), default=0.)
+
+    @property
+    def detected(self) -> bool:
+        return self.verdict in SOMETHING
+
+    @property
+    def covers(self) -> bool:
+        return any(members == self.truth for members in self.covering)
+
+    @property
+    def confidently_wrong(self) -> bool:
+        return self.verdict == "named" and self.named != self.truth
+
+
+def read(folder: Path, label: str) -> Outcome | None:
+    path = folder / label / "discovery.json"
+    if not path.exists() or not (folder / "case.json").exists():
+        return None
+    content = json.loads(path.read_text(encoding="utf-8"))
+    sealed = json.loads((folder / "sealed" / "truth.json").read_text(encoding="utf-8"))
+    case = Case.load(folder)
+    assert sealed["effects"] == case.amplitudes, f"{folder}: the sealed truth is another one"
+    candidates = content["candidates"]
+    rows = {row["effect"]: row for row in content["amplitudes"]}
+    named = set(rows) if content["verdict"] == "named" else set()
+    covering = [named] if named else [set(row["effects"].split(" + ")) for row in content["tie"]]
+    return Outcome(case, content["verdict"], named, candidates[0]["effect"] if candidates else "",
+                   covering, {row["effect"]: row["confidence"] for row in candidates}, rows,
+                   content["gaps"].get("held-out", {}).get("shrink"), content["runs"]["asked for"])
+
+
+def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
+    """95 % interval of a rate (Wilson 1927)."""
+    if number == 0:
+        return 0., 1.
+    share = hits / number
+    centre = share + z * z / (2. * number)
+    half = z * sqrt(share * (1. - share) / number + z * z / (4. * number * number))
+    below = 1. + z * z / number
+    return max(0., (centre - half) / below), min(1., (centre + half) / below)
+
+
+@dataclass
+class Rate:
+    name: str
+    hits: int
+    number: int
+    target: str = ""
+
+    def row(self) -> list[str]:
+        if self.number == 0:
+            return [self.name, "–", "–", "0", self.target]
+        low, high = wilson(self.hits, self.number)
+        return [self.name, f"{100. * self.hits / self.number:.1f} %",
+                f"{100. * low:.1f} to {100. * high:.1f} %", f"{self.hits} of {self.number}", self.target]
+
+
+def rate(name: str, outcomes: list[Outcome], hit, target: str = "") -> Rate:
+    return Rate(name, sum(1 for o in outcomes if hit(o)), len(outcomes), target)
+
+
+@dataclass
+class Scores:
+    rates: list[Rate]
+    numbers: dict[str, float]
+    confusion: dict[str, Counter] = field(default_factory=dict)
+    calibration: list[tuple[str, int, float, float]] = field(default_factory=list)
+
+
+def score(outcomes: list[Outcome]) -> Scores:
+    nothing = [o for o in outcomes if o.case.kind == "none"]
+    single = [o for o in outcomes if o.case.kind in ("single", "confounded")]
+    strong = [o for o in single if o.strength >= 4.]
+    two = [o for o in outcomes if o.case.kind == "two"]
+    deleted = [o for o in outcomes if o.case.kind == "deleted"]
+    answered = [o for o in single if o.verdict in ("named", "tie")]
+    right = [o for o in single + two if o.verdict == "named" and o.named == o.truth]
+    rates = [rate("false alarms", nothing, lambda o: o.detected, "upper limit at most 5 %")]
+    for strength in sorted({o.strength for o in single}):
+        rates.append(rate(f"detection at strength {strength:g}",
+                          [o for o in single if o.strength == strength], lambda o: o.detected))
+    rates += [
+        rate("detection at strength 4 and more", strong, lambda o: o.detected, "at least 95 %"),
+        rate("first name correct at strength 4 and more", strong, lambda o: o.first in o.truth,
+             "at least 90 %"),
+        rate("set covers the truth", answered, lambda o: o.covers, "at least 95 %"),
+        rate("two effects: both named", two, lambda o: o.named == o.truth),
+        rate("two effects: covered", [o for o in two if o.covering], lambda o: o.covers),
+        rate("deleted effect recognised as off the catalogue", deleted,
+             lambda o: o.verdict == "off catalogue", "at least 70 %"),
+        rate("confident and wrong", single + two + deleted, lambda o: o.confidently_wrong, "at most 3 %"),
+        rate("amplitude within its interval",
+             [o for o in right for _ in o.truth], _covers_amplitudes, "95 %")]
+    numbers = {}
+    sizes = [len(o.covering) for o in answered]
+    if sizes:
+        numbers["mean size of the set (target 1.4)"] = sum(sizes) / len(sizes)
+    shrinks = [o.shrink for o in single if o.verdict == "named" and o.shrink is not None]
+    if shrinks:
+        numbers["median shrink of the held-out gap (target 0.8)"] = median(shrinks)
+    errors = [abs(o.amplitudes[name]["amplitude"] / o.case.amplitudes[name] - 1.)
+              for o in right for name in o.truth if o.case.amplitudes[name] != 0.]
+    if errors:
+        numbers["median relative error of the amplitude"] = median(errors)
+    numbers["runs of a study, mean"] = sum(o.runs for o in outcomes) / max(1, len(outcomes))
+    confusion: dict[str, Counter] = {}
+    for o in single + nothing:
+        truth = ", ".join(sorted(o.truth)) or "nothing"
+        answer = o.first if o.verdict == "named" else o.verdict
+        confusion.setdefault(truth, Counter())[answer] += 1
+    return Scores(rates, numbers, confusion, calibration(single))
+
+
+def _covers_amplitudes(o: Outcome) -> bool:
+    return all(o.amplitudes[name]["lower"] <= o.case.amplitudes[name] <= o.amplitudes[name]["upper"]
+               for name in o.truth)
+
+
+def calibration(outcomes: list[Outcome]) -> list[tuple[str, int, float, float]]:
+    """Bin, number, mean stated confidence of the first name, and how often it was right."""
+    rows = []
+    for low, high in ((0., 0.5), (0.5, 0.7), (0.7, 0.9), (0.9, 1.0001)):
+        inside = [o for o in outcomes if o.detected and low <= o.confidence.get(o.first, 0.) < high]
+        if inside:
+            rows.append((f"{low:g} to {min(high, 1.):g}", len(inside),
+                         sum(o.confidence[o.first] for o in inside) / len(inside),
+                         sum(1 for o in inside if o.first in o.truth) / len(inside)))
+    return rows

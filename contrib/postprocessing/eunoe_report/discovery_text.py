@@ -1,0 +1,132 @@
+"""A study's answer in plain words."""
+
+from __future__ import annotations
+
+from .discovery_results import Study
+from .quantities import SPACE, number, percent
+
+TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
+          "tie": "Several effects explain the data alike",
+          "off catalogue": "Something is missing that is not in the catalogue",
+          "underpowered": "The data cannot tell"}
+
+
+def _amount(value: float, unit: str) -> str:
+    return number(value) + ("" if unit == "1" else SPACE + unit)
+
+
+def _probability(value: float) -> str:
+    return "less than 0.001" if value < 0.001 else number(value, 2)
+
+
+def plain(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def amplitude_text(row: dict) -> str:
+    lower = _amount(row["lower"], row["unit"]) if row.get("lower reached", True) else "its range's end"
+    upper = _amount(row["upper"], row["unit"]) if row.get("upper reached", True) else "its range's end"
+    return f"{_amount(row['amplitude'], row['unit'])} (95{SPACE}% interval {lower} to {upper})"
+
+
+def _where(study: Study) -> str:
+    places: dict[tuple[str, str], list[int]] = {}
+    for experiment, observable, index in sorted(study.flagged()):
+        places.setdefault((experiment, observable), []).append(index)
+    if not places:
+        return "No single cell stands out; it is their pattern that does."
+    parts = [f"{plain(observable)} of {experiment}"
+             + (f" (index {', '.join(map(str, indices))})" if len(indices) > 1 or indices[0] else "")
+             for (experiment, observable), indices in places.items()]
+    return "The cells that stand out by themselves: " + "; ".join(parts) + "."
+
+
+def _named(study: Study) -> list[str]:
+    sentences = []
+    for row in study.content["amplitudes"]:
+        effect = study.effects[row["effect"]]
+        sentences.append(f"What the model lacks is {plain(row['effect'])} ({effect['mechanism']}), "
+                         f"with a confidence of {percent(row['confidence'], 0)}. "
+                         f"{effect['parameter'].capitalize()}: {amplitude_text(row)}.")
+    return sentences
+
+
+def _tie(study: Study) -> list[str]:
+    members = ", ".join(f"{plain(row['effects'])} ({percent(row['probability'], 0)})"
+                        for row in study.content["tie"])
+    sentences = [f"Something is missing, and the data cannot say which of these it is: {members}."]
+    breakers = study.content.get("measurements that would break the tie", [])
+    further = [row for row in breakers if row["experiment"] != "the same"]
+    repeats = [row for row in breakers if row["experiment"] == "the same" and row.get("repeats")]
+    if further and further[0]["separation"] > 0.:
+        best = further[0]
+        sentences.append(f"Measure {plain(best['observable'])} of experiment {best['experiment']}: it "
+                         f"would set them {number(best['separation'], 2)} standard deviations of one "
+                         "measurement apart.")
+    elif repeats:
+        sentences.append(f"Some {number(repeats[0]['repeats'])} repeats of the same measurement would "
+                         "set them apart.")
+    return sentences
+
+
+def _off_catalogue(study: Study) -> list[str]:
+    remainder = study.content.get("remainder", {})
+    alike = [f"{plain(row['effect'])} (cosine {number(row['cosine'], 2)})"
+             for row in remainder.get("resembles", [])]
+    sentences = ["Model and measurement differ, and no effect of the catalogue, nor several together, "
+                 "explain how."]
+    if alike:
+        sentences.append("What is missing resembles " + ", ".join(alike) + ".")
+    if study.stage("validate").get("result", "").endswith("withdrawn"):
+        sentences.append("An effect had been named, but with it the gap on the held-out data did not "
+                         "shrink; the name is withdrawn.")
+    return sentences
+
+
+def verdict_text(study: Study) -> list[str]:
+    """Sentences that say what was found."""
+    p = study.content["p of nothing missing"]
+    chance = f"If nothing were missing, data as far off as these would be found with probability {_probability(p)}."
+    if study.verdict == "named":
+        return [*_named(study), chance, _where(study)]
+    if study.verdict == "tie":
+        return [*_tie(study), chance, _where(study)]
+    if study.verdict == "off catalogue":
+        return [*_off_catalogue(study), chance, _where(study)]
+    rows = study.stage("screen").get("effects", [])
+    seen = sum(1 for row in rows if row.get("detectable"))
+    if study.verdict == "none":
+        return ["The measured data agree with the base model within the scatter of both. " + chance,
+                f"Of {len(rows)} effects, {seen} would have been seen within their ranges; the table "
+                "of what could have been seen gives the bounds."]
+    return ["Nothing was found, but that says little: only "
+            f"{seen} of {len(rows)} effects would have been seen within their ranges. More repeats, or "
+            "more observables, would help.", chance]
+
+
+def held_out_text(study: Study) -> str:
+    table = study.content["gaps"].get("held-out", {})
+    if "shrink" not in table or table["shrink"] is None:
+        return f"Held-out data: {table.get('result', 'none')}."
+    low, high = table["shrink interval"]
+    return (f"On data that were held out, the gap shrinks by {percent(table['shrink'], 0)} "
+            f"(95{SPACE}% interval {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
+            f"{table['result']}.")
+
+
+def detectability_rows(study: Study) -> list[list[str]]:
+    """Effect, smallest amplitudes that would have been seen, and bounds of what can be there."""
+    rows = []
+    for row in study.stage("screen").get("effects", []):
+        unit = study.effects[row["effect"]]["unit"]
+
+        def ends(below: str, above: str) -> str:
+            texts = [_amount(row[key], unit) if row[key] is not None else "not in its range"
+                     for key in (below, above) if key in row]
+            return " / ".join(texts) or "–"
+
+        rows.append([plain(row["effect"]),
+                     ends("detectable below", "detectable above") if row["simulated"] else "not simulated",
+                     ends("lower bound", "upper bound"),
+                     _probability(row["p"]) if "p" in row else "–"])
+    return rows

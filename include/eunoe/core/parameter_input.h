@@ -1,0 +1,31 @@
+#ifndef eunoe_core_parameter_input_h
+#define eunoe_core_parameter_input_h
+
+#include <eunoe/core/input_file.h>
+
+namespace dealii {
+class ParameterHandler;
+}
+
+namespace eunoe {
+
+/// Subsections that are numbered, and the entry beside them that says how many there are.
+struct RepeatedSections
+{
+  std::vector<std::string> path; ///< of the subsection around them
+  std::string entry, prefix;     ///< "number of walls"; "wall" of "wall 0", "wall 1", ...
+  unsigned int largest, standard;
+
+  /// What the last of the entries says, or the standard.
+  unsigned int count(const std::vector<InputEntry> &entries) const;
+};
+
+/// Gives values to declared parameters. What is unknown or does not fit goes to @p problems, with a
+/// near name or with what would fit; every entry learns whether it says more than the default.
+/// @return a complete, documented input file with these values
+std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
+                        const std::vector<RepeatedSections> &repeated, Problems &problems);
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,73 @@
+#ifndef eunoe_discovery_dem_laboratory_h
+#define eunoe_discovery_dem_laboratory_h
+
+#include <eunoe/core/log.h>
+#include <eunoe/discovery/experiment.h>
+#include <eunoe/discovery/run_cache.h>
+#include <eunoe/discovery/work_queue.h>
+
+#include <nlohmann/json.hpp>
+
+namespace eunoe::discovery {
+
+/// The laboratory in which models are simulated: on groups of ranks, each run once and kept.
+class DemLaboratory : public Laboratory
+{
+public:
+  /// @param factors effects and nuisances that requests may name
+  /// @param cache_folder created if missing
+  DemLaboratory(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
+                const std::string &cache_folder, unsigned int ranks_per_run, MPI_Comm comm,
+                Log &log);
+
+  /// Runs the base model of every experiment once, to see which cells it gives. Throws a UserError
+  /// if one fails; collective. To be called before `cells`.
+  void explore(std::uint32_t seed);
+
+  /// From now on a run that lacks one of these cells counts as failed. A cell that is not named,
+  /// and that the base model gives, is NaN in a run that lacks it.
+  void require(const std::vector<Cell> &cells) { required = {cells.begin(), cells.end()}; }
+
+  const std::vector<Cell> &cells(const std::string &experiment) const override;
+  std::vector<RunResult> run(const std::vector<RunRequest> &requests) override;
+  std::uint64_t n_runs() const override { return made; }
+  std::uint64_t n_cached() const override { return cached; }
+
+  /// All runs that were asked for, in the order of first asking: experiment, amplitudes, seed, key
+  /// in the cache, what it cost, and why it failed, if it did.
+  const nlohmann::ordered_json &ledger() const { return runs; }
+
+private:
+  /// A request as it is run.
+  struct Case
+  {
+    const Experiment *experiment;
+    std::vector<std::string> overrides;
+    std::string key, problem; ///< problem: why it cannot be run
+  };
+
+  const Experiment &find(const std::string &name) const;
+  Case make_case(const RunRequest &request) const;
+  RunRecord simulate(const Case &one);
+  void look(unsigned long long step);
+  void simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases);
+  RunResult result(const RunRequest &request, const RunRecord &record) const;
+  void note(const RunRequest &request, const std::string &key, bool was_cached);
+
+  const std::vector<Experiment> &experiments;
+  const std::vector<Effect> &factors;
+  RunCache cache;
+  WorkQueue queue;
+  MPI_Comm comm;
+  Log &log;
+  std::map<std::string, std::vector<Cell>> known_cells;
+  std::set<Cell> required;
+  std::map<std::string, RunRecord> records; ///< by key
+  std::map<std::string, std::string> keys;  ///< by what was requested
+  std::uint64_t made = 0, cached = 0;
+  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
+};
+
+} // namespace eunoe::discovery
+
+#endif

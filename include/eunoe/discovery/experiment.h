@@ -1,0 +1,54 @@
+#ifndef eunoe_discovery_experiment_h
+#define eunoe_discovery_experiment_h
+
+#include <eunoe/discovery/catalogue.h>
+#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/study_parameters.h>
+#include <eunoe/simulation/parameters.h>
+
+#include <mpi.h>
+
+namespace eunoe::discovery {
+
+/// An experiment of a study: its base case, and the cases that come from it. All files are read
+/// when it is made, so that afterwards each rank can make cases on its own.
+class Experiment
+{
+public:
+  /// What is wrong with the case goes to @p problems; collective.
+  Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems);
+
+  const std::string &name() const { return parameters.name; }
+  bool is_held_out() const { return parameters.held_out; }
+  /// Name of the process that is run, what is measured, and what the base case costs.
+  const std::string &process_name() const { return process; }
+  const RunEstimate &estimate() const { return cost; }
+  const std::vector<ObservableDescription> &observables() const { return described; }
+
+  /// Overrides of the case file that put factors at amplitudes: the experiment's own, then
+  /// nuisances, then effects, each in the order of names. A factor at its null value, or one that
+  /// does not concern the process, leaves no trace. Throws a UserError if a patch does not fit.
+  std::vector<std::string> overrides(const std::vector<Effect> &factors,
+                                     const Amplitudes &amplitudes) const;
+
+  /// Overrides that turn all seeds and make a run silent, to be put behind those of the model.
+  std::vector<std::string> run_overrides(std::uint32_t seed) const;
+
+  /// The parameters of a case with these overrides.
+  Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
+
+private:
+  ExperimentParameters parameters;
+  std::string process;
+  std::vector<ObservableDescription> described;
+  RunEstimate cost;
+  std::map<std::string, std::string> texts; ///< of the case file and those that it includes
+  EntryValues base;                         ///< all entries of the base case
+};
+
+/// The factor that a nuisance of the study is.
+Effect make_nuisance(const NuisanceParameters &parameters);
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,55 @@
+#ifndef eunoe_discovery_run_cache_h
+#define eunoe_discovery_run_cache_h
+
+#include <eunoe/processes/process.h>
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <mpi.h>
+#include <set>
+
+namespace eunoe::discovery {
+
+/// What a simulation gave.
+struct RunRecord
+{
+  std::vector<Measurement> measurements;
+  std::string failure; ///< why it broke off; empty if it did not
+  double core_seconds = 0.;
+};
+
+nlohmann::ordered_json to_json(const RunRecord &record);
+/// Throws a nlohmann::json::exception if that is no record.
+RunRecord record_from(const nlohmann::ordered_json &json);
+
+/// A folder of finished simulations, one file each, by a key that stands for all that decides the
+/// result. Several studies may share it, also at the same time.
+class RunCache
+{
+public:
+  RunCache(const std::string &folder, MPI_Comm comm) : folder(folder), comm(comm) {}
+
+  /// Creates the folder. Throws a UserError on every rank if that fails; collective.
+  void open();
+
+  /// Those of the keys that are there, the same on every rank; collective. A file that is not
+  /// understood counts as missing.
+  std::map<std::string, RunRecord> load(const std::set<std::string> &keys) const;
+
+  /// Adds a simulation at once, complete or not at all. To be called by one rank; throws a
+  /// UserError there.
+  /// @param about what people want to know of the run
+  void store(const std::string &key, const RunRecord &record,
+             const nlohmann::ordered_json &about) const;
+
+private:
+  std::string file(const std::string &key) const;
+
+  std::string folder;
+  MPI_Comm comm;
+};
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,45 @@
+#ifndef eunoe_discovery_study_folder_h
+#define eunoe_discovery_study_folder_h
+
+#include <eunoe/discovery/study.h>
+
+#include <mpi.h>
+
+namespace eunoe::discovery {
+
+/// The folder of a study's results, which also keeps what its stages have found, so that a study
+/// that was killed goes on.
+class StudyFolder : public StageStore
+{
+public:
+  StudyFolder(const std::string &path, MPI_Comm comm) : path(path), comm(comm) {}
+
+  /// Creates the folder, or makes sure that it holds the same study. Throws a UserError on every
+  /// rank, which says what differs; collective.
+  /// @param identity what decides the study: what it is called, and a text that stands for it
+  /// @return whether the folder held the study before
+  bool open(const std::map<std::string, std::string> &identity);
+
+  std::optional<nlohmann::ordered_json> load(const std::string &stage) override;
+  /// Also writes every list in the member "table" that looks like a table as
+  /// "<stage>_<list>.csv".
+  void save(const std::string &stage, const nlohmann::ordered_json &table) override;
+
+  /// Writes a file on the first rank. Throws a UserError on every rank; collective.
+  void write(const std::string &name, const std::string &text) const;
+
+  /// Path of a file in the folder; one that is absolute stays.
+  std::string file(const std::string &name) const;
+
+private:
+  const std::string path;
+  MPI_Comm comm;
+};
+
+/// A list of objects as a table with commas; members that are no numbers, words or truth values
+/// are left out. Empty if it is no such list.
+std::string as_csv(const nlohmann::ordered_json &list);
+
+} // namespace eunoe::discovery
+
+#endif

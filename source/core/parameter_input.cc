@@ -1,0 +1,202 @@
+#include <eunoe/core/parameter_input.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <boost/property_tree/json_parser.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace eunoe {
+
+namespace {
+
+using Path = std::vector<std::string>;
+
+/// Names of the entries and subsections of one level, for suggestions.
+struct Level
+{
+  std::vector<std::string> entries, subsections;
+};
+
+/// What is declared, by subsections.
+boost::property_tree::ptree tree_of(const dealii::ParameterHandler &prm)
+{
+  std::ostringstream json;
+  prm.print_parameters(json, dealii::ParameterHandler::JSON);
+  std::istringstream stream(json.str());
+  boost::property_tree::ptree tree;
+  boost::property_tree::read_json(stream, tree);
+  return tree;
+}
+
+Level look_at(const boost::property_tree::ptree &tree, const Path &path)
+{
+  const boost::property_tree::ptree *node = &tree;
+  for (const std::string &name : path)
+    for (const auto &child : *node)
+      if (child.first == name) {
+        node = &child.second;
+        break;
+      }
+  Level level;
+  for (const auto &[name, child] : *node)
+    (child.count("value") + child.count("alias") > 0 ? level.entries : level.subsections)
+        .push_back(name);
+  return level;
+}
+
+std::string suggestion(const std::string &word, const std::vector<std::string> &candidates)
+{
+  const std::string near = nearest_name(word, candidates);
+  return near.empty() ? "" : "Did you mean '" + near + "'?";
+}
+
+/// In words, what a description of a pattern such as "[Integer range 0...10 (inclusive)]" asks for;
+/// empty for one that is unknown here.
+std::string in_words(const std::string &pattern)
+{
+  std::smatch part;
+  if (pattern == "[Bool]")
+    return "true or false";
+  if (std::regex_match(pattern, part, std::regex(R"(\[Selection (.*?) ?\])"))) {
+    const std::string words = std::regex_replace(part[1].str(), std::regex(R"(\|)"), "', '");
+    return (words.find("', '") == std::string::npos ? "'" : "one of '") + words + "'";
+  }
+  if (std::regex_match(pattern, part,
+                       std::regex(R"(\[List of <(.*)> of length (\d+)\.\.\.(\d+).*\])")))
+  {
+    const std::string items = in_words(part[1]);
+    if (items.empty())
+      return "";
+    const std::string number = part[2] == part[3] ? part[2].str() + " values" : "a list of values";
+    return number + ", each " + items;
+  }
+  if (std::regex_match(pattern, part, std::regex(R"(\[common or (\[.*\])\])")))
+    return in_words(part[1]) + ", or 'common'";
+  const std::regex range(
+      R"(\[(Double|Integer)(?: range)?(?: (\S+?)\.\.\.(\S+?) \(inclusive\))?\])");
+  if (std::regex_match(pattern, part, range)) {
+    std::string words = part[1] == "Double" ? "a number" : "a whole number";
+    const auto is_bound = [](const std::string &text) {
+      return !text.empty() && text.find("DOUBLE") == std::string::npos &&
+             std::abs(std::strtod(text.c_str(), nullptr)) < 2147483647.;
+    };
+    if (is_bound(part[2]))
+      words += " of at least " + part[2].str();
+    if (is_bound(part[3]))
+      words += (is_bound(part[2]) ? " and at most " : " of at most ") + part[3].str();
+    return words;
+  }
+  return "";
+}
+
+/// In words, what an entry wants whose value deal.II refused with @p message.
+std::string wanted_by(std::string message)
+{
+  // By hand: a regular expression recurses once for each blank, and the value may have many.
+  std::replace_if(
+      message.begin(), message.end(), [](unsigned char c) { return std::isspace(c) != 0; }, ' ');
+  message.erase(std::unique(message.begin(), message.end(),
+                            [](char a, char b) { return a == ' ' && b == ' '; }),
+                message.end());
+  const std::size_t begin = message.find('<', message.rfind("given pattern"));
+  const std::size_t end = message.find("]>.", begin);
+  if (begin == std::string::npos || end == std::string::npos)
+    return "";
+  return in_words(message.substr(begin + 1, end - begin));
+}
+
+std::string complete_text(const dealii::ParameterHandler &prm)
+{
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::Text);
+  return text.str();
+}
+
+} // namespace
+
+unsigned int RepeatedSections::count(const std::vector<InputEntry> &entries) const
+{
+  unsigned int number = standard;
+  for (const InputEntry &e : entries)
+    if (e.path == path && e.name == entry) {
+      char *end;
+      const long n = std::strtol(e.value.c_str(), &end, 10);
+      // What is no number is reported when it is set.
+      if (*end == '\0' && n >= 0 && n <= static_cast<long>(largest))
+        number = static_cast<unsigned int>(n);
+    }
+  return number;
+}
+
+std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
+                        const std::vector<RepeatedSections> &repeated, Problems &problems)
+{
+  std::set<Path> reported;
+  boost::property_tree::ptree tree; // made when the first name is unknown
+  const auto known_at = [&](const Path &path) {
+    if (tree.empty())
+      tree = tree_of(prm);
+    return look_at(tree, path);
+  };
+  const std::string default_input = complete_text(prm);
+  for (InputEntry &entry : entries) {
+    Path known;
+    bool exists = true;
+    for (const std::string &name : entry.path) {
+      Path next = known;
+      next.push_back(name);
+      if (!prm.subsection_path_exists(next)) {
+        exists = false;
+        if (!reported.insert(next).second)
+          break;
+        std::string mend = suggestion(name, known_at(known).subsections);
+        for (const RepeatedSections &r : repeated)
+          if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
+            mend = "Raise '" + r.entry + "', or remove the subsection.";
+        problems.add(entry.where + ": " + describe(next, ""), "is unknown.", mend);
+        break;
+      }
+      known = next;
+    }
+    if (!exists || entry.name.empty())
+      continue;
+    for (const std::string &name : entry.path)
+      prm.enter_subsection(name);
+    const std::string place = entry.where + ": " + describe(entry.path, entry.name);
+    bool declared = true;
+    try {
+      prm.set(entry.name, entry.value);
+    } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
+      declared = false;
+    } catch (const std::exception &error) {
+      const std::string wanted = wanted_by(error.what());
+      problems.add(place, "is '" + entry.value + "', which does not fit.",
+                   wanted.empty() ? "" : "Give " + wanted + ".");
+    }
+    for (std::size_t k = 0; k < entry.path.size(); ++k)
+      prm.leave_subsection();
+    if (!declared)
+      problems.add(place, "is unknown.", suggestion(entry.name, known_at(entry.path).entries));
+  }
+  const std::string complete = complete_text(prm);
+  const EntryValues before = values_in(default_input), after = values_in(complete);
+  for (InputEntry &entry : entries) {
+    const auto place = std::pair(entry.path, entry.name);
+    const auto value = after.find(place);
+    entry.is_default =
+        entry.name.empty() || (value != after.end() && value->second == before.at(place));
+    // Numbers of subsections are known before the defaults are printed.
+    for (const RepeatedSections &r : repeated)
+      if (entry.path == r.path && entry.name == r.entry)
+        entry.is_default = entry.value == std::to_string(r.standard);
+  }
+  return complete;
+}
+
+} // namespace eunoe

@@ -1,0 +1,219 @@
+#include <eunoe/core/command_line.h>
+#include <eunoe/core/files.h>
+#include <eunoe/core/stop_request.h>
+#include <eunoe/discovery/application.h>
+#include <eunoe/discovery/measured_csv.h>
+#include <eunoe/discovery/results.h>
+#include <eunoe/discovery/twin.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+
+namespace eunoe::discovery {
+
+namespace {
+
+const ProgramText program = {
+    "eunoe-discovery", "study.prm",
+    "Compares a model with measured data, and says whether an effect is missing and which one.",
+    "read and check the study, say what would run (experiments, effects, runs, core-hours), run "
+    "nothing"};
+
+struct Wishes
+{
+  bool list_observables = false, list_effects = false;
+  std::string twin;
+};
+
+void list_observables(Log &log)
+{
+  for (const std::string &name : process_kinds().list()) {
+    log.line("process '" + name + "':");
+    for (const ObservableDescription &o : process_kinds().make(name)->observables())
+      log.line("  " + o.name + " (" + o.unit + "), index: " + o.index_meaning + ". " + o.text);
+  }
+}
+
+std::string word_for(const Factor::Sign sign)
+{
+  return sign == Factor::Sign::above ? "above" : sign == Factor::Sign::below ? "below" : "both";
+}
+
+void list_effects(const std::vector<Effect> &effects, Log &log)
+{
+  for (const Effect &effect : effects) {
+    const Factor &f = effect.factor;
+    if (f.kind != Factor::Kind::effect)
+      continue;
+    const std::string others = boost::join(f.confounders, ", ");
+    log.line(f.name + ": " + f.mechanism + "\n  amplitude: " + f.parameter + " (" + f.unit +
+             "), null value " + format(f.null_value) + ", scale " + format(f.scale) + ", range " +
+             format(f.lower) + " to " + format(f.upper) + "; sign: " + word_for(f.sign) +
+             "; confounders: " + (others.empty() ? "none" : others) +
+             "; process: " + effect.process);
+  }
+}
+
+void refuse_if_any(const Problems &problems)
+{
+  if (!problems.empty())
+    throw UserError(problems);
+}
+
+/// The laboratory of a study, its base models run once and compared with the data's cells.
+std::unique_ptr<DemLaboratory> open_laboratory(const StudyInput &study, MPI_Comm comm, Log &log)
+{
+  const StudyParameters &p = study.parameters;
+  auto laboratory = std::make_unique<DemLaboratory>(
+      study.experiments, study.factors,
+      p.cache_path.empty() ? p.output_file("cache") : p.cache_path, p.ranks_per_run, comm, log);
+  // A seed that the stages use as well.
+  laboratory->explore(100000 * p.options.seed + 1);
+  std::map<std::string, std::vector<Cell>> cells;
+  for (const Experiment &experiment : study.experiments)
+    cells[experiment.name()] = laboratory->cells(experiment.name());
+  Problems problems;
+  check_cells(study.data, cells, p.measured_data, problems);
+  refuse_if_any(problems);
+  std::vector<Cell> required;
+  for (const auto *list : {&study.data.fit, &study.data.held_out})
+    for (const MeasuredCell &row : *list)
+      required.push_back(row.cell);
+  laboratory->require(required);
+  return laboratory;
+}
+
+/// Experiments that could be made but were not measured.
+std::vector<std::string> further_experiments(const StudyInput &study)
+{
+  std::vector<std::string> names;
+  for (const Experiment &experiment : study.experiments)
+    if (!experiment.is_held_out() &&
+        std::none_of(study.data.fit.begin(), study.data.fit.end(),
+                     [&](const MeasuredCell &m) { return m.cell.experiment == experiment.name(); }))
+      names.push_back(experiment.name());
+  return names;
+}
+
+void write_page(const StudyInput &study, MPI_Comm comm, Log &log)
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  if (rank != 0 || !study.parameters.write_page)
+    return;
+  const std::string command = page_command(study.parameters.output_path);
+  if (command.empty() || std::system(command.c_str()) != 0)
+    log.warning("discovery.html was not written. Run contrib/postprocessing/discovery_report.py " +
+                study.parameters.output_path + " where Python has Matplotlib.");
+}
+
+int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
+{
+  const StudyParameters &p = study.parameters;
+  StudyFolder folder(p.output_path, comm);
+  std::unique_ptr<DemLaboratory> laboratory;
+  try {
+    if (folder.open(study.identity()))
+      log.line("Going on with the study in " + p.output_path);
+    folder.write("used.prm", p.as_input_file());
+    stop_request::listen();
+    laboratory = open_laboratory(study, comm, log);
+    StudyOptions options = p.options;
+    options.further_experiments = further_experiments(study);
+    const Discovery discovery =
+        discover(options, study.data, study.plain_factors(), *laboratory, folder, log);
+    // Nuisances stay as they are: it is this model that was validated.
+    write_models(study, discovery.model_after, folder);
+    write_answer(study, discovery, *laboratory, folder);
+    write_page(study, comm, log);
+    print_answer(discovery, folder, log);
+    return exit_code(discovery.verdict);
+  } catch (const Interrupted &) {
+    log.line("Stopped as asked. Start the study again to go on.");
+    return exit_stopped;
+  }
+}
+
+int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
+{
+  const bool makes_twin = !wishes.twin.empty();
+  const std::string file = makes_twin ? wishes.twin : line.file;
+  const bool only_lists = wishes.list_observables || wishes.list_effects || line.print_parameters;
+  if (const auto code = answer(line, program, !only_lists && !makes_twin, comm))
+    return *code;
+  Log log(comm, line.quiet), errors(comm);
+  StudyInput study;
+  try {
+    Problems problems;
+    if (wishes.list_observables) {
+      list_observables(log);
+      return exit_success;
+    }
+    if (wishes.list_effects && file.empty()) {
+      const std::vector<Effect> effects = read_effects({"standard"}, comm, problems);
+      refuse_if_any(problems);
+      list_effects(effects, log);
+      return exit_success;
+    }
+    if (line.print_parameters) {
+      const std::string text = file.empty() ? "" : read_file(file, comm);
+      const StudyParameters parameters =
+          StudyParameters::read(text, file, line.overrides, makes_twin || file.empty(), problems,
+                                [comm](const std::string &path) { return read_file(path, comm); });
+      if (!file.empty())
+        refuse_if_any(problems);
+      log.line(parameters.as_input_file());
+      return exit_success;
+    }
+    study = read_study(file, line.overrides, makes_twin, comm, problems);
+    refuse_if_any(problems);
+    if (wishes.list_effects) {
+      list_effects(study.factors, log);
+      return exit_success;
+    }
+    if (!makes_twin)
+      read_data(study, comm, problems);
+    refuse_if_any(problems);
+    if (line.check) {
+      print_check(study, log);
+      return exit_success;
+    }
+  } catch (const UserError &error) {
+    errors.error(error.what());
+    return exit_bad_input;
+  }
+  if (!makes_twin)
+    return make_study(study, comm, log);
+  try {
+    stop_request::listen();
+    make_twin(study.parameters, study.factors, comm, log);
+  } catch (const Interrupted &) {
+    log.line("Stopped as asked. Give the same command again to go on.");
+    return exit_stopped;
+  }
+  return exit_success;
+}
+
+} // namespace
+
+int run_discovery(int argc, char **argv, MPI_Comm comm)
+{
+  return guarded(comm, [&] {
+    Wishes wishes;
+    const CommandLine line = parse_command_line(
+        argc, argv, program,
+        {{"make-twin",
+          "instead of a study, make measured data of the hidden truth in this file, which is a "
+          "study with a subsection 'twin'",
+          nullptr, &wishes.twin},
+         {"list-observables", "list what processes measure, and exit", &wishes.list_observables},
+         {"list-effects", "list the effects of the catalogue, or of the study, and exit",
+          &wishes.list_effects}});
+    return run(line, wishes, comm);
+  });
+}
+
+} // namespace eunoe::discovery

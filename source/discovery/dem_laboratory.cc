@@ -1,0 +1,283 @@
+#include <eunoe/core/problems.h>
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/stop_request.h>
+#include <eunoe/core/version.h>
+#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <sstream>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// A request in words, the same for the same run.
+std::string words(const RunRequest &request)
+{
+  std::string text = request.experiment + " " + std::to_string(request.seed);
+  for (const auto &[name, amplitude] : request.amplitudes) {
+    char number[40];
+    std::snprintf(number, sizeof number, "=%.17g", amplitude);
+    text += " " + name + number;
+  }
+  return text;
+}
+
+nlohmann::ordered_json describe(const RunRequest &request)
+{
+  nlohmann::ordered_json about;
+  about["experiment"] = request.experiment;
+  about["amplitudes"] = nlohmann::ordered_json::object();
+  for (const auto &[name, amplitude] : request.amplitudes)
+    about["amplitudes"][name] = amplitude;
+  about["seed"] = request.seed;
+  return about;
+}
+
+/// Contents of the files that a case names in its entries, as they are not part of its text.
+std::string named_files(const std::string &input)
+{
+  std::string contents;
+  for (const auto &[place, value] : values_in(input)) {
+    std::error_code failure;
+    std::istringstream parts(value);
+    for (std::string name; std::getline(parts, name, ',');) {
+      name.erase(0, name.find_first_not_of(' '));
+      if (name.find('.') == std::string::npos || !std::filesystem::is_regular_file(name, failure))
+        continue;
+      std::ifstream stream(name, std::ios::binary);
+      std::ostringstream all;
+      all << stream.rdbuf();
+      contents += sha256(all.str());
+    }
+  }
+  return contents;
+}
+
+} // namespace
+
+DemLaboratory::DemLaboratory(const std::vector<Experiment> &experiments,
+                             const std::vector<Effect> &factors, const std::string &cache_folder,
+                             const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
+    : experiments(experiments), factors(factors), cache(cache_folder, comm),
+      queue(comm, ranks_per_run), comm(comm), log(log)
+{
+  cache.open();
+}
+
+void DemLaboratory::explore(const std::uint32_t seed)
+{
+  std::vector<RunRequest> requests;
+  for (const Experiment &experiment : experiments)
+    requests.push_back({experiment.name(), {}, seed});
+  run(requests);
+  for (const RunRequest &request : requests) {
+    const RunRecord &record = records.at(keys.at(words(request)));
+    if (!record.failure.empty())
+      throw UserError("The base model of experiment '" + request.experiment +
+                      "' cannot be run: " + record.failure);
+    std::vector<Cell> &cells = known_cells[request.experiment];
+    for (const Measurement &m : record.measurements)
+      if (std::isfinite(m.value))
+        cells.push_back({request.experiment, m.observable, m.index});
+  }
+}
+
+const std::vector<Cell> &DemLaboratory::cells(const std::string &experiment) const
+{
+  return known_cells.at(experiment);
+}
+
+const Experiment &DemLaboratory::find(const std::string &name) const
+{
+  return *std::find_if(experiments.begin(), experiments.end(),
+                       [&](const Experiment &e) { return e.name() == name; });
+}
+
+DemLaboratory::Case DemLaboratory::make_case(const RunRequest &request) const
+{
+  Case one;
+  one.experiment = &find(request.experiment);
+  try {
+    one.overrides = one.experiment->overrides(factors, request.amplitudes);
+    for (const std::string &line : one.experiment->run_overrides(request.seed))
+      one.overrides.push_back(line);
+    Problems problems;
+    const std::string input = one.experiment->make(one.overrides, problems).as_input_file();
+    if (!problems.empty())
+      throw UserError(problems);
+    one.key = sha256(std::string(engine_digest()) + named_files(input) + input);
+  } catch (const UserError &error) {
+    one.problem = error.what();
+    one.key = sha256(std::string(engine_digest()) + one.problem + words(request));
+  }
+  return one;
+}
+
+void DemLaboratory::look(const unsigned long long step)
+{
+  constexpr unsigned int steps_between_looks = 16, steps_between_votes = 256;
+  if (step % steps_between_looks == 0)
+    queue.serve();
+  int stops = stop_request::received() != 0 ? 1 : 0;
+  if (!queue.is_alone()) {
+    if (step % steps_between_votes != 0)
+      return;
+    MPI_Allreduce(MPI_IN_PLACE, &stops, 1, MPI_INT, MPI_MAX, queue.group());
+  }
+  if (stops != 0)
+    throw Interrupted();
+}
+
+RunRecord DemLaboratory::simulate(const Case &one)
+{
+  RunRecord record;
+  record.failure = one.problem;
+  if (!record.failure.empty())
+    return record;
+  int size;
+  MPI_Comm_size(queue.group(), &size);
+  const double begin = MPI_Wtime();
+  Log silent(queue.group(), true);
+  try {
+    Problems problems;
+    Parameters parameters = one.experiment->make(one.overrides, problems);
+    Simulation simulation(parameters, queue.group(), silent);
+    simulation.run([this](Simulation &s) { look(s.step_number()); });
+    record.measurements = simulation.measurements();
+    if (record.measurements.empty())
+      record.failure = "The run ended before anything was measured. Check 'time end'.";
+  } catch (const UserError &error) {
+    record.failure = error.what();
+  } catch (const std::bad_alloc &) {
+    throw; // says nothing about the model
+  } catch (const std::exception &error) {
+    // Of several ranks, the others may not know.
+    if (!queue.is_alone())
+      throw;
+    record.failure = error.what();
+  }
+  record.core_seconds = (MPI_Wtime() - begin) * size;
+  return record;
+}
+
+void DemLaboratory::simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases)
+{
+  const double begin = MPI_Wtime();
+  const int n = static_cast<int>(cases.size());
+  auto mine = nlohmann::ordered_json::array();
+  std::string error;
+  bool interrupted = false;
+  const auto one_case = [&](const int k) {
+    const RunRecord record = simulate(cases[k].first);
+    if (queue.is_leader()) {
+      mine.push_back({cases[k].first.key, to_json(record)});
+      try {
+        cache.store(cases[k].first.key, record, cases[k].second);
+      } catch (const UserError &failure) {
+        error = failure.what();
+      }
+    }
+    int failed = error.empty() ? 0 : 1;
+    MPI_Bcast(&failed, 1, MPI_INT, 0, queue.group());
+    if (failed != 0)
+      throw Interrupted();
+  };
+  try {
+    queue.run(n, one_case, [&](const int done) {
+      const double left = (MPI_Wtime() - begin) * (n - done) / std::max(1, done);
+      log.status(std::to_string(done) + " of " + std::to_string(n) +
+                 " runs, left: " + format_duration(left));
+    });
+  } catch (const Interrupted &) {
+    interrupted = true;
+  }
+  const std::string errors = concatenate(error, comm);
+  if (!errors.empty())
+    throw UserError(errors);
+  if (interrupted)
+    throw Interrupted();
+  std::istringstream lines(concatenate(mine.dump() + "\n", comm));
+  for (std::string line; std::getline(lines, line);)
+    for (const auto &item : nlohmann::ordered_json::parse(line)) {
+      records[item.at(0)] = record_from(item.at(1));
+      ++made;
+    }
+}
+
+RunResult DemLaboratory::result(const RunRequest &request, const RunRecord &record) const
+{
+  if (!record.failure.empty())
+    return std::nullopt;
+  const auto known = known_cells.find(request.experiment);
+  if (known == known_cells.end())
+    return std::vector<double>();
+  std::map<std::pair<std::string, int>, double> found;
+  for (const Measurement &m : record.measurements)
+    found[{m.observable, m.index}] = m.value;
+  std::vector<double> values;
+  for (const Cell &cell : known->second) {
+    const auto value = found.find({cell.observable, cell.index});
+    values.push_back(value == found.end() ? std::nan("") : value->second);
+    if (!std::isfinite(values.back()) && required.count(cell) > 0)
+      return std::nullopt;
+  }
+  return values;
+}
+
+void DemLaboratory::note(const RunRequest &request, const std::string &key, const bool was_cached)
+{
+  const RunRecord &record = records.at(key);
+  nlohmann::ordered_json run = describe(request);
+  run["key"] = key;
+  run["cached"] = was_cached;
+  run["core_seconds"] = record.core_seconds;
+  if (!record.failure.empty())
+    run["failure"] = record.failure;
+  runs.push_back(run);
+}
+
+std::vector<RunResult> DemLaboratory::run(const std::vector<RunRequest> &requests)
+{
+  std::map<std::string, std::pair<Case, RunRequest>>
+      unknown; // by words: also the order of the tasks
+  std::vector<std::string> order;
+  for (const RunRequest &request : requests)
+    if (keys.count(words(request)) == 0 && unknown.count(words(request)) == 0) {
+      unknown[words(request)] = {make_case(request), request};
+      order.push_back(words(request));
+    }
+  std::set<std::string> wanted;
+  for (const auto &[text, item] : unknown)
+    wanted.insert(item.first.key);
+  const std::map<std::string, RunRecord> kept = cache.load(wanted);
+  records.insert(kept.begin(), kept.end());
+
+  std::vector<std::pair<Case, nlohmann::ordered_json>> missing;
+  std::set<std::string> begun;
+  for (const std::string &text : order) {
+    const auto &[one, request] = unknown.at(text);
+    if (records.count(one.key) == 0 && begun.insert(one.key).second)
+      missing.emplace_back(one, describe(request));
+  }
+  if (!missing.empty())
+    simulate_all(missing);
+  for (const std::string &text : order) {
+    const auto &[one, request] = unknown.at(text);
+    const bool was_cached = begun.count(one.key) == 0;
+    keys[text] = one.key;
+    cached += was_cached ? 1 : 0;
+    note(request, one.key, was_cached);
+  }
+  std::vector<RunResult> results;
+  for (const RunRequest &request : requests)
+    results.push_back(result(request, records.at(keys.at(words(request)))));
+  return results;
+}
+
+} // namespace eunoe::discovery

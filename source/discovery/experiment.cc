@@ -1,0 +1,111 @@
+#include <eunoe/core/files.h>
+#include <eunoe/discovery/experiment.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+
+namespace eunoe::discovery {
+
+Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems)
+    : parameters(parameters)
+{
+  const std::string &file = parameters.case_file;
+  try {
+    texts[file] = read_file(file, comm);
+  } catch (const UserError &error) {
+    problems.add("Experiment '" + name() + "':", error.what(), "");
+    return;
+  }
+  const std::size_t n_before = problems.all().size();
+  Parameters read = Parameters::read(
+      texts[file], file, parameters.overrides, problems,
+      [&](const std::string &path) { return texts[path] = read_file(path, comm); });
+  base = values_in(read.as_input_file());
+  process = read.process_name;
+  if (problems.all().size() != n_before)
+    return;
+  try {
+    // Building the parts finds what reading alone cannot.
+    Log silent(comm, true);
+    Simulation simulation(read, comm, silent);
+    simulation.make_observables();
+    described = simulation.described_observables();
+    cost = simulation.estimate();
+  } catch (const UserError &error) {
+    problems.add(file + ":", error.what(), "");
+    return;
+  }
+  if (described.empty())
+    problems.add(file + ": entry 'process'", "is '" + process + "', and nothing is measured.",
+                 "Give a process that eunoe-discovery --list-observables names, or switch on an "
+                 "observable that measures.");
+}
+
+std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factors,
+                                               const Amplitudes &amplitudes) const
+{
+  std::vector<std::string> list = parameters.overrides;
+  EntryValues values = base;
+  std::vector<const Effect *> active;
+  for (const Effect &effect : factors) {
+    const auto amplitude = amplitudes.find(effect.factor.name);
+    if (amplitude != amplitudes.end() && amplitude->second != effect.factor.null_value &&
+        effect.concerns(process))
+      active.push_back(&effect);
+  }
+  std::sort(active.begin(), active.end(), [](const Effect *a, const Effect *b) {
+    const auto key = [](const Effect *e) {
+      return std::pair(e->factor.kind == Factor::Kind::effect, e->factor.name);
+    };
+    return key(a) < key(b);
+  });
+  for (const Effect *const effect : active)
+    effect->patch.apply(amplitudes.at(effect->factor.name), values, list);
+  return list;
+}
+
+std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
+{
+  std::vector<std::string> list = {"simulation control/output path = unused",
+                                   "simulation control/output control = iteration",
+                                   "simulation control/output frequency = 0",
+                                   "simulation control/log frequency = 0",
+                                   "restart/checkpoint = false",
+                                   "restart/restart = false"};
+  // Entries hold numbers of 31 bits.
+  const std::string number = std::to_string(seed & 0x7fffffff);
+  for (const auto &[place, value] : base)
+    if (place.second == "seed" || boost::ends_with(place.second, " seed"))
+      list.push_back(boost::join(place.first, "/") + "/" + place.second + " = " + number);
+  return list;
+}
+
+Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
+{
+  const std::string &file = parameters.case_file;
+  return Parameters::read(texts.at(file), file, overrides, problems,
+                          [this](const std::string &path) { return texts.at(path); });
+}
+
+Effect make_nuisance(const NuisanceParameters &parameters)
+{
+  Effect effect;
+  Factor &factor = effect.factor;
+  factor.name = parameters.name;
+  factor.kind = Factor::Kind::nuisance;
+  factor.scale = factor.prior_deviation = parameters.standard_deviation;
+  factor.lower = -3. * parameters.standard_deviation;
+  factor.upper = 3. * parameters.standard_deviation;
+  factor.sign = Factor::Sign::both;
+  factor.mechanism = "uncertain number of the base model";
+  Problems none;
+  for (const std::string &entry : parameters.entries) {
+    effect.patch.entries.push_back(parse_override(entry + " = " + parameters.value, none));
+    effect.patch.entries.back().where = "Nuisance '" + parameters.name + "'";
+  }
+  return effect;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,185 @@
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/version.h>
+#include <eunoe/discovery/results.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace eunoe::discovery {
+
+namespace fs = std::filesystem;
+
+std::string differences(const EntryValues &before, const EntryValues &after)
+{
+  std::string text;
+  std::vector<std::string> open;
+  const auto indent = [&] { return std::string(2 * open.size(), ' '); };
+  const auto close_to = [&](const std::size_t depth) {
+    while (open.size() > depth) {
+      open.pop_back();
+      text += indent() + "end\n";
+    }
+  };
+  for (const auto &[place, value] : after) {
+    const auto old = before.find(place);
+    if (old != before.end() && old->second == value)
+      continue;
+    const auto &path = place.first;
+    std::size_t same = 0;
+    while (same < open.size() && same < path.size() && open[same] == path[same])
+      ++same;
+    close_to(same);
+    while (open.size() < path.size()) {
+      text += indent() + "subsection " + path[open.size()] + "\n";
+      open.push_back(path[open.size()]);
+    }
+    text += indent() + "set " + place.second + " = " + value +
+            " # before: " + (old == before.end() ? "none" : old->second) + "\n";
+  }
+  close_to(0);
+  return text;
+}
+
+void write_models(const StudyInput &study, const Amplitudes &after, const StudyFolder &folder)
+{
+  for (const Experiment &experiment : study.experiments) {
+    std::map<std::string, std::string> inputs;
+    for (const auto &[name, amplitudes] : {std::pair("before", Amplitudes()), {"after", after}}) {
+      std::vector<std::string> overrides = experiment.overrides(study.factors, amplitudes);
+      overrides.push_back("simulation control/output path = output/" + experiment.name() + "_" +
+                          name);
+      Problems none;
+      inputs[name] = experiment.make(overrides, none).as_input_file();
+      folder.write("model_" + std::string(name) + "_" + experiment.name() + ".prm", inputs[name]);
+    }
+    EntryValues before = values_in(inputs["before"]), now = values_in(inputs["after"]);
+    now.erase({{"simulation control"}, "output path"});
+    const std::string changes = differences(before, now);
+    folder.write("model_" + experiment.name() + ".diff",
+                 changes.empty() ? "# The model stays as it is.\n"
+                                 : "# What is added to the model of experiment '" +
+                                       experiment.name() + "'.\n" + changes);
+  }
+}
+
+void write_answer(const StudyInput &study, const Discovery &discovery,
+                  const DemLaboratory &laboratory, const StudyFolder &folder)
+{
+  nlohmann::ordered_json answer = discovery.content;
+  auto &origin = answer["provenance"];
+  origin["version"] = version();
+  origin["git_revision"] = git_revision();
+  origin["deal_ii_version"] = deal_ii_version();
+  origin["engine"] = engine_digest();
+  for (const auto &[name, text] : study.identity())
+    if (name != "engine")
+      origin["sha256"][name] = sha256(text);
+  origin["seed"] = study.parameters.options.seed;
+  origin["measured_data"] = study.data.header;
+  auto &effects = answer["catalogue"];
+  for (const Effect &effect : study.factors) {
+    const Factor &f = effect.factor;
+    effects.push_back({{"name", f.name},
+                       {"kind", f.kind == Factor::Kind::effect ? "effect" : "nuisance"},
+                       {"mechanism", f.mechanism},
+                       {"parameter", f.parameter},
+                       {"unit", f.unit},
+                       {"null_value", f.null_value},
+                       {"scale", f.scale},
+                       {"range", {f.lower, f.upper}},
+                       {"confounders", f.confounders},
+                       {"source", f.source}});
+  }
+  auto &observables = answer["observables"];
+  for (const Experiment &experiment : study.experiments)
+    for (const ObservableDescription &o : experiment.observables())
+      observables.push_back({{"experiment", experiment.name()},
+                             {"name", o.name},
+                             {"unit", o.unit},
+                             {"index", o.index_meaning},
+                             {"text", o.text}});
+  // The order of the values in the runs that the stages list.
+  auto &cells = answer["cells"];
+  for (const Experiment &experiment : study.experiments)
+    for (const Cell &cell : laboratory.cells(experiment.name()))
+      cells[experiment.name()].push_back({cell.observable, cell.index});
+  double core_seconds = 0.;
+  for (const auto &run : laboratory.ledger())
+    core_seconds += run.at("core_seconds").get<double>();
+  answer["simulations"] = {{"made_now", laboratory.n_runs()},
+                           {"from_cache", laboratory.n_cached()},
+                           {"core_hours", core_seconds / 3600.}};
+  answer["ledger"] = laboratory.ledger();
+  folder.write("discovery.json", answer.dump(1) + "\n");
+}
+
+std::string page_command(const std::string &folder)
+{
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  const std::string name = "postprocessing/discovery_report.py";
+  for (const fs::path &script : {program.parent_path().parent_path() / "share/eunoe" / name,
+                                 fs::path(source_folder()) / "contrib" / name})
+    if (fs::is_regular_file(script, failure)) {
+      const bool has_own = fs::exists("/usr/bin/python3", failure);
+      return std::string(has_own ? "/usr/bin/python3" : "python3") + " '" + script.string() +
+             "' '" + folder + "'";
+    }
+  return "";
+}
+
+void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log)
+{
+  for (const auto &[name, amplitude] : discovery.model_after)
+    log.line("  " + name + ": " + format(amplitude));
+  log.line("The answer is in " + folder.file("discovery.json"));
+}
+
+void print_check(const StudyInput &study, Log &log)
+{
+  const StudyOptions &options = study.parameters.options;
+  const double n_effects = static_cast<double>(study.n_effects());
+  const auto n_factors = static_cast<double>(study.factors.size());
+  double runs = 0., core_hours = 0.;
+  log.line("The study is in order.");
+  for (const Experiment &experiment : study.experiments) {
+    const auto cells = [&](const std::vector<MeasuredCell> &list) {
+      return std::count_if(list.begin(), list.end(), [&](const MeasuredCell &m) {
+        return m.cell.experiment == experiment.name();
+      });
+    };
+    const auto n_cells = cells(study.data.fit) + cells(study.data.held_out);
+    const double leaders = std::min<double>(options.n_leaders, n_effects);
+    const double n = experiment.is_held_out() ? 2. * options.validate_runs
+                     : n_cells == 0           ? 0.
+                                    : options.null_runs + 2. * options.screen_runs * n_factors +
+                                          options.confirm_rounds * options.confirm_runs * leaders +
+                                          options.fit_runs * options.max_effects;
+    const RunEstimate &estimate = experiment.estimate();
+    const double hours = n * estimate.core_seconds() / 3600.;
+    log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
+             (experiment.is_held_out() ? ", held out" : "") + "): " + std::to_string(n_cells) +
+             " measured cells; at most about " + format(n) + " runs of " +
+             format(estimate.particles) + " particles and " + format(estimate.steps) + " steps, " +
+             format(estimate.core_seconds()) + " core-seconds each");
+    runs += n;
+    core_hours += hours;
+  }
+  if (options.budget > 0 && runs > static_cast<double>(options.budget)) {
+    core_hours *= static_cast<double>(options.budget) / runs;
+    runs = static_cast<double>(options.budget);
+  }
+  std::string names;
+  for (const Effect &effect : study.factors)
+    names += (names.empty() ? "" : ", ") + effect.factor.name;
+  log.line("  factors:    " + format(n_effects) + " effects and " + format(n_factors - n_effects) +
+           " nuisances: " + names);
+  if (!study.left_out.empty())
+    log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
+  log.line("  runs:       about " + format(runs) + " at most");
+  log.line("  core-hours: about " + format(core_hours));
+}
+
+} // namespace eunoe::discovery

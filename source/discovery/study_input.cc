@@ -1,0 +1,135 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/version.h>
+#include <eunoe/discovery/measured_csv.h>
+#include <eunoe/discovery/study_input.h>
+
+#include <algorithm>
+#include <set>
+
+namespace eunoe::discovery {
+
+std::vector<Factor> StudyInput::plain_factors() const
+{
+  std::vector<Factor> plain;
+  for (const Effect &effect : factors)
+    plain.push_back(effect.factor);
+  return plain;
+}
+
+std::size_t StudyInput::n_effects() const
+{
+  return static_cast<std::size_t>(
+      std::count_if(factors.begin(), factors.end(),
+                    [](const Effect &e) { return e.factor.kind == Factor::Kind::effect; }));
+}
+
+std::map<std::string, std::string> StudyInput::identity() const
+{
+  std::map<std::string, std::string> parts;
+  parts["engine"] = engine_digest();
+  parts["measured data"] = data_text;
+  // Where things are kept and how ranks are used decides nothing.
+  static const std::set<std::string> places = {"output path",   "cache path", "ranks per run",
+                                               "measured data", "write page", "effect folders",
+                                               "case file"};
+  for (const auto &[place, value] : values_in(parameters.as_input_file()))
+    if (places.count(place.second) == 0)
+      parts["study file"] += describe(place.first, place.second) + value + "\n";
+  Problems none;
+  for (const Experiment &experiment : experiments)
+    parts["case of " + experiment.name()] =
+        experiment.make(experiment.overrides({}, {}), none).as_input_file();
+  for (const Effect &effect : factors)
+    if (effect.factor.kind == Factor::Kind::effect) {
+      std::string &text = parts["effect " + effect.factor.name];
+      const Factor &f = effect.factor;
+      for (const double number :
+           {f.null_value, f.scale, f.lower, f.upper, static_cast<double>(f.sign)})
+        text += std::to_string(number) + " ";
+      for (const InputEntry &entry : effect.patch.entries)
+        text += describe(entry.path, entry.name) + entry.value + "\n";
+    }
+  return parts;
+}
+
+std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
+                                 Problems &problems)
+{
+  const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
+  std::vector<Effect> all;
+  for (const std::string &folder : folders)
+    for (Effect &effect :
+         read_catalogue(folder == "standard" ? standard_catalogue() : folder, problems, load))
+    {
+      const auto same = std::find_if(all.begin(), all.end(), [&](const Effect &e) {
+        return e.factor.name == effect.factor.name;
+      });
+      if (same != all.end())
+        problems.add(effect.file + ":", "has the name of " + same->file + ".", "Rename it.");
+      else
+        all.push_back(std::move(effect));
+    }
+  return all;
+}
+
+StudyInput read_study(const std::string &file, const std::vector<std::string> &overrides,
+                      const bool with_twin, MPI_Comm comm, Problems &problems)
+{
+  StudyInput study;
+  const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
+  study.parameters =
+      StudyParameters::read(read_file(file, comm), file, overrides, with_twin, problems, load);
+  const StudyParameters &p = study.parameters;
+  if (!problems.empty())
+    return study;
+  for (const ExperimentParameters &e : p.experiments)
+    study.experiments.emplace_back(e, comm, problems);
+
+  const std::vector<std::string> standard = {"standard"};
+  const std::vector<std::string> &folders = p.effect_folders.empty() ? standard : p.effect_folders;
+  for (Effect &effect : select(read_effects(folders, comm, problems), p.effects, p.excluded_effects,
+                               file + ": subsection 'discovery'", problems))
+    if (std::any_of(study.experiments.begin(), study.experiments.end(),
+                    [&](const Experiment &e) { return effect.concerns(e.process_name()); }))
+      study.factors.push_back(std::move(effect));
+    else
+      study.left_out.push_back(effect.factor.name);
+  for (const NuisanceParameters &nuisance : p.nuisances) {
+    if (std::any_of(study.factors.begin(), study.factors.end(),
+                    [&](const Effect &e) { return e.factor.name == nuisance.name; }))
+      problems.add(file + ": nuisance '" + nuisance.name + "'", "has the name of an effect.",
+                   "Rename it, or exclude the effect.");
+    study.factors.push_back(make_nuisance(nuisance));
+  }
+  if (problems.empty())
+    check_patches(study, problems);
+  return study;
+}
+
+void read_data(StudyInput &study, MPI_Comm comm, Problems &problems)
+{
+  const std::string file = study.parameters.measured_data;
+  study.data_text = read_file(file, comm);
+  study.data = read_measured(study.data_text, file, study.experiments, problems);
+}
+
+void check_patches(const StudyInput &study, Problems &problems)
+{
+  for (const Effect &effect : study.factors)
+    for (const Experiment &experiment : study.experiments) {
+      const Factor &f = effect.factor;
+      const double amplitude = f.null_value + (f.sign == Factor::Sign::below ? -f.scale : f.scale);
+      Problems found;
+      try {
+        experiment.make(experiment.overrides(study.factors, {{f.name, amplitude}}), found);
+      } catch (const UserError &error) {
+        problems.add("Experiment '" + experiment.name() + "':", error.what(), "");
+      }
+      for (const Problem &problem : found.all())
+        problems.add((effect.file.empty() ? "Nuisance '" + f.name + "'" : effect.file) +
+                         ", in experiment '" + experiment.name() + "':",
+                     problem.text(), "");
+    }
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,275 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/core/parameter_input.h>
+#include <eunoe/discovery/study_parameters.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+namespace eunoe::discovery {
+
+namespace {
+
+const std::string section = "discovery";
+using Path = std::vector<std::string>;
+
+const std::vector<RepeatedSections> &repeated_sections()
+{
+  static const std::vector<RepeatedSections> list = {
+      {{section}, "number of experiments", "experiment", 20, 0},
+      {{section}, "number of nuisances", "nuisance", 20, 0}};
+  return list;
+}
+
+/// A list separated by @p separator; an empty text is an empty list.
+void declare_list(dealii::ParameterHandler &prm, const std::string &entry,
+                  std::vector<std::string> &list, const char separator,
+                  const std::string &documentation)
+{
+  const std::string joint = separator == ';' ? "; " : ", ";
+  prm.declare_entry(entry, boost::join(list, joint), declare::Patterns::Anything(), documentation);
+  prm.add_action(entry, [&list, separator](const std::string &text) {
+    list = dealii::Utilities::split_string_list(text, separator);
+  });
+}
+
+void declare_experiment(dealii::ParameterHandler &prm, ExperimentParameters &experiment)
+{
+  prm.add_parameter("name", experiment.name,
+                    "Name by which the measured data call the experiment.");
+  prm.add_parameter("case file", experiment.case_file,
+                    "Base model: an input file of eunoe-particles with a process.");
+  declare_list(prm, "overrides", experiment.overrides, ';',
+               "Entries that differ from the case file: 'subsection/entry = value; ...'.");
+  prm.add_parameter("held out", experiment.held_out,
+                    "Whether the experiment only serves to test the answer: its data are not "
+                    "looked at before.");
+}
+
+void declare_nuisance(dealii::ParameterHandler &prm, NuisanceParameters &nuisance)
+{
+  prm.add_parameter("name", nuisance.name, "Name of the uncertain number.");
+  declare_list(prm, "entries", nuisance.entries, ';',
+               "Entries of the case that get the value: 'subsection/entry; ...'.");
+  prm.add_parameter("value", nuisance.value,
+                    "Their value, with 'amplitude', which is 0 on average, and 'base', the value "
+                    "in the case.");
+  declare::positive(prm, "standard deviation", nuisance.standard_deviation,
+                    "Standard deviation of the amplitude.");
+}
+
+void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
+{
+  prm.add_parameter("level", options.level,
+                    "Accepted probability that something is said to be missing while nothing is.",
+                    declare::Patterns::Double(1e-4, 0.5));
+  declare::count(prm, "budget of runs", options.budget, "Most simulations of a study; 0: no limit.",
+                 0);
+  declare::count(prm, "null runs", options.null_runs,
+                 "null: runs of the base model of every experiment.", 8);
+  declare::count(prm, "screen runs", options.screen_runs,
+                 "screen: runs at each of the two amplitudes of an effect.", 1);
+  declare::count(prm, "confirm runs", options.confirm_runs,
+                 "confirm: further runs for each leading effect, in each round.", 1);
+  declare::count(prm, "confirm rounds", options.confirm_rounds, "confirm: most rounds.", 0);
+  declare::count(prm, "leading effects", options.n_leaders,
+                 "confirm: most effects that a round looks at.", 1);
+  declare::count(prm, "fit runs", options.fit_runs, "fit: runs at the fitted amplitudes.", 1);
+  declare::count(prm, "validate runs", options.validate_runs,
+                 "validate: runs of each held-out experiment, before and after each.", 2);
+  declare::count(prm, "maximum number of effects", options.max_effects,
+                 "Most effects that are named together.", 1);
+  declare::count(prm, "seed", options.seed, "Seed of the study, from which those of its runs come.",
+                 0);
+  declare::positive(prm, "model tolerance", options.model_tolerance,
+                    "Relative deviation that is forgiven to every value of the base model, for "
+                    "what its step or depth leaves out.");
+  prm.add_parameter("common random numbers", options.common_random_numbers,
+                    "Whether effects are compared with the base model at equal seeds where that "
+                    "pays.");
+  prm.add_parameter("confirm", options.confirm, "Whether leading effects get more runs.");
+  prm.add_parameter("bootstrap", options.bootstrap,
+                    "Whether thresholds take into account that the scatter is estimated; false "
+                    "for comparison only.");
+}
+
+void declare_twin(dealii::ParameterHandler &prm, TwinParameters &twin)
+{
+  prm.enter_subsection("twin");
+  declare_list(prm, "effects", twin.effects, ',',
+               "The truth: 'name: amplitude, ...'; empty: nothing is missing.");
+  declare_list(prm, "overrides", twin.overrides, ';',
+               "Entries in which the truth's simulations differ from the model's without being "
+               "effects, such as the depth: 'subsection/entry = value; ...'.");
+  declare_list(prm, "observables", twin.observables, ',',
+               "Observables that are measured: 'all', or names.");
+  prm.add_parameter("time step factor", twin.time_step_factor,
+                    "Time step of the truth, in terms of the model's.",
+                    declare::Patterns::Double(0.05, 2.));
+  prm.add_parameter("jitter nuisances", twin.jitter_nuisances,
+                    "Whether the truth's nuisances are drawn from their distributions.");
+  declare::positive(prm, "noise", twin.noise,
+                    "Standard deviation of the measurement, relative to the observable's root "
+                    "mean square over its cells.");
+  declare::count(prm, "repeats", twin.repeats, "Number of repeated measurements.", 2);
+  declare::count(prm, "seed", twin.seed, "Seed of the truth: powder, packing, noise, nuisances.",
+                 0);
+  prm.add_parameter("sealed file", twin.sealed_file, "File that keeps the truth.");
+  prm.leave_subsection();
+}
+
+bool is_plain_word(const std::string &name)
+{
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](const unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
+}
+
+void check_name(const ParameterCheck &check, const Path &path, const std::string &name,
+                std::set<std::string> &names)
+{
+  check.require(is_plain_word(name), path, "name", "is '" + name + "'.",
+                "Give a word of letters, digits, '_' and '-'.");
+  check.require(names.insert(name).second, path, "name",
+                "is '" + name + "', like that of another one.", "Give each its own name.");
+}
+
+/// A file that is named in an input file, or an empty name.
+std::string beside(const std::string &name, const std::string &input_file)
+{
+  if (name.empty())
+    return name;
+  return (std::filesystem::path(input_file).parent_path() / name).lexically_normal().string();
+}
+
+/// Makes names of files relative to the folder in which the program was started, as their entries
+/// give them relative to the input file in which they are written.
+void resolve_files(std::vector<InputEntry> &entries, const std::string &file, const bool with_twin)
+{
+  // Defaults first, so that what is written overrides them.
+  InputEntry data, sealed;
+  data.path = {section};
+  data.name = "measured data";
+  data.value = StudyParameters().measured_data;
+  sealed.path = {"twin"};
+  sealed.name = "sealed file";
+  sealed.value = TwinParameters().sealed_file;
+  data.where = sealed.where = file + ":0";
+  if (with_twin)
+    entries.insert(entries.begin(), sealed);
+  entries.insert(entries.begin(), data);
+  for (InputEntry &entry : entries) {
+    if (entry.where.rfind("--set", 0) == 0)
+      continue;
+    const std::string written_in = entry.where.substr(0, entry.where.rfind(':'));
+    if (entry.name == "measured data" || entry.name == "case file" || entry.name == "sealed file")
+      entry.value = beside(entry.value, written_in);
+    if (entry.name == "effect folders") {
+      std::vector<std::string> folders = dealii::Utilities::split_string_list(entry.value, ',');
+      for (std::string &folder : folders)
+        folder = folder == "standard" ? folder : beside(folder, written_in);
+      entry.value = boost::join(folders, ", ");
+    }
+  }
+}
+
+} // namespace
+
+void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twin)
+{
+  prm.enter_subsection(section);
+  prm.add_parameter("measured data", measured_data, "Table of what was measured.");
+  prm.add_parameter("output path", output_path,
+                    "Folder of all results; created if missing, and gone on with if it holds the "
+                    "same study.");
+  prm.add_parameter("cache path", cache_path,
+                    "Folder in which simulations are kept; several studies may share it. Empty: "
+                    "'cache' in the output folder.");
+  declare_list(prm, "effects", effects, ',',
+               "Effects that may be missing: 'all' of the catalogue, or names.");
+  declare_list(prm, "excluded effects", excluded_effects, ',', "Effects that are left out.");
+  declare_list(prm, "effect folders", effect_folders, ',',
+               "Folders of effects, one file each; empty: the catalogue that comes with the "
+               "program, which may also be named 'standard' beside others.");
+  declare_stages(prm, options);
+  declare::count(prm, "ranks per run", ranks_per_run, "MPI ranks that share a simulation.", 1);
+  prm.add_parameter("write page", write_page,
+                    "Whether discovery.html is written; needs Python with Matplotlib.");
+  for (const RepeatedSections &repeated : repeated_sections()) {
+    // Read before all others, as it decides what there is to be declared.
+    prm.declare_entry(
+        repeated.entry,
+        std::to_string(repeated.prefix == "experiment" ? experiments.size() : nuisances.size()),
+        declare::Patterns::Integer(0, static_cast<int>(repeated.largest)),
+        "How many subsections '" + repeated.prefix + " 0', ... there are.");
+  }
+  for (std::size_t k = 0; k < experiments.size(); ++k) {
+    prm.enter_subsection("experiment " + std::to_string(k));
+    declare_experiment(prm, experiments[k]);
+    prm.leave_subsection();
+  }
+  for (std::size_t k = 0; k < nuisances.size(); ++k) {
+    prm.enter_subsection("nuisance " + std::to_string(k));
+    declare_nuisance(prm, nuisances[k]);
+    prm.leave_subsection();
+  }
+  prm.leave_subsection();
+  if (with_twin)
+    declare_twin(prm, twin);
+}
+
+void StudyParameters::check(const ParameterCheck &check) const
+{
+  check.require(!experiments.empty(), {section}, "number of experiments", "is 0.",
+                "Describe at least one experiment.");
+  std::set<std::string> names;
+  for (std::size_t k = 0; k < experiments.size(); ++k) {
+    const Path path = {section, "experiment " + std::to_string(k)};
+    check_name(check, path, experiments[k].name, names);
+    check.require(!experiments[k].case_file.empty(), path, "case file", "is missing.",
+                  "Name an input file of eunoe-particles.");
+  }
+  check.require(std::any_of(experiments.begin(), experiments.end(),
+                            [](const ExperimentParameters &e) { return !e.held_out; }) ||
+                    experiments.empty(),
+                {section}, "", "has only experiments that are held out.",
+                "Leave at least one to look at.");
+  names.clear();
+  for (std::size_t k = 0; k < nuisances.size(); ++k) {
+    const Path path = {section, "nuisance " + std::to_string(k)};
+    check_name(check, path, nuisances[k].name, names);
+    check.require(!nuisances[k].entries.empty(), path, "entries", "is empty.",
+                  "Name the entries of the case that are uncertain.");
+    check.require(nuisances[k].standard_deviation > 0., path, "standard deviation", "is 0.",
+                  "Give a positive one, or remove the nuisance.");
+  }
+}
+
+StudyParameters StudyParameters::read(const std::string &text, const std::string &file,
+                                      const std::vector<std::string> &overrides,
+                                      const bool with_twin, Problems &problems,
+                                      const FileLoader &load)
+{
+  std::vector<InputEntry> entries = parse_input(text, file, problems, load);
+  for (const std::string &override_text : overrides) {
+    const InputEntry entry = parse_override(override_text, problems);
+    if (!entry.name.empty())
+      entries.push_back(entry);
+  }
+  resolve_files(entries, file, with_twin);
+  StudyParameters study;
+  study.experiments.resize(repeated_sections()[0].count(entries));
+  study.nuisances.resize(repeated_sections()[1].count(entries));
+  dealii::ParameterHandler prm;
+  study.declare(prm, with_twin);
+  study.complete_input = set_entries(prm, entries, repeated_sections(), problems);
+  if (problems.empty())
+    study.check(ParameterCheck(entries, file, problems));
+  return study;
+}
+
+} // namespace eunoe::discovery

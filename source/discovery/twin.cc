@@ -1,0 +1,208 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/version.h>
+#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/measured_csv.h>
+#include <eunoe/discovery/study_folder.h>
+#include <eunoe/discovery/twin.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+
+namespace eunoe::discovery {
+
+namespace {
+
+const std::string time_step_change = "time step of the truth";
+
+/// Normal numbers, the same everywhere: the standard library's distribution is not.
+class NormalNumbers
+{
+public:
+  explicit NormalNumbers(const std::uint64_t seed) : generator(seed) {}
+
+  double operator()()
+  {
+    const double u = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
+    const double v = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
+    return std::sqrt(-2. * std::log(u)) * std::cos(2. * M_PI * v);
+  }
+
+private:
+  std::mt19937_64 generator;
+};
+
+/// Effects and amplitudes of "name: amplitude, ...".
+Amplitudes truth_of(const TwinParameters &twin, const std::vector<Effect> &factors)
+{
+  Problems problems;
+  Amplitudes truth;
+  std::vector<std::string> names;
+  for (const Effect &effect : factors)
+    if (effect.factor.kind == Factor::Kind::effect)
+      names.push_back(effect.factor.name);
+  const std::string where = "subsection 'twin' / entry 'effects'";
+  for (const std::string &text : twin.effects) {
+    const std::size_t colon = text.find(':');
+    const std::string name = boost::trim_copy(text.substr(0, colon));
+    const std::string number =
+        colon == std::string::npos ? "" : boost::trim_copy(text.substr(colon + 1));
+    char *end;
+    const double amplitude = std::strtod(number.c_str(), &end);
+    if (number.empty() || *end != '\0' || !std::isfinite(amplitude))
+      problems.add(where, "has '" + text + "'.", "Write 'name: amplitude'.");
+    else if (std::find(names.begin(), names.end(), name) == names.end())
+      problems.add(where, "names '" + name + "', which is not in the catalogue.",
+                   "There are: " + boost::join(names, ", ") + ".");
+    else
+      truth[name] = amplitude;
+  }
+  if (!problems.empty())
+    throw UserError(problems);
+  return truth;
+}
+
+/// The experiments as the truth has them.
+std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm comm)
+{
+  Problems problems;
+  std::vector<Experiment> experiments;
+  for (ExperimentParameters e : study.experiments) {
+    e.overrides.insert(e.overrides.end(), study.twin.overrides.begin(), study.twin.overrides.end());
+    experiments.emplace_back(e, comm, problems);
+  }
+  if (!problems.empty())
+    throw UserError(problems);
+  return experiments;
+}
+
+/// The entry that lets the truth run with another time step.
+Effect make_time_step_change()
+{
+  NuisanceParameters p;
+  p.name = time_step_change;
+  p.entries = {"simulation control/time step"};
+  p.value = "${base * (1 + amplitude)}";
+  return make_nuisance(p);
+}
+
+/// What an instrument with noise says of simulated repeats.
+/// @param runs values of all cells, one row a repeat
+std::vector<MeasuredCell> measure(const std::vector<Cell> &cells,
+                                  const std::vector<std::vector<double>> &runs,
+                                  const TwinParameters &twin, NormalNumbers &normal)
+{
+  const bool takes_all = twin.observables == std::vector<std::string>{"all"};
+  const auto n = static_cast<double>(runs.size());
+  std::map<std::string, std::pair<double, double>> squares; // sum and number, by observable
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (const std::vector<double> &values : runs) {
+      squares[cells[c].observable].first += values[c] * values[c];
+      squares[cells[c].observable].second += 1.;
+    }
+  std::vector<MeasuredCell> rows;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const auto &[sum, number] = squares[cells[c].observable];
+    const double size = std::sqrt(sum / number);
+    std::vector<double> readings;
+    for (const std::vector<double> &values : runs)
+      readings.push_back(values[c] + twin.noise * size * normal());
+    MeasuredCell row;
+    row.cell = cells[c];
+    row.repeats = static_cast<unsigned int>(runs.size());
+    for (const double reading : readings)
+      row.value += reading / n;
+    for (const double reading : readings)
+      row.standard_deviation += (reading - row.value) * (reading - row.value) / (n - 1.);
+    row.standard_deviation = std::max(std::sqrt(row.standard_deviation), 1e-9 * size);
+    const bool is_wanted = takes_all || std::find(twin.observables.begin(), twin.observables.end(),
+                                                  cells[c].observable) != twin.observables.end();
+    // A cell without any value, such as a loss that never happened, says nothing.
+    if (is_wanted && std::isfinite(row.value) && row.standard_deviation > 0.)
+      rows.push_back(row);
+  }
+  return rows;
+}
+
+void refuse_existing(const std::string &file, MPI_Comm comm)
+{
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  std::error_code failure;
+  if (!broadcast(rank == 0 && std::filesystem::exists(file, failure) ? "yes" : "", comm).empty())
+    throw UserError(file + " is there already. Remove it, or name another file.");
+}
+
+} // namespace
+
+void make_twin(const StudyParameters &study, const std::vector<Effect> &factors, MPI_Comm comm,
+               Log &log)
+{
+  const TwinParameters &twin = study.twin;
+  const std::string data_file = study.measured_data, sealed_file = twin.sealed_file;
+  refuse_existing(data_file, comm);
+  refuse_existing(sealed_file, comm);
+
+  nlohmann::ordered_json sealed;
+  Amplitudes amplitudes = truth_of(twin, factors);
+  sealed["effects"] = amplitudes;
+  NormalNumbers normal(twin.seed);
+  sealed["nuisances"] = nlohmann::ordered_json::object();
+  for (const Effect &factor : factors)
+    if (factor.factor.kind == Factor::Kind::nuisance && twin.jitter_nuisances)
+      sealed["nuisances"][factor.factor.name] = amplitudes[factor.factor.name] =
+          factor.factor.prior_deviation * normal();
+  std::vector<Effect> changes = factors;
+  changes.push_back(make_time_step_change());
+  amplitudes[time_step_change] = twin.time_step_factor - 1.;
+
+  const std::vector<Experiment> experiments = experiments_of(study, comm);
+  DemLaboratory laboratory(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
+                           log);
+  // Above all seeds of studies.
+  const std::uint32_t first_seed = 0x40000000u + (twin.seed * 64u & 0x3fffffffu);
+  laboratory.explore(first_seed);
+  std::vector<RunRequest> requests;
+  for (const Experiment &experiment : experiments)
+    for (unsigned int r = 0; r < twin.repeats; ++r)
+      requests.push_back({experiment.name(), amplitudes, first_seed + r});
+  const std::vector<RunResult> results = laboratory.run(requests);
+
+  MeasuredData data;
+  std::size_t k = 0;
+  for (const Experiment &experiment : experiments) {
+    std::vector<std::vector<double>> runs;
+    for (unsigned int r = 0; r < twin.repeats; ++r, ++k)
+      if (results[k])
+        runs.push_back(*results[k]);
+    if (runs.size() < 2)
+      throw UserError("The truth cannot be simulated in experiment '" + experiment.name() +
+                      "': " + laboratory.ledger().back().value("failure", "runs broke off."));
+    for (const MeasuredCell &row : measure(laboratory.cells(experiment.name()), runs, twin, normal))
+      (experiment.is_held_out() ? data.held_out : data.fit).push_back(row);
+    for (const ObservableDescription &o : experiment.observables())
+      data.header[unit_key(o.name)] = o.unit;
+  }
+  sealed["time_step_factor"] = twin.time_step_factor;
+  sealed["overrides"] = twin.overrides;
+  sealed["noise"] = twin.noise;
+  sealed["repeats"] = twin.repeats;
+  sealed["seed"] = twin.seed;
+  sealed["engine"] = engine_digest();
+  const std::string sealed_text = sealed.dump(1) + "\n";
+  data.header["made by"] = "eunoe-discovery --make-twin";
+  data.header["sealed truth sha256"] = sha256(sealed_text);
+  const StudyFolder here(".", comm);
+  here.write(sealed_file, sealed_text);
+  here.write(data_file, write_measured(data));
+  log.line(data_file + " holds " + std::to_string(data.fit.size()) + " cells to fit and " +
+           std::to_string(data.held_out.size()) + " that are held out; the truth is in " +
+           sealed_file);
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,111 @@
+// A campaign of simulations: the same results on any number of ranks, each run made once, kept on
+// disk and found again; runs that fail; seeds; null values; a stop in the middle.
+
+#include <eunoe/core/files.h>
+#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/study_input.h>
+
+#include "../tests.h"
+#include "drop_process.h"
+
+#include <filesystem>
+
+namespace {
+
+using namespace test;
+using namespace eunoe::discovery;
+
+const std::string folder = DISCOVERY_TESTS;
+const std::string cache = "campaign_cache";
+
+std::string text(const RunResult &result)
+{
+  if (!result)
+    return "failed";
+  std::string line;
+  for (const double value : *result)
+    line += (line.empty() ? "" : " ") + format(value);
+  return line;
+}
+
+void check_runs(const std::string &name, const Laboratory &laboratory, const std::uint64_t made)
+{
+  check(name, laboratory.n_runs() == made,
+        std::to_string(laboratory.n_runs()) + " runs instead of " + std::to_string(made));
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const MPI_Comm comm = MPI_COMM_WORLD;
+  Log log(comm, true);
+  if (is_first_rank())
+    std::filesystem::remove_all(cache);
+  MPI_Barrier(comm);
+
+  Problems problems;
+  ExperimentParameters box, gentle;
+  box.name = "box";
+  box.case_file = gentle.case_file = folder + "/drop.prm";
+  gentle.name = "gentle";
+  gentle.overrides = {"drop/largest speed = 0.28"};
+  const std::vector<Experiment> experiments = {Experiment(box, comm, problems),
+                                               Experiment(gentle, comm, problems)};
+  const std::vector<Effect> effects = read_effects({folder + "/effects"}, comm, problems);
+  check("in order", problems.empty());
+
+  const std::vector<RunRequest> requests = {{"box", {}, 1},
+                                            {"box", {{"bounce", 0.3}}, 1},
+                                            {"box", {{"tilt", 1.}, {"bounce", 0.}}, 1},
+                                            {"gentle", {{"bounce", 0.35}}, 1},
+                                            {"box", {}, 2},
+                                            {"box", {{"bounce", 0.}}, 1},
+                                            {"box", {{"growth", 20.}}, 1}};
+  std::vector<RunResult> first;
+  {
+    DemLaboratory laboratory(experiments, effects, cache, 1, comm, log);
+    laboratory.explore(1);
+    print("cells: " + std::to_string(laboratory.cells("box").size()));
+    first = laboratory.run(requests);
+    for (const RunResult &result : first)
+      print(text(result));
+    check("a null value changes no bit", *first[0] == *first[5]);
+    check("other seeds, other packings", *first[0] != *first[4]);
+    // Two base models, and of the requests all but the first and its like.
+    check_runs("equal runs are made once", laboratory, 7);
+    laboratory.run(requests);
+    check_runs("and not again", laboratory, 7);
+    check("the ledger names them", laboratory.ledger().size() == 9);
+    for (const auto &run : laboratory.ledger())
+      if (run.contains("failure"))
+        print(run.at("failure").get<std::string>().substr(0, 60));
+  }
+  {
+    DemLaboratory laboratory(experiments, effects, cache, 2, comm, log);
+    laboratory.explore(1);
+    check("kept results are the same", laboratory.run(requests) == first);
+    check_runs("nothing is made again", laboratory, 0);
+    check("all came from the cache", laboratory.n_cached() == 9);
+    if (is_first_rank()) {
+      std::size_t n = 0;
+      for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
+        n += entry.is_regular_file() ? 1 : 0;
+      print(std::to_string(n) + " files");
+      // Damage is not taken for a result.
+      write_file(cache + "/" + laboratory.ledger()[0].at("key").get<std::string>().substr(0, 2) +
+                     "/" + laboratory.ledger()[0].at("key").get<std::string>() + ".json",
+                 "{\"key\": 1");
+    }
+    MPI_Barrier(comm);
+  }
+  {
+    DemLaboratory laboratory(experiments, effects, cache, 2, comm, log);
+    laboratory.explore(1);
+    check_runs("what is damaged is made again", laboratory, 1);
+    check("with the same result", laboratory.run(requests) == first);
+    laboratory.require({{"box", "drift", 0}});
+    check("a required cell that is there", laboratory.run({requests[0]})[0].has_value());
+  }
+}

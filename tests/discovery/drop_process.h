@@ -1,0 +1,136 @@
+#ifndef eunoe_tests_discovery_drop_process_h
+#define eunoe_tests_discovery_drop_process_h
+
+// A process for tests of discovery that takes a twentieth of a second: spheres fall into a box with
+// a tilted field of gravity, and their heights, their drift and their speed are measured.
+
+#include <eunoe/core/declare.h>
+#include <eunoe/core/random.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace test {
+
+using namespace eunoe;
+
+class Drop : public Process
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("drop");
+    declare::count(prm, "number", n_particles, "Number of particles.", 1);
+    declare::count(prm, "seed", seed, "Seed of their places.");
+    declare::positive(prm, "duration", duration, "Time at which all is measured (s).");
+    declare::positive(prm, "largest speed", largest_speed, "Above it the run breaks off (m/s).");
+    prm.leave_subsection();
+  }
+
+  void prepare(Parameters &parameters) override
+  {
+    parameters.mesh.grid_type = "subdivided_hyper_rectangle";
+    parameters.mesh.grid_arguments = "4, 4, 4 : -0.01, 0, -0.01 : 0.01, 0.02, 0.01 : true";
+    parameters.control.end_control = "time";
+    parameters.control.time_end = 2. * duration;
+  }
+  void check_with(const Parameters &, const ParameterCheck &check) const override
+  {
+    check.require(duration > 0., {"drop"}, "duration", "is 0 s.", "Give a positive time.");
+  }
+  RunEstimate estimate(const Parameters &parameters) const override
+  {
+    RunEstimate estimate;
+    estimate.particles = estimate.most_particles = n_particles;
+    estimate.steps = duration / parameters.control.time_step;
+    return estimate;
+  }
+  std::vector<Solid> make_solids(const Parameters &) override { return {}; }
+  void save(CheckpointWriter &) const override {}
+  void resume(Simulation &, const Checkpoint &) override {}
+  bool wants_solid_loads(unsigned long long) const override { return false; }
+  double progress(const Simulation &simulation) const override
+  {
+    return simulation.time() / duration;
+  }
+  bool finished() const override { return done; }
+
+  void start(Simulation &simulation) override
+  {
+    const ParticleType &type = simulation.get_parameters().physics.types[0];
+    const auto sizes = type.sizes.make();
+    const auto [begin, end] = share_of(n_particles, simulation.communicator());
+    Delivery delivery;
+    for (std::size_t k = begin; k < end; ++k) {
+      NewParticle particle;
+      particle.id = simulation.next_id + static_cast<ParticleId>(k);
+      particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
+      particle.mass = sphere_mass(particle.radius, type.density);
+      const auto place = [&](const std::size_t cell, const std::uint32_t d) {
+        return 2e-3 *
+               (static_cast<double>(cell) + 0.3 * uniform(seed, Draw::offset, particle.id, d));
+      };
+      particle.position = {-5e-3 + place(k % 4, 0), 1e-3 + place(k / 16, 1),
+                           -5e-3 + place(k / 4 % 4, 2)};
+      delivery.particles.push_back(particle);
+    }
+    simulation.next_id += n_particles;
+    simulation.exchange(delivery, {});
+  }
+
+  void step(Simulation &simulation) override
+  {
+    if (simulation.time() < duration)
+      return;
+    done = true;
+    const ParticleArrays &p = simulation.complete_step();
+    std::vector<double> heights;
+    ExactSum drift, energy;
+    double fastest = 0.;
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      heights.push_back(p.position[k].y);
+      drift += p.position[k].x;
+      energy += norm_square(p.velocity[k].vec());
+      fastest = std::max(fastest, norm_square(p.velocity[k].vec()));
+    }
+    std::vector<double> all;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), heights))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end());
+    drift.reduce(simulation.communicator());
+    energy.reduce(simulation.communicator());
+    fastest = dealii::Utilities::MPI::max(fastest, simulation.communicator());
+    if (fastest > largest_speed * largest_speed)
+      throw UserError("A sphere is faster than 'largest speed'.");
+    const auto n = static_cast<double>(all.size());
+    for (int part = 0; part < 4; ++part)
+      results.push_back({"height", part, all[all.size() * (2 * part + 1) / 8]});
+    results.push_back({"drift", 0, drift.value() / n});
+    results.push_back({"speed", 0, std::sqrt(energy.value() / n)});
+  }
+
+  std::vector<Measurement> measurements() const override { return results; }
+  std::vector<ObservableDescription> observables() const override
+  {
+    return {{"height", "m", "quarter of the particles, the lowest first", "Median height in it."},
+            {"drift", "m", "0", "Mean place along x."},
+            {"speed", "m/s", "0", "Root mean square of the speeds."}};
+  }
+
+private:
+  unsigned int n_particles = 32, seed = 1;
+  double duration = 0.1, largest_speed = 10.;
+  bool done = false;
+  std::vector<Measurement> results;
+};
+
+inline const ProcessRegistry::Registration drop_registration(process_kinds(), "drop", [] {
+  return std::make_unique<Drop>();
+});
+
+} // namespace test
+
+#endif

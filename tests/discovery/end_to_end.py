@@ -1,0 +1,159 @@
+"""A whole study of a cheap process: data of a hidden truth, the study without any way to that truth, its
+answer and files; the same answer on two ranks, after a kill, and from the cache; and what is refused.
+
+Usage: end_to_end.py path/to/drop-discovery folder
+"""
+
+import hashlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+NAMED, BAD_INPUT, FAILED, STOPPED = 10, 2, 1, 3
+# What belongs to one start of the program, not to the answer.
+PASSING = ("simulations", "ledger")
+
+
+class Program:
+    def __init__(self, path: str, folder: Path) -> None:
+        self.path, self.folder = path, folder
+
+    def command(self, *arguments: str, ranks: int = 1) -> list[str]:
+        launch = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
+        if launch and os.geteuid() == 0:
+            launch.append("--allow-run-as-root")
+        return [*launch, self.path, *arguments]
+
+    def run(self, *arguments: str, ranks: int = 1) -> tuple[int, str]:
+        done = subprocess.run(self.command(*arguments, ranks=ranks), cwd=self.folder, text=True,
+                              capture_output=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+
+def settings(**entries: str) -> list[str]:
+    words = []
+    for name, value in entries.items():
+        words += ["--set", f"discovery/{name.replace('_', ' ')} = {value}"]
+    return words
+
+
+def answer(folder: Path) -> dict:
+    content = json.loads((folder / "discovery.json").read_text())
+    return {key: value for key, value in content.items() if key not in PASSING}
+
+
+def expect(result: tuple[int, str], code: int, *words: str) -> None:
+    assert result[0] == code, f"exit code {result[0]} instead of {code}:\n{result[1]}"
+    for word in words:
+        assert word in result[1], f"'{word}' is missing in:\n{result[1]}"
+
+
+def prepare(folder: Path) -> None:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for name in ("study.prm", "truth.prm", "drop.prm"):
+        shutil.copy(HERE / name, folder)
+    shutil.copytree(HERE / "effects", folder / "effects")
+
+
+def make_data(program: Program) -> None:
+    folder = program.folder
+    expect(program.run("--make-twin", "truth.prm"), 0, "cells to fit")
+    sealed = (folder / "truth.sealed.json").read_bytes()
+    data = (folder / "measured.csv").read_text()
+    assert f"sealed truth sha256: {hashlib.sha256(sealed).hexdigest()}" in data
+    assert json.loads(sealed)["effects"] == {"tilt": 0.7}
+    assert "tilt" not in data and ",held-out\n" in data and ",fit\n" in data
+    expect(program.run("--make-twin", "truth.prm"), FAILED, "is there already")
+    # From here on nothing can open the truth.
+    for name in ("truth.sealed.json", "truth.prm"):
+        (folder / name).unlink()
+    shutil.rmtree(folder / "truth.sealed.json.cache")
+
+
+def check_refusals(program: Program) -> None:
+    folder = program.folder
+    before = {path for path in folder.rglob("*") if path.is_file()}
+    expect(program.run("study.prm", "--set", "discovery/effects = tlit"), BAD_INPUT,
+           "Did you mean 'tilt'?")
+    expect(program.run("study.prm", "--set", "discovery/measured data = no.csv"), BAD_INPUT,
+           "no.csv cannot be read")
+    expect(program.run("study.prm", "--set", "twin/seed = 1"), BAD_INPUT, "subsection 'twin' is unknown")
+    expect(program.run("no.prm"), BAD_INPUT, "no.prm cannot be read")
+    expect(program.run(), BAD_INPUT, "An input file is missing")
+    (folder / "effects" / "bad.prm").write_text(
+        (folder / "effects" / "tilt.prm").read_text().replace("set g =", "set gg ="))
+    expect(program.run("study.prm"), BAD_INPUT, "bad.prm, in experiment 'box'", "'gg'")
+    (folder / "effects" / "bad.prm").unlink()
+    (folder / "more.csv").write_text((folder / "measured.csv").read_text()
+                                     + "box,height,9,1,1,3,fit\n")
+    expect(program.run("study.prm", "--check"), 0, "The study is in order", "experiment box (drop)",
+           "3 effects and 1 nuisances", "core-hours")
+    expect(program.run("--list-observables"), 0, "drift (m)")
+    expect(program.run("study.prm", "--list-effects"), 0, "bounce: contacts lose less energy")
+    expect(program.run("study.prm", "--print-parameters"), 0, "set null runs")
+    after = {path for path in folder.rglob("*") if path.is_file()}
+    assert after - before == {folder / "more.csv"}, "what was refused or only checked left files"
+    expect(program.run("study.prm", *settings(measured_data="more.csv", output_path="more")), FAILED,
+           "index 9 of 'height' is not measured by experiment 'box'", "0, 1, 2, 3")
+
+
+def check_answer(folder: Path) -> None:
+    content = json.loads((folder / "discovery.json").read_text())
+    assert content["verdict"] == "named"
+    assert content["candidates"][0]["effect"] == "tilt"
+    assert 0.3 < content["amplitudes"][0]["amplitude"] < 1.2, content["amplitudes"]
+    assert content["provenance"]["sha256"].keys() >= {"measured data", "case of box", "effect tilt"}
+    ledger = content["ledger"]
+    assert len(ledger) == content["simulations"]["made_now"] + content["simulations"]["from_cache"]
+    before = (folder / "model_before_box.prm").read_text()
+    after = (folder / "model_after_box.prm").read_text()
+    changes = (folder / "model_box.diff").read_text()
+    assert before != after and "# before: 1, -9.81, 0" in changes, changes
+    assert (folder / "model_after_short.prm").exists()
+    assert "experiment,observable,index" in (folder / "stages" / "detect_cells.csv").read_text()
+
+
+def check_resume(program: Program, reference: Path) -> None:
+    """Killed as soon as some runs are made, then started again, on two ranks."""
+    arguments = ["study.prm", *settings(output_path="killed")]
+    cache = program.folder / "killed" / "cache"
+    with subprocess.Popen(program.command(*arguments), cwd=program.folder,
+                          stdout=subprocess.DEVNULL) as process:
+        while process.poll() is None and len(list(cache.glob("*/*.json"))) < 5:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+    assert process.returncode == STOPPED, process.returncode
+    n_kept = len(list(cache.glob("*/*.json")))
+    expect(program.run(*arguments, ranks=2), NAMED, "Going on with the study")
+    content = json.loads((program.folder / "killed" / "discovery.json").read_text())
+    assert content["simulations"]["from_cache"] >= n_kept
+    assert answer(program.folder / "killed") == answer(reference)
+
+
+def main() -> None:
+    folder = Path(sys.argv[2])
+    prepare(folder)
+    program = Program(sys.argv[1], folder.resolve())
+    make_data(program)
+    check_refusals(program)
+    reference = folder / "output"
+    expect(program.run("study.prm"), NAMED)
+    check_answer(reference)
+    expect(program.run("study.prm", "--set", "discovery/seed = 2"), FAILED,
+           "holds another study; what differs: study file")
+    first = answer(reference)
+    expect(program.run("study.prm"), NAMED, "Going on with the study")
+    assert answer(reference) == first
+    assert json.loads((reference / "discovery.json").read_text())["simulations"]["made_now"] == 0
+    check_resume(program, reference)
+    print("ok")
+
+
+main()

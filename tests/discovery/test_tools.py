@@ -1,0 +1,159 @@
+"""Tests of the page of a study and of the suite's scripts; they need numpy, the page matplotlib too."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import io
+import json
+import sys
+import tempfile
+import unittest
+from collections import Counter
+from pathlib import Path
+
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
+    print("skipped: numpy or matplotlib is missing")
+    sys.exit(0)
+
+HERE = Path(__file__).resolve().parent
+CONTRIB = HERE.parents[1] / "contrib"
+sys.path[:0] = [str(CONTRIB / "postprocessing"), str(CONTRIB / "discovery"), str(HERE)]
+
+import discovery_report
+import score as score_script
+from eunoe_report.discovery_results import Study
+from eunoe_report.discovery_text import TITLES, verdict_text
+from eunoe_suite.case import TIERS, Case, make_cases
+from eunoe_suite.score import read, score, wilson
+from eunoe_suite.strength import Strengths
+from sample_study import CHANGES, make_study
+
+EFFECTS = {"cohesion": {"sign": "above", "confounders": ["rolling_resistance"]},
+           "rolling_resistance": {"sign": "both", "confounders": []}}
+
+
+class InFolder(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+
+class PageOfAStudy(InFolder):
+    def test_every_verdict_has_a_page(self) -> None:
+        for verdict, title in TITLES.items():
+            folder = self.folder / verdict.replace(" ", "_")
+            make_study(folder, verdict)
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(discovery_report.main([str(folder)]), 0)
+            page = (folder / "discovery.html").read_text(encoding="utf-8")
+            self.assertIn(f"<h1>{title}</h1>", page)
+            self.assertIn("a &lt;particle&gt; went wrong", page)
+            self.assertIn("before: 0", page)
+
+    def test_words(self) -> None:
+        expected = {"named": "confidence of 90", "tie": "5.2 standard deviations",
+                    "off catalogue": "resembles cohesion (cosine 0.7)", "none": "Of 2 effects, 2 would",
+                    "underpowered": "says little"}
+        for verdict, words in expected.items():
+            folder = self.folder / verdict
+            make_study(folder, verdict)
+            self.assertIn(words, " ".join(verdict_text(Study(folder))))
+
+    def test_fingerprints_are_the_changes_in_standard_deviations(self) -> None:
+        make_study(self.folder / "study", "named")
+        cells, prints = Study(self.folder / "study").fingerprints()
+        self.assertEqual(len(cells), 4)
+        for fingerprint in prints:
+            # Of the larger amplitude; five standard errors, of the chaos's estimate too.
+            for change, truth, error in zip(fingerprint.change, 2. * CHANGES[fingerprint.effect],
+                                            fingerprint.error):
+                self.assertLess(abs(change - truth), 5. * (error + abs(truth) / 80.**0.5))
+
+    def test_a_folder_without_a_study(self) -> None:
+        with contextlib.redirect_stderr(io.StringIO()) as errors:
+            self.assertEqual(discovery_report.main([str(self.folder)]), 2)
+        self.assertIn("discovery.json is missing", errors.getvalue())
+
+
+class CasesOfASuite(unittest.TestCase):
+    def test_numbers_and_seeds(self) -> None:
+        cases = make_cases(EFFECTS, "small", "development", 3)
+        kinds = Counter(case.kind for case in cases)
+        numbers = TIERS["small"]
+        self.assertEqual(kinds, {"none": numbers.none, "single": 6 * numbers.single, "two": numbers.two,
+                                 "deleted": numbers.deleted, "confounded": numbers.confounded})
+        self.assertEqual(cases, make_cases(EFFECTS, "small", "development", 3))
+        self.assertEqual(len({case.seed for case in cases}), len(cases))
+        self.assertEqual(len({case.study_seed for case in cases}), 3)
+        reported = make_cases(EFFECTS, "full", "reported", 3)
+        self.assertFalse({case.seed for case in cases} & {case.seed for case in reported})
+        self.assertFalse({case.study_seed for case in cases} & {case.study_seed for case in reported})
+
+    def test_what_is_hidden(self) -> None:
+        for case in make_cases(EFFECTS, "full", "ci", 1):
+            self.assertGreater(case.strengths.get("cohesion", 1.), 0.)  # its sign is fixed
+            self.assertEqual(case.excluded, list(case.strengths) if case.kind == "deleted" else [])
+            self.assertEqual(len(case.strengths), {"none": 0, "two": 2}.get(case.kind, 1))
+            if case.kind == "confounded":
+                self.assertEqual(list(case.strengths), ["cohesion"])
+
+
+class StrengthOfAnEffect(InFolder):
+    def test_amplitude_of_a_strength(self) -> None:
+        make_study(self.folder / "pilot", "none")
+        strengths = Strengths(self.folder / "pilot")
+        # Cells are independent here, so the shift is the length of the change.
+        length = float((CHANGES["cohesion"]**2).sum())**0.5
+        found = strengths.amplitude("cohesion", 4.)
+        assert found is not None
+        self.assertAlmostEqual(found / (4. / length * 1e-4), 1., delta=0.35)
+        self.assertIsNone(strengths.amplitude("cohesion", 1000.))
+        self.assertIsNone(strengths.amplitude("cohesion", -4.))
+
+
+class Scores(InFolder):
+    def add(self, name: str, kind: str, verdict: str, truth: dict[str, float]) -> None:
+        folder = self.folder / name
+        make_study(folder / "study", verdict)
+        case = Case(name, kind, 1, 1, {effect: 4. for effect in truth}, [], truth)
+        case.save(folder)
+        (folder / "sealed").mkdir()
+        (folder / "sealed" / "truth.json").write_text(json.dumps({"effects": truth}))
+
+    def test_rates(self) -> None:
+        self.add("a", "none", "none", {})
+        self.add("b", "none", "named", {})
+        self.add("c", "single", "named", {"cohesion": 1.2e-4})
+        self.add("d", "single", "named", {"rolling_resistance": 0.1})
+        self.add("e", "single", "tie", {"rolling_resistance": 0.1})
+        self.add("f", "deleted", "off catalogue", {"rolling_resistance": 0.1})
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(score_script.main([str(self.folder)]), 0)
+        outcomes = [o for o in (read(self.folder / name, "study") for name in "abcdef") if o]
+        rates = {r.name: (r.hits, r.number) for r in score(outcomes).rates}
+        self.assertEqual(rates["false alarms"], (1, 2))
+        self.assertEqual(rates["detection at strength 4 and more"], (3, 3))
+        self.assertEqual(rates["first name correct at strength 4 and more"], (1, 3))
+        self.assertEqual(rates["set covers the truth"], (2, 3))
+        self.assertEqual(rates["deleted effect recognised as off the catalogue"], (1, 1))
+        self.assertEqual(rates["confident and wrong"], (1, 4))
+        self.assertEqual(rates["amplitude within its interval"], (1, 1))
+        self.assertIn("1 of 2", (self.folder / "scores_study.md").read_text())
+
+    def test_a_truth_that_was_changed_is_not_scored(self) -> None:
+        self.add("a", "single", "named", {"cohesion": 1e-4})
+        (self.folder / "a" / "sealed" / "truth.json").write_text(json.dumps({"effects": {}}))
+        with self.assertRaises(AssertionError):
+            read(self.folder / "a", "study")
+
+    def test_wilson(self) -> None:
+        # From the formula's published table: 5 of 10 and 0 of 20.
+        self.assertAlmostEqual(wilson(5, 10)[0], 0.2366, places=4)
+        self.assertAlmostEqual(wilson(5, 10)[1], 0.7634, places=4)
+        self.assertAlmostEqual(wilson(0, 20)[1], 0.1611, places=4)
+
+
+if __name__ == "__main__":
+    unittest.main()
