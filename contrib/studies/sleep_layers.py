@@ -88,7 +88,7 @@ def as_markdown(awake: list[dict], asleep: list[dict]) -> str:
     lines = ["| layer | LRD awake | LRD with sleep | in standard errors | CRD awake | CRD with sleep | "
              "in standard errors |", "|---|---|---|---|---|---|---|"]
     worst = 0.
-    for layer in range(len(awake[0]["lrd"])):
+    for layer in range(len(awake[0]["LRD"])):
         columns = [f"{layer + 1}"]
         for key in ("LRD", "CRD"):
             values = [[run[key][layer] for run in runs] for runs in (awake, asleep)]
