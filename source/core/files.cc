@@ -101,8 +101,7 @@ void create_folder(const std::string &path, MPI_Comm comm)
   error = broadcast(error, comm);
   if (!error.empty())
     throw UserError("The folder " + path + " cannot be written to: " + error +
-                    ". Choose another 'output path' in 'simulation control', or mend the "
-                    "permissions.");
+                    ". Choose another folder, or mend the permissions.");
 }
 
 int Table::column(const std::string &name) const

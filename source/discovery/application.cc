@@ -33,7 +33,8 @@ void list_observables(Log &log)
   for (const std::string &name : process_kinds().list()) {
     log.line("process '" + name + "':");
     for (const ObservableDescription &o : process_kinds().make(name)->observables())
-      log.line("  " + o.name + " (" + o.unit + "), index: " + o.index_meaning + ". " + o.text);
+      log.line("  " + o.name + " (" + o.unit + "): " + o.text +
+               (o.index_meaning.empty() ? "" : "; index: " + o.index_meaning));
   }
 }
 

@@ -19,7 +19,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     return;
   }
   const std::size_t n_before = problems.all().size();
-  Parameters read = Parameters::read(
+  const Parameters read = Parameters::read(
       texts[file], file, parameters.overrides, problems,
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
   base = values_in(read.as_input_file());
@@ -27,9 +27,15 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
   if (problems.all().size() != n_before)
     return;
   try {
-    // Building the parts finds what reading alone cannot.
+    // Building the parts of a run finds what reading alone cannot.
+    std::vector<std::string> list = parameters.overrides;
+    for (const std::string &line : run_overrides(1))
+      list.push_back(line);
+    Parameters of_run = make(list, problems);
+    if (problems.all().size() != n_before)
+      return;
     Log silent(comm, true);
-    Simulation simulation(read, comm, silent);
+    Simulation simulation(of_run, comm, silent);
     simulation.make_observables();
     described = simulation.described_observables();
     cost = simulation.estimate();
@@ -77,7 +83,10 @@ std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) con
   // Entries hold numbers of 31 bits.
   const std::string number = std::to_string(seed & 0x7fffffff);
   for (const auto &[place, value] : base)
-    if (place.second == "seed" || boost::ends_with(place.second, " seed"))
+    // A process refuses what it does itself.
+    if (process != "none" && !place.first.empty() && place.first.front() == "insertion info")
+      continue;
+    else if (place.second == "seed" || boost::ends_with(place.second, " seed"))
       list.push_back(boost::join(place.first, "/") + "/" + place.second + " = " + number);
   return list;
 }

@@ -110,11 +110,15 @@ void Patch::apply(const double amplitude, EntryValues &values,
   for (const InputEntry &entry : entries) {
     if (entry.name.empty())
       continue;
+    const std::string place = entry.where + ": " + describe(entry.path, entry.name);
+    const bool is_known = values.count({entry.path, entry.name}) > 0;
+    if (uses_base(entry.value) && !is_known)
+      throw UserError(place + " needs 'base', and the case has no such entry. Check its name.");
     std::string &value = values[{entry.path, entry.name}];
     try {
       value = patched_value(entry.value, value, amplitude);
     } catch (const std::invalid_argument &error) {
-      throw UserError(entry.where + ": " + describe(entry.path, entry.name) + " " + error.what() +
+      throw UserError(place + " " + error.what() +
                       ". Use numbers, 'amplitude' and 'base' in '${...}'.");
     }
     overrides.push_back(boost::join(entry.path, "/") + (entry.path.empty() ? "" : "/") +

@@ -64,8 +64,8 @@ std::map<std::string, RunRecord> RunCache::load(const std::set<std::string> &key
       }
     }
   std::map<std::string, RunRecord> records;
-  for (const auto &[key, json] :
-       nlohmann::ordered_json::parse(broadcast(found.dump(), comm)).items())
+  const auto all = nlohmann::ordered_json::parse(broadcast(found.dump(), comm));
+  for (const auto &[key, json] : all.items())
     records[key] = record_from(json);
   return records;
 }

@@ -80,7 +80,7 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                  "confirm: most effects that a round looks at.", 1);
   declare::count(prm, "fit runs", options.fit_runs, "fit: runs at the fitted amplitudes.", 1);
   declare::count(prm, "validate runs", options.validate_runs,
-                 "validate: runs of each held-out experiment, before and after each.", 2);
+                 "validate: runs of each held-out experiment, before and after each.", 3);
   declare::count(prm, "maximum number of effects", options.max_effects,
                  "Most effects that are named together.", 1);
   declare::count(prm, "seed", options.seed, "Seed of the study, from which those of its runs come.",

@@ -1,8 +1,8 @@
 #ifndef eunoe_tests_discovery_drop_process_h
 #define eunoe_tests_discovery_drop_process_h
 
-// A process for tests of discovery that takes a twentieth of a second: spheres fall into a box with
-// a tilted field of gravity, and their heights, their drift and their speed are measured.
+// A process for tests of discovery whose runs take a twentieth of a second: spheres fall into a box
+// with a tilted field of gravity, and their heights, their drift and their speed are measured.
 
 #include <eunoe/core/declare.h>
 #include <eunoe/core/random.h>
@@ -88,11 +88,12 @@ public:
     done = true;
     const ParticleArrays &p = simulation.complete_step();
     std::vector<double> heights;
-    ExactSum drift, energy;
+    ExactSum drift, width, energy;
     double fastest = 0.;
     for (std::size_t k = 0; k < p.n_owned; ++k) {
       heights.push_back(p.position[k].y);
       drift += p.position[k].x;
+      width += p.position[k].z * p.position[k].z;
       energy += norm_square(p.velocity[k].vec());
       fastest = std::max(fastest, norm_square(p.velocity[k].vec()));
     }
@@ -101,6 +102,7 @@ public:
       all.insert(all.end(), part.begin(), part.end());
     std::sort(all.begin(), all.end());
     drift.reduce(simulation.communicator());
+    width.reduce(simulation.communicator());
     energy.reduce(simulation.communicator());
     fastest = dealii::Utilities::MPI::max(fastest, simulation.communicator());
     if (fastest > largest_speed * largest_speed)
@@ -109,6 +111,7 @@ public:
     for (int part = 0; part < 4; ++part)
       results.push_back({"height", part, all[all.size() * (2 * part + 1) / 8]});
     results.push_back({"drift", 0, drift.value() / n});
+    results.push_back({"width", 0, std::sqrt(width.value() / n)});
     results.push_back({"speed", 0, std::sqrt(energy.value() / n)});
   }
 
@@ -117,12 +120,13 @@ public:
   {
     return {{"height", "m", "quarter of the particles, the lowest first", "Median height in it."},
             {"drift", "m", "0", "Mean place along x."},
+            {"width", "m", "0", "Root mean square of the places along z."},
             {"speed", "m/s", "0", "Root mean square of the speeds."}};
   }
 
 private:
-  unsigned int n_particles = 32, seed = 1;
-  double duration = 0.1, largest_speed = 10.;
+  unsigned int n_particles = 48, seed = 1;
+  double duration = 0.05, largest_speed = 10.;
   bool done = false;
   std::vector<Measurement> results;
 };

@@ -89,13 +89,14 @@ def check_refusals(program: Program) -> None:
     expect(program.run(), BAD_INPUT, "An input file is missing")
     (folder / "effects" / "bad.prm").write_text(
         (folder / "effects" / "tilt.prm").read_text().replace("set g =", "set gg ="))
-    expect(program.run("study.prm"), BAD_INPUT, "bad.prm, in experiment 'box'", "'gg'")
+    expect(program.run("study.prm"), BAD_INPUT, "Experiment 'box': effects/bad.prm:",
+           "entry 'gg' needs 'base', and the case has no such entry")
     (folder / "effects" / "bad.prm").unlink()
     (folder / "more.csv").write_text((folder / "measured.csv").read_text()
                                      + "box,height,9,1,1,3,fit\n")
     expect(program.run("study.prm", "--check"), 0, "The study is in order", "experiment box (drop)",
            "3 effects and 1 nuisances", "core-hours")
-    expect(program.run("--list-observables"), 0, "drift (m)")
+    expect(program.run("--list-observables"), 0, "drift (m): Mean place along x")
     expect(program.run("study.prm", "--list-effects"), 0, "bounce: contacts lose less energy")
     expect(program.run("study.prm", "--print-parameters"), 0, "set null runs")
     after = {path for path in folder.rglob("*") if path.is_file()}
