@@ -28,9 +28,10 @@ int n_levels(const std::vector<Response::Run> &runs, const Eigen::Index effect)
 
 } // namespace
 
-Response::Response(const std::vector<Run> &runs, const Eigen::Index n_effects)
-    : least(Eigen::VectorXd::Zero(n_effects)), most(Eigen::VectorXd::Zero(n_effects))
+Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares)
+    : least(Eigen::VectorXd::Zero(slope_squares.size())), most(least)
 {
+  const Eigen::Index n_effects = slope_squares.size();
   constexpr int highest_degree = 3;
   constexpr double beyond = 1.5;
   const Term none(static_cast<std::size_t>(n_effects), 0);
@@ -63,9 +64,26 @@ Response::Response(const std::vector<Run> &runs, const Eigen::Index n_effects)
     normal += t * t.transpose() / run.variance;
     right += t * run.values.transpose() / run.variance;
   }
-  // Amplitudes that nearly coincide would make the highest powers huge.
-  for (Eigen::Index t = 1; t < n_terms; ++t)
-    normal(t, t) += 1e-6 * normal(t, t) + 1e-9;
+  // Expected sizes of terms over that of the slope: second order, third order, products.
+  constexpr double expected_bend[] = {0.4, 0.15}, expected_product = 0.4;
+  for (Eigen::Index t = 1; t < n_terms; ++t) {
+    double square = 1.;
+    int order = 0;
+    for (Eigen::Index k = 0; k < n_effects; ++k)
+      if (const int power = terms[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+          power > 0) {
+        order = std::max(order, power);
+        square *= slope_squares(k);
+      }
+    const bool is_product = std::count(terms[static_cast<std::size_t>(t)].begin(),
+                                       terms[static_cast<std::size_t>(t)].end(), 1) == 2;
+    if (is_product)
+      square = std::sqrt(square) * expected_product * expected_product;
+    else if (order > 1)
+      square *= expected_bend[order - 2] * expected_bend[order - 2];
+    normal(t, t) += is_product || order > 1 ? 1. / square : 0.;
+    normal(t, t) *= 1. + 1e-9;
+  }
   inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
   coefficients = inverse * right;
 }

@@ -22,7 +22,10 @@ public:
   Response() = default;
 
   /// @param runs at least one of them at the origin
-  Response(const std::vector<Run> &runs, Eigen::Index n_effects);
+  /// @param slope_squares of each effect: mean square over values, in units of C, of the change at
+  ///   one scale. How much a response may bend is expected in proportion to it; noise in the
+  ///   slope at a fitted amplitude would make its interval too narrow.
+  Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares);
 
   /// Predicted outcome at the origin.
   Eigen::VectorXd origin() const { return coefficients.row(0).transpose(); }
