@@ -52,6 +52,12 @@ std::vector<std::string> split(const std::string &set)
 void score(const Discovery &d, const Amplitudes &truth, const Case &which, Tally &t)
 {
   const auto &c = d.content;
+  if (truth.empty() && std::getenv("EUNOE_SUITE_VERBOSE") != nullptr)
+    std::printf("  p %.3f (distance %.3f, cell %.3f, gain %.3f)\n",
+                c["stages"]["screen"]["p"].get<double>(),
+                c["stages"]["detect"]["p of distance"].get<double>(),
+                c["stages"]["detect"]["p of largest deviation"].get<double>(),
+                c["stages"]["screen"]["p of largest gain"].get<double>());
   t.studies += 1.;
   t.runs += static_cast<double>(d.n_runs);
   t.verdicts[name_of(d.verdict)]++;
