@@ -61,6 +61,7 @@ Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_sq
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, runs.front().values.size());
   for (const Run &run : runs) {
     const Eigen::VectorXd t = terms_at(run.position);
+    base_weight += run.position.isZero(0.) ? 1. / run.variance : 0.;
     normal += t * t.transpose() / run.variance;
     right += t * run.values.transpose() / run.variance;
   }
@@ -119,6 +120,13 @@ double Response::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
   return t.dot(inverse * t);
+}
+
+Response Response::with_shifted_base(const Eigen::VectorXd &shift) const
+{
+  Response result = *this;
+  result.coefficients += base_weight * inverse.col(0) * shift.transpose();
+  return result;
 }
 
 Response Response::transformed(const Eigen::MatrixXd &transform) const

@@ -37,6 +37,10 @@ public:
   /// Leverage of the outcome itself, origin and change.
   double leverage(const Eigen::VectorXd &position) const;
 
+  /// What the fit would be had the mean of the runs at the origin come out differently: the origin
+  /// moves, and every change that is measured from it.
+  Response with_shifted_base(const Eigen::VectorXd &shift) const;
+
   /// Values in other coordinates.
   Response transformed(const Eigen::MatrixXd &transform) const;
 
@@ -53,6 +57,7 @@ private:
   Eigen::MatrixXd coefficients; ///< terms x values
   Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
   Eigen::VectorXd least, most;
+  double base_weight = 0.; ///< of the runs at the origin
 };
 
 } // namespace eunoe::discovery
