@@ -44,6 +44,7 @@ struct Nature
   double failures = 0.02;        ///< share of runs that fail
   double skewness = 0.15;        ///< of the chaos
   double changed_chaos = 0.15;   ///< how much an effect at one scale makes chaos grow
+  double swing = 0.5;            ///< of all observables together, in units of their own chaos
   unsigned int n_nuisances = 2;
   double nuisance_strength = 1.; ///< of one prior deviation
   std::vector<ObservableShape> observables = {{"spreading", "layer density", 6},
@@ -275,7 +276,7 @@ private:
                                                            : 0.;
       }
     // A common swing of all observables on top.
-    const Eigen::VectorXd swing = 0.5 * smooth_pattern(experiment, random);
+    const Eigen::VectorXd swing = nature.swing * smooth_pattern(experiment, random);
     correlation += swing * swing.transpose();
     Eigen::VectorXd size(n);
     for (Eigen::Index i = 0; i < n; ++i)

@@ -15,7 +15,8 @@ namespace {
 
 using namespace test;
 
-unsigned int n_nuisances = 2;
+/// What the command line changes.
+Nature common_nature;
 const std::vector<std::string> fit = {"spreading", "heap"}, held_out = {"thick layers"};
 
 struct Case
@@ -51,6 +52,12 @@ std::vector<std::string> split(const std::string &set)
 void score(const Discovery &d, const Amplitudes &truth, const Case &which, Tally &t)
 {
   const auto &c = d.content;
+  if (truth.empty() && std::getenv("EUNOE_SUITE_VERBOSE") != nullptr)
+    std::printf("  p %.3f (distance %.3f, cell %.3f, gain %.3f)\n",
+                c["stages"]["screen"]["p"].get<double>(),
+                c["stages"]["detect"]["p of distance"].get<double>(),
+                c["stages"]["detect"]["p of largest deviation"].get<double>(),
+                c["stages"]["screen"]["p of largest gain"].get<double>());
   t.studies += 1.;
   t.runs += static_cast<double>(d.n_runs);
   t.verdicts[name_of(d.verdict)]++;
@@ -115,11 +122,10 @@ Discovery study(const Case &which, std::uint32_t seed, const StudyOptions &base_
                 Amplitudes &truth, Log &log)
 {
   RandomStream random(seed, 99);
-  Nature nature;
+  Nature nature = common_nature;
   nature.seed = seed;
   nature.strength_of_scale = 3. + 4. * random.uniform();
   nature.seed_correlation = 0.6 * random.uniform();
-  nature.n_nuisances = n_nuisances;
   SyntheticLaboratory laboratory(nature);
   std::vector<std::string> effects;
   for (const Factor &f : laboratory.factors())
@@ -189,7 +195,13 @@ int main(int argc, char **argv)
     else if (option == "chi-square")
       options.bootstrap = false;
     else if (option == "no-nuisances")
-      n_nuisances = 0;
+      common_nature.n_nuisances = 0;
+    else if (option == "no-bend")
+      common_nature.bend = 0.;
+    else if (option == "even-chaos")
+      common_nature.changed_chaos = common_nature.skewness = 0.;
+    else if (option == "no-swing")
+      common_nature.swing = 0.;
     else
       only = option;
   }

@@ -67,7 +67,7 @@ class Draw
 {
 public:
   explicit Draw(const Workbench &bench)
-      : bench(bench), lower(Eigen::LLT<Eigen::MatrixXd>(bench.chaos.matrix).matrixL()),
+      : bench(bench), lower(Eigen::LLT<Eigen::MatrixXd>(bench.chaos.half_shrunk).matrixL()),
         most_repeats(static_cast<Eigen::Index>(bench.repeats.maxCoeff())),
         fine((1. - (bench.modes.basis().transpose() * bench.chaos.matrix * bench.modes.basis())
                        .diagonal()
@@ -100,6 +100,7 @@ public:
     misfit = Misfit(chaos.matrix, bench.other_covariance(noise, chaos.matrix));
     misfit.tail = bench.misfit.tail;
     deviation = misfit.coordinates(bench.modes.basis() * cells);
+    base_shift = bench.modes.basis() * base.colwise().mean().transpose();
     evidence = {};
     evidence.distance = misfit.distance(deviation, leverage);
     Eigen::VectorXd variance = noise.cell_variance + (leverage + bench.nuisance_noise) * cell_chaos;
@@ -108,7 +109,8 @@ public:
   }
 
   Misfit misfit;
-  Eigen::VectorXd deviation;
+  Eigen::VectorXd deviation;  ///< data less base model, in coordinates of the misfit
+  Eigen::VectorXd base_shift; ///< of the base model's mean, in modes
   Evidence evidence;
 
 private:
@@ -221,7 +223,9 @@ Reference make_reference(const Workbench &bench, const std::vector<Response> &re
     draw.make(random);
     std::vector<Response> in_coordinates;
     for (const Response &response : responses) {
-      in_coordinates.push_back(response.transformed(draw.misfit.matrix()));
+      // The base model's noise is in the data's deviation and in each fingerprint alike.
+      in_coordinates.push_back(
+          response.with_shifted_base(draw.base_shift).transformed(draw.misfit.matrix()));
       const Bounds range = bounds(bench, {in_coordinates.size() - 1}, in_coordinates.back());
       const Eigen::VectorXd end = range.upper(0) > -range.lower(0) ? range.upper : range.lower;
       along.push_back(gain_along(draw.misfit, in_coordinates.back().change(end), draw.deviation,

@@ -287,16 +287,43 @@ std::vector<Response::Run> Workbench::runs_of(
   return result;
 }
 
+Eigen::VectorXd Workbench::slope_squares(const EffectSet &set) const
+{
+  constexpr double least = 1e-3;
+  Eigen::VectorXd base_mean = Eigen::VectorXd::Zero(modes.n_modes());
+  for (const RunSet &run : base())
+    base_mean += run.modes / static_cast<double>(base().size());
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(set.size()), least);
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    const Factor &effect = effects[set[k]];
+    Eigen::VectorXd products = Eigen::VectorXd::Zero(modes.n_modes());
+    double squares = 0.;
+    for (const auto &[amplitudes, sets] : runs) {
+      if (amplitudes.size() != 1 || amplitudes.begin()->first != effect.name)
+        continue;
+      const double u = (amplitudes.begin()->second - effect.null_value) / effect.scale;
+      for (const RunSet &run : sets) {
+        products += u * (run.modes - base_mean);
+        squares += u * u;
+      }
+    }
+    if (squares > 0.)
+      result(static_cast<Eigen::Index>(k)) =
+          std::max(least, misfit.coordinates(products / squares).squaredNorm() /
+                                  static_cast<double>(misfit.size()) -
+                              1. / squares);
+  }
+  return result;
+}
+
 Response Workbench::response_of_modes(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }),
-                  static_cast<Eigen::Index>(set.size()));
+  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }), slope_squares(set));
 }
 
 Response Workbench::response_of_columns(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.values; }),
-                  static_cast<Eigen::Index>(set.size()));
+  return Response(runs_of(set, [](const RunSet &run) { return run.values; }), slope_squares(set));
 }
 
 std::string name_of(const Workbench &bench, const EffectSet &set)

@@ -43,13 +43,19 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
   Covariance result;
   const double variance_sum = (fourth - products) * static_cast<double>(runs) / std::pow(dof, 3);
   result.shrinkage = squares > 0. ? std::clamp(variance_sum / squares, 0., 1.) : 1.;
-  result.matrix = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j)
-      if (i == j)
-        result.matrix(i, i) = sigma(i) * sigma(i);
-      else if (block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)])
-        result.matrix(i, j) = (1. - result.shrinkage) * correlation(i, j) * sigma(i) * sigma(j);
+  const auto shrunk_by = [&](const double share) {
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j)
+        if (i == j)
+          matrix(i, i) = sigma(i) * sigma(i);
+        else if (block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)])
+          matrix(i, j) = (1. - share) * correlation(i, j) * sigma(i) * sigma(j);
+    return matrix;
+  };
+  result.matrix = shrunk_by(result.shrinkage);
+  result.half_shrunk = shrunk_by(0.5 * result.shrinkage);
+  result.half_shrunk.diagonal() *= 1. + 1e-6;
   // With correlations unshrunk and few runs the matrix could be singular.
   const double least = 0.02;
   if (result.shrinkage < least)

@@ -28,9 +28,10 @@ int n_levels(const std::vector<Response::Run> &runs, const Eigen::Index effect)
 
 } // namespace
 
-Response::Response(const std::vector<Run> &runs, const Eigen::Index n_effects)
-    : least(Eigen::VectorXd::Zero(n_effects)), most(Eigen::VectorXd::Zero(n_effects))
+Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares)
+    : least(Eigen::VectorXd::Zero(slope_squares.size())), most(least)
 {
+  const Eigen::Index n_effects = slope_squares.size();
   constexpr int highest_degree = 3;
   constexpr double beyond = 1.5;
   const Term none(static_cast<std::size_t>(n_effects), 0);
@@ -60,12 +61,30 @@ Response::Response(const std::vector<Run> &runs, const Eigen::Index n_effects)
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, runs.front().values.size());
   for (const Run &run : runs) {
     const Eigen::VectorXd t = terms_at(run.position);
+    base_weight += run.position.isZero(0.) ? 1. / run.variance : 0.;
     normal += t * t.transpose() / run.variance;
     right += t * run.values.transpose() / run.variance;
   }
-  // Amplitudes that nearly coincide would make the highest powers huge.
-  for (Eigen::Index t = 1; t < n_terms; ++t)
-    normal(t, t) += 1e-6 * normal(t, t) + 1e-9;
+  // Expected sizes of terms over that of the slope: second order, third order, products.
+  constexpr double expected_bend[] = {0.4, 0.15}, expected_product = 0.4;
+  for (Eigen::Index t = 1; t < n_terms; ++t) {
+    double square = 1.;
+    int order = 0;
+    for (Eigen::Index k = 0; k < n_effects; ++k)
+      if (const int power = terms[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
+          power > 0) {
+        order = std::max(order, power);
+        square *= slope_squares(k);
+      }
+    const bool is_product = std::count(terms[static_cast<std::size_t>(t)].begin(),
+                                       terms[static_cast<std::size_t>(t)].end(), 1) == 2;
+    if (is_product)
+      square = std::sqrt(square) * expected_product * expected_product;
+    else if (order > 1)
+      square *= expected_bend[order - 2] * expected_bend[order - 2];
+    normal(t, t) += is_product || order > 1 ? 1. / square : 0.;
+    normal(t, t) *= 1. + 1e-9;
+  }
   inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
   coefficients = inverse * right;
 }
@@ -101,6 +120,13 @@ double Response::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
   return t.dot(inverse * t);
+}
+
+Response Response::with_shifted_base(const Eigen::VectorXd &shift) const
+{
+  Response result = *this;
+  result.coefficients += base_weight * inverse.col(0) * shift.transpose();
+  return result;
 }
 
 Response Response::transformed(const Eigen::MatrixXd &transform) const

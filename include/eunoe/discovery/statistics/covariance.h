@@ -10,6 +10,8 @@ namespace eunoe::discovery {
 struct Covariance
 {
   Eigen::MatrixXd matrix;
+  /// The same with half the shrinkage: for bootstraps, whose draws shall be no rounder than nature.
+  Eigen::MatrixXd half_shrunk;
   double shrinkage = 0.; ///< weight of the target: correlations that are zero
 };
 

@@ -22,7 +22,10 @@ public:
   Response() = default;
 
   /// @param runs at least one of them at the origin
-  Response(const std::vector<Run> &runs, Eigen::Index n_effects);
+  /// @param slope_squares of each effect: mean square over values, in units of C, of the change at
+  ///   one scale. How much a response may bend is expected in proportion to it; noise in the
+  ///   slope at a fitted amplitude would make its interval too narrow.
+  Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares);
 
   /// Predicted outcome at the origin.
   Eigen::VectorXd origin() const { return coefficients.row(0).transpose(); }
@@ -33,6 +36,10 @@ public:
   double change_leverage(const Eigen::VectorXd &position) const;
   /// Leverage of the outcome itself, origin and change.
   double leverage(const Eigen::VectorXd &position) const;
+
+  /// What the fit would be had the mean of the runs at the origin come out differently: the origin
+  /// moves, and every change that is measured from it.
+  Response with_shifted_base(const Eigen::VectorXd &shift) const;
 
   /// Values in other coordinates.
   Response transformed(const Eigen::MatrixXd &transform) const;
@@ -50,6 +57,7 @@ private:
   Eigen::MatrixXd coefficients; ///< terms x values
   Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
   Eigen::VectorXd least, most;
+  double base_weight = 0.; ///< of the runs at the origin
 };
 
 } // namespace eunoe::discovery

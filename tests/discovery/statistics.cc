@@ -1,0 +1,135 @@
+// The parts of discovery's statistics against closed formulas.
+
+#include <eunoe/discovery/statistics/covariance.h>
+#include <eunoe/discovery/statistics/data_noise.h>
+#include <eunoe/discovery/statistics/misfit.h>
+#include <eunoe/discovery/statistics/modes.h>
+#include <eunoe/discovery/statistics/response.h>
+
+#include "synthetic.h"
+
+namespace {
+
+using namespace test;
+
+void quantiles()
+{
+  const double known[][2] = {{0.975, 1.959963984540054}, {0.5, 0.}, {1e-6, -4.753424308822899}};
+  for (const auto &[p, x] : known)
+    check("normal quantile", std::abs(normal_quantile(p) - x) < 1e-8);
+  RandomStream a(1, 2), b(1, 2), c(1, 3);
+  check("same stream, same numbers", a.normal() == b.normal() && a.normal() != c.normal());
+  double sum = 0., square = 0.;
+  for (int k = 0; k < 20000; ++k) {
+    const double x = a.normal();
+    sum += x / 20000.;
+    square += x * x / 20000.;
+  }
+  // Five standard errors.
+  check("mean and variance", std::abs(sum) < 5. / std::sqrt(20000.) &&
+                                 std::abs(square - 1.) < 5. * std::sqrt(2. / 20000.));
+}
+
+/// Unit variances, correlation r between neighbours of a block.
+Eigen::MatrixXd chain(Eigen::Index n, double r)
+{
+  Eigen::MatrixXd result(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      result(i, j) = std::pow(r, std::abs(static_cast<double>(i - j)));
+  return result;
+}
+
+void covariances()
+{
+  const Eigen::Index n = 30;
+  const Eigen::MatrixXd truth = chain(n, 0.8);
+  const Eigen::MatrixXd half = Eigen::LLT<Eigen::MatrixXd>(truth).matrixL();
+  RandomStream random(3, 1);
+  const std::vector<int> one(n, 0);
+  const Eigen::MatrixXd many = centred(random.normals(4000, n) * half.transpose());
+  check("covariance from many runs",
+        (shrunk_covariance(many, 3999., one).matrix - truth).cwiseAbs().maxCoeff() < 0.15);
+  const Eigen::MatrixXd few = centred(random.normals(12, n) * half.transpose());
+  const Covariance estimate = shrunk_covariance(few, 11., one);
+  const Eigen::MatrixXd plain = few.transpose() * few / 11.;
+  check("shrinkage between none and all", estimate.shrinkage > 0.02 && estimate.shrinkage < 0.9);
+  check("fewer runs than cells, still positive",
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(estimate.matrix).eigenvalues()(0) > 0.01);
+  check("closer to the truth than without shrinkage",
+        (estimate.matrix - truth).norm() < (plain - truth).norm());
+  std::vector<int> two(n, 0);
+  std::fill(two.begin() + 15, two.end(), 1);
+  check("experiments are uncorrelated",
+        shrunk_covariance(few, 11., two).matrix.topRightCorner(15, 15).norm() == 0.);
+}
+
+void misfits()
+{
+  const Eigen::MatrixXd chaos = chain(8, 0.6), other = 0.3 * chain(8, 0.1);
+  const Misfit misfit(chaos, other);
+  RandomStream random(5, 1);
+  const Eigen::VectorXd d = random.normals(8, 1);
+  const double h = 0.2;
+  const Eigen::MatrixXd sum = other + h * chaos;
+  check("Mahalanobis distance",
+        std::abs(misfit.distance(misfit.coordinates(d), h) - d.dot(sum.inverse() * d)) < 1e-9);
+  check("log determinant", std::abs(misfit.log_determinant(h) - misfit.log_determinant(0.5) -
+                                    std::log(sum.determinant()) +
+                                    std::log((other + 0.5 * chaos).determinant())) < 1e-9);
+  // With many degrees of freedom the deviance is Gauss's.
+  check("deviance", std::abs(misfit.deviance(12., 1.5) - 13.5) < 1e-5);
+}
+
+void responses()
+{
+  // A straight response with exact values, at 0, 1 and 2, and replicates.
+  const Eigen::VectorXd origin = Eigen::VectorXd::Constant(3, 5.);
+  const Eigen::VectorXd slope = Eigen::VectorXd::LinSpaced(3, 1., 3.);
+  std::vector<Response::Run> runs;
+  for (const auto &[u, count] : {std::pair<double, int>(0., 10), {1., 4}, {2., 4}})
+    for (int k = 0; k < count; ++k)
+      runs.push_back({Eigen::VectorXd::Constant(1, u), origin + u * slope, 1.});
+  const Response response(runs, Eigen::VectorXd::Constant(1, 1e12));
+  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 1.3);
+  check("origin", (response.origin() - origin).norm() < 1e-6);
+  check("change", (response.change(at) - 1.3 * slope).norm() < 1e-6);
+  // Three levels and three terms: each level stands for itself.
+  check("leverage of replicates",
+        std::abs(response.leverage(Eigen::VectorXd::Ones(1)) - 0.25) < 1e-6 &&
+            std::abs(response.leverage(Eigen::VectorXd::Zero(1)) - 0.1) < 1e-6);
+  check("range of amplitudes", response.upper(0) == 3. && response.lower(0) == 0.);
+}
+
+void modes_and_noise()
+{
+  std::vector<Cell> cells;
+  for (int k = 0; k < 20; ++k)
+    cells.push_back({"e", "profile", 19 - k});
+  cells.push_back({"e", "angle", 0});
+  const Modes modes(cells, Eigen::VectorXd::Constant(21, 2.));
+  check("number of modes", modes.n_modes() == Modes::most_modes + 1);
+  check("orthonormal", (modes.basis() * modes.basis().transpose() -
+                        Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes()))
+                               .cwiseAbs()
+                               .maxCoeff() < 1e-12);
+
+  // The instrument adds as much variance as the chaos has.
+  const Eigen::MatrixXd chaos = Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes());
+  const DataNoise noise = estimate_data_noise(
+      modes, chaos, Eigen::VectorXd::Ones(21),
+      {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)});
+  check("noise of the instrument", std::abs(noise.cell_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
+                                       std::abs(noise.modes(0, 0) - 2. / 40.) < 0.05 * 2. / 40.);
+}
+
+} // namespace
+
+int main()
+{
+  quantiles();
+  covariances();
+  misfits();
+  responses();
+  modes_and_noise();
+}

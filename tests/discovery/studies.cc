@@ -1,0 +1,204 @@
+// Whole studies on synthetic laboratories, whose truth is known: each verdict where it is due.
+
+#include <eunoe/core/problems.h>
+
+#include "synthetic.h"
+
+#include <mpi.h>
+#include <set>
+
+namespace {
+
+using namespace test;
+
+const std::vector<std::string> both = {"spreading", "heap"}, thick = {"thick layers"};
+
+Nature nature(std::uint32_t seed)
+{
+  Nature result;
+  result.seed = seed;
+  result.n_effects = 6;
+  result.n_nuisances = 1;
+  return result;
+}
+
+Discovery study(SyntheticLaboratory &laboratory, const MeasuredData &data,
+                const std::vector<Factor> &factors, StageStore &store,
+                const StudyOptions &options = {})
+{
+  Log log(MPI_COMM_SELF, true);
+  return discover(options, data, factors, laboratory, store, log);
+}
+
+Discovery study(SyntheticLaboratory &laboratory, const MeasuredData &data,
+                const StudyOptions &options = {})
+{
+  TransientStore store;
+  return study(laboratory, data, laboratory.factors(), store, options);
+}
+
+void false_alarms()
+{
+  int alarms = 0;
+  const int n = 40;
+  for (std::uint32_t seed = 1; seed <= n; ++seed) {
+    SyntheticLaboratory laboratory(nature(1000 + seed));
+    const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 4, 0.2, seed));
+    alarms += d.verdict != Verdict::none && d.verdict != Verdict::underpowered;
+  }
+  // More than 5 of 40 at a true rate of 5 % would be a chance of 1.4 %.
+  check("false alarms", alarms <= 5, std::to_string(alarms) + " of 40");
+}
+
+void named_with_amplitude()
+{
+  int right = 0, covered = 0, withdrawn = 0;
+  const int n = 12;
+  for (std::uint32_t seed = 1; seed <= n; ++seed) {
+    SyntheticLaboratory laboratory(nature(2000 + seed));
+    const std::string name(1, static_cast<char>('a' + seed % 6));
+    const double a = laboratory.amplitude_of(name, 8., both);
+    const Discovery d =
+        study(laboratory, laboratory.measure(both, thick, {{name, a}}, 4, 0.2, seed));
+    withdrawn += d.verdict == Verdict::off_catalogue;
+    if (d.model_after.size() != 1 || d.model_after.count(name) == 0)
+      continue;
+    ++right;
+    const auto &row = d.content["amplitudes"][0];
+    covered += a >= row["lower"] && a <= row["upper"];
+  }
+  check("one effect is named", right >= 11, std::to_string(right) + " of 12");
+  // Fewer than 9 of 12 at a true coverage of 95 % would be a chance of 0.2 %.
+  check("its amplitude lies in the interval", covered >= 9, std::to_string(covered) + " of 12");
+}
+
+void two_effects()
+{
+  SyntheticLaboratory laboratory(nature(31));
+  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 9., both)},
+                            {"e", laboratory.amplitude_of("e", 9., both)}};
+  const Discovery d = study(laboratory, laboratory.measure(both, {}, truth, 5, 0.2, 5));
+  check("two effects are named",
+        d.model_after.size() == 2 && d.model_after.count("b") == 1 && d.model_after.count("e") == 1,
+        d.content["verdict"].get<std::string>() + ": " + d.content["amplitudes"].dump());
+  bool tried = false;
+  for (const auto &round : d.content["stages"]["iterate"]["rounds"])
+    tried = tried || !round["deletions tried"].empty();
+  check("each is tried without", tried);
+}
+
+void not_in_the_catalogue()
+{
+  Nature unlike = nature(41);
+  unlike.alike = 0.3;
+  SyntheticLaboratory laboratory(unlike);
+  const Amplitudes truth = {{"c", laboratory.amplitude_of("c", 12., both)}};
+  TransientStore store;
+  const Discovery d = study(laboratory, laboratory.measure(both, thick, truth, 4, 0.2, 3),
+                            laboratory.factors_without("c"), store);
+  check("off catalogue", d.verdict == Verdict::off_catalogue,
+        d.content["verdict"].get<std::string>());
+  check("what it resembles is told", !d.content["remainder"]["resembles"].empty());
+  check("no model comes of it", d.model_after.empty());
+}
+
+void tie_and_how_to_break_it()
+{
+  SyntheticLaboratory laboratory(nature(51));
+  laboratory.make_alike("b", "c", 0., {"heap"});
+  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 8., {"heap"})}};
+  StudyOptions options;
+  options.further_experiments = {"spreading"};
+  const Discovery heap =
+      study(laboratory, laboratory.measure({"heap"}, {}, truth, 4, 0.2, 2), options);
+  check("a tie from the heap alone", heap.verdict == Verdict::tie,
+        heap.content["verdict"].get<std::string>());
+  std::set<std::string> names;
+  for (const auto &row : heap.content["tie"])
+    names.insert(row["effects"].get<std::string>());
+  check("between the two that are alike there", names.count("b") == 1 && names.count("c") == 1);
+  const auto &best = heap.content["measurements that would break the tie"][0];
+  check("the spreading would break it",
+        best["experiment"] == "spreading" && best["separation"].get<double>() > 2., best.dump());
+  const Discovery more = study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, 2));
+  check("and does", more.verdict == Verdict::named && more.model_after.count("b") == 1,
+        more.content["verdict"].get<std::string>());
+}
+
+void too_weak_to_see()
+{
+  Nature weak = nature(61);
+  weak.strength_of_scale = 0.05;
+  weak.n_nuisances = 0;
+  SyntheticLaboratory laboratory(weak);
+  const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 3, 0.2, 2));
+  check("underpowered", d.verdict == Verdict::underpowered, d.content["verdict"].dump());
+}
+
+void withdrawn()
+{
+  // On the held-out condition the truth is as the base model: the effect is another one in
+  // disguise.
+  SyntheticLaboratory laboratory(nature(72));
+  const Amplitudes truth = {{"c", laboratory.amplitude_of("c", 9., both)}};
+  MeasuredData data = laboratory.measure(both, {}, truth, 4, 0.2, 1);
+  data.held_out = laboratory.measure(both, thick, {}, 4, 0.2, 1).held_out;
+  const Discovery d = study(laboratory, data);
+  check("a name that does not hold is withdrawn",
+        d.verdict == Verdict::off_catalogue && d.model_after.empty(), d.content["gaps"].dump());
+}
+
+void goes_on()
+{
+  Nature frail = nature(81);
+  frail.failures = 0.15;
+  SyntheticLaboratory laboratory(frail);
+  const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 8., both)}};
+  const MeasuredData data = laboratory.measure(both, thick, truth, 4, 0.2, 1);
+  TransientStore store;
+  const Discovery first = study(laboratory, data, laboratory.factors(), store);
+  check("named although runs fail",
+        first.model_after.count("a") == 1 && first.content["runs"]["failed"].get<int>() > 10);
+  const std::uint64_t runs = laboratory.n_runs();
+  const Discovery again = study(laboratory, data, laboratory.factors(), store);
+  check("a second start makes no run", laboratory.n_runs() == runs);
+  check("and gives the same", again.content.dump() == first.content.dump());
+  StudyOptions other;
+  other.seed = 2;
+  study(laboratory, data, laboratory.factors(), store, other);
+  check("another study does not use its tables", laboratory.n_runs() > runs);
+}
+
+void budget()
+{
+  SyntheticLaboratory laboratory(nature(91));
+  const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 8., both)}};
+  StudyOptions options;
+  options.budget = 180;
+  const Discovery d = study(laboratory, laboratory.measure(both, thick, truth, 4, 0.2, 1), options);
+  check("within the budget", d.n_runs <= 180 && laboratory.n_runs() <= 180);
+  try {
+    options.budget = 10;
+    study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, 1), options);
+    check("too small a budget is refused", false);
+  } catch (const UserError &) {
+    check("too small a budget is refused", true);
+  }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  MPI_Init(&argc, &argv);
+  false_alarms();
+  named_with_amplitude();
+  two_effects();
+  not_in_the_catalogue();
+  tie_and_how_to_break_it();
+  too_weak_to_see();
+  withdrawn();
+  goes_on();
+  budget();
+  MPI_Finalize();
+}
