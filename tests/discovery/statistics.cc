@@ -1,12 +1,12 @@
 // The parts of discovery's statistics against closed formulas.
 
-#include "synthetic.h"
-
 #include <eunoe/discovery/statistics/covariance.h>
 #include <eunoe/discovery/statistics/data_noise.h>
 #include <eunoe/discovery/statistics/misfit.h>
 #include <eunoe/discovery/statistics/modes.h>
 #include <eunoe/discovery/statistics/response.h>
+
+#include "synthetic.h"
 
 namespace {
 
@@ -109,11 +109,10 @@ void modes_and_noise()
   cells.push_back({"e", "angle", 0});
   const Modes modes(cells, Eigen::VectorXd::Constant(21, 2.));
   check("number of modes", modes.n_modes() == Modes::most_modes + 1);
-  check("orthonormal",
-        (modes.basis() * modes.basis().transpose() -
-         Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes()))
-                .cwiseAbs()
-                .maxCoeff() < 1e-12);
+  check("orthonormal", (modes.basis() * modes.basis().transpose() -
+                        Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes()))
+                               .cwiseAbs()
+                               .maxCoeff() < 1e-12);
 
   // The instrument adds as much variance as the chaos has.
   const Eigen::MatrixXd chaos = Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes());
