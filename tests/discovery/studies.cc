@@ -128,8 +128,9 @@ void tie_and_how_to_break_it()
 void too_weak_to_see()
 {
   Nature weak = nature(61);
-  weak.strength_of_scale = 0.05;
+  weak.strength_of_scale = 0.02;
   weak.n_nuisances = 0;
+  weak.changed_chaos = 0.;
   SyntheticLaboratory laboratory(weak);
   const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 3, 0.2, 2));
   check("underpowered", d.verdict == Verdict::underpowered, d.content["verdict"].dump());

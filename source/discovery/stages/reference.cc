@@ -67,7 +67,7 @@ class Draw
 {
 public:
   explicit Draw(const Workbench &bench)
-      : bench(bench), lower(Eigen::LLT<Eigen::MatrixXd>(bench.chaos.half_shrunk).matrixL()),
+      : bench(bench), lower(Eigen::LLT<Eigen::MatrixXd>(bench.chaos.unshrunk).matrixL()),
         most_repeats(static_cast<Eigen::Index>(bench.repeats.maxCoeff())),
         fine((1. - (bench.modes.basis().transpose() * bench.chaos.matrix * bench.modes.basis())
                        .diagonal()

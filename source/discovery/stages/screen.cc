@@ -174,7 +174,8 @@ Table stage_screen(Workbench &bench, Findings &findings)
     responses.push_back(bench.response_of_modes({k}));
   findings.reference = make_reference(bench, responses);
   findings.evidence = evidence_against_base(bench, responses);
-  findings.p_detected = findings.reference.p_joint(findings.evidence, true);
+  findings.p_detected = std::min(1., findings.decision.safety_of_p *
+                                         findings.reference.p_joint(findings.evidence, true));
   findings.detected = findings.p_detected <= bench.options.level;
 
   Table table = {{"p", findings.p_detected},

@@ -54,8 +54,9 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
     return matrix;
   };
   result.matrix = shrunk_by(result.shrinkage);
-  result.half_shrunk = shrunk_by(0.5 * result.shrinkage);
-  result.half_shrunk.diagonal() *= 1. + 1e-6;
+  constexpr double share_in_draws = 0.1;
+  result.unshrunk = shrunk_by(share_in_draws * result.shrinkage);
+  result.unshrunk.diagonal() *= 1. + 1e-6;
   // With correlations unshrunk and few runs the matrix could be singular.
   const double least = 0.02;
   if (result.shrinkage < least)

@@ -17,7 +17,10 @@ struct Decision
   /// data leave, -2 log.
   double cost_of_effect = 5.2;
   /// Deviances are divided by this before they become probabilities.
-  double temperature = 1.;
+  double temperature = 1.4;
+  /// The joint p-value is multiplied by this: on 150 synthetic laboratories without anything
+  /// missing the plain one gave 7 % alarms at a level of 5 %.
+  double safety_of_p = 2.;
   double credible = 0.95;        ///< probability that a tie set covers
   double off_catalogue = 0.5;    ///< least probability for this verdict
   double p_of_bad_fit = 0.01;    ///< below: the best model does not describe the data

@@ -10,8 +10,9 @@ namespace eunoe::discovery {
 struct Covariance
 {
   Eigen::MatrixXd matrix;
-  /// The same with half the shrinkage: for bootstraps, whose draws shall be no rounder than nature.
-  Eigen::MatrixXd half_shrunk;
+  /// The same with hardly any shrinkage, for bootstraps: draws that were rounder than nature would
+  /// make false alarms.
+  Eigen::MatrixXd unshrunk;
   double shrinkage = 0.; ///< weight of the target: correlations that are zero
 };
 
