@@ -53,7 +53,8 @@ Expressions::Expressions(const std::string &text, const std::string &constants,
     const SilentErrors silence; // the sentence that is thrown here is enough
     try {
       parser->function.initialize("x,y,z,t", parts, values, true);
-      value(0, {}, 0.);
+      for (unsigned int k = 0; k < n; ++k)
+        value(k, {}, 0.);
     } catch (const std::exception &) {
       understood = false;
     }
