@@ -61,9 +61,13 @@ double clearness(const Workbench &bench, const Response &response, const Eigen::
 {
   const Eigen::VectorXd weight = bench.misfit.variance(response.origin_leverage()).cwiseInverse();
   const Eigen::VectorXd change = response.change(position);
-  const double square =
-      change.dot(weight.cwiseProduct(change)) - response.change_leverage(position) * weight.sum();
-  return std::sqrt(std::max(0., square));
+  const double square = change.dot(weight.cwiseProduct(change));
+  const double leverage = response.change_leverage(position), noise = leverage * weight.sum();
+  // What noise alone makes now and then is no fingerprint: three standard deviations above it are.
+  constexpr double clear = 3.;
+  if (square < noise + clear * std::sqrt(2.) * leverage * weight.norm())
+    return 0.;
+  return std::sqrt(square - noise);
 }
 
 /// The smallest amplitude (scales) that is detected with 80 % power; beyond the runs so far the
