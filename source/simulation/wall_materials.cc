@@ -3,6 +3,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include <cctype>
+#include <set>
 
 namespace eunoe {
 
@@ -28,6 +29,8 @@ void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physic
                               std::to_string(k) + "' / entry 'surfaces':";
     std::vector<std::string> names;
     boost::split(names, physics.wall_materials[k].surfaces, boost::is_any_of(","));
+    // A boundary may have several sides of one name.
+    std::set<std::string> reported;
     for (std::string &name : names) {
       boost::trim(name);
       bool found = false;
@@ -35,7 +38,7 @@ void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physic
         if (!means(name, solid.name))
           continue;
         found = true;
-        if (solid.material != physics.wall_material())
+        if (solid.material != physics.wall_material() && reported.insert(solid.name).second)
           problems.add(place, "'" + solid.name + "' has a material already.",
                        "Name each wall or solid once.");
         solid.material = physics.wall_material(k);
