@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 
 namespace eunoe {
 namespace {
@@ -20,29 +19,10 @@ namespace bg = boost::geometry;
 using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
 using BoostBox = bg::model::box<BoostPoint>;
 
-BoostBox boost_box(const Vec3 &lower, const Vec3 &upper)
+BoostBox boost_box(const Box &box)
 {
-  return {BoostPoint(lower.x, lower.y, lower.z), BoostPoint(upper.x, upper.y, upper.z)};
-}
-
-Vec3 minimum(const Vec3 &a, const Vec3 &b)
-{
-  return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
-}
-
-Vec3 maximum(const Vec3 &a, const Vec3 &b)
-{
-  return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
-}
-
-Box enclose(const std::vector<Vec3> &points)
-{
-  Box box{points.front(), points.front()};
-  for (const Vec3 &p : points) {
-    box.lower = minimum(box.lower, p);
-    box.upper = maximum(box.upper, p);
-  }
-  return box;
+  return {BoostPoint(box.lower.x, box.lower.y, box.lower.z),
+          BoostPoint(box.upper.x, box.upper.y, box.upper.z)};
 }
 
 using Edge = std::pair<std::int32_t, std::int32_t>;
@@ -53,67 +33,6 @@ Edge edge_of(const std::array<std::int32_t, 3> &triangle, unsigned int e)
 }
 
 } // namespace
-
-void TriangleMesh::add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d)
-{
-  const auto first = static_cast<std::int32_t>(vertices.size());
-  vertices.insert(vertices.end(), {a, b, c, d});
-  triangles.push_back({first, first + 1, first + 2});
-  triangles.push_back({first, first + 2, first + 3});
-}
-
-void TriangleMesh::append(const TriangleMesh &other)
-{
-  const auto first = static_cast<std::int32_t>(vertices.size());
-  vertices.insert(vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto &t : other.triangles)
-    triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-}
-
-void TriangleMesh::merge_vertices(const double tolerance)
-{
-  std::vector<std::int32_t> order(vertices.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return vertices[a].x != vertices[b].x ? vertices[a].x < vertices[b].x : a < b;
-  });
-  std::vector<std::int32_t> target(vertices.size(), -1);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    if (target[order[k]] >= 0)
-      continue;
-    target[order[k]] = order[k];
-    for (std::size_t l = k + 1;
-         l < order.size() && vertices[order[l]].x - vertices[order[k]].x <= tolerance; ++l)
-      if (target[order[l]] < 0 && norm(vertices[order[l]] - vertices[order[k]]) <= tolerance)
-        target[order[l]] = order[k];
-  }
-  for (auto &triangle : triangles)
-    for (std::int32_t &vertex : triangle)
-      vertex = target[vertex];
-}
-
-std::string TriangleMesh::defect() const
-{
-  if (triangles.empty())
-    return "it has no triangles";
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (const std::int32_t vertex : triangles[t]) {
-      if (vertex < 0 || vertex >= static_cast<std::int32_t>(vertices.size()))
-        return "triangle " + std::to_string(t) + " names a corner that does not exist";
-      if (!std::isfinite(norm_square(vertices[vertex])))
-        return "triangle " + std::to_string(t) + " has a corner that is not a number";
-    }
-  const double extent = norm(enclose(vertices).upper - enclose(vertices).lower);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Vec3 &a = vertices[triangles[t][0]], &b = vertices[triangles[t][1]],
-               &c = vertices[triangles[t][2]];
-    const double area = 0.5 * norm(cross(b - a, c - a));
-    const double longest = std::max({norm(b - a), norm(c - b), norm(a - c)});
-    if (area <= 1e-12 * longest * longest || longest <= 1e-12 * extent)
-      return "triangle " + std::to_string(t) + " is degenerate: its corners lie on one line";
-  }
-  return "";
-}
 
 struct TriangulatedSurface::Tree
 {
@@ -134,7 +53,7 @@ struct TriangulatedSurface::Touch
 
 TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
 {
-  box = enclose(mesh.vertices);
+  box = Box::around(mesh.vertices);
   const double tolerance = 1e-10 * norm(box.upper - box.lower);
   mesh.merge_vertices(tolerance);
 
@@ -206,12 +125,8 @@ TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
     }
 
   std::vector<std::pair<BoostBox, std::int32_t>> boxes;
-  for (std::size_t t = 0; t < facets.size(); ++t) {
-    const auto &corner = facets[t].corner;
-    boxes.emplace_back(boost_box(minimum(minimum(corner[0], corner[1]), corner[2]),
-                                 maximum(maximum(corner[0], corner[1]), corner[2])),
-                       static_cast<std::int32_t>(t));
-  }
+  for (std::size_t t = 0; t < facets.size(); ++t)
+    boxes.emplace_back(boost_box(Box::around(facets[t].corner)), static_cast<std::int32_t>(t));
   tree = std::make_unique<const Tree>(boxes);
 }
 
@@ -233,7 +148,7 @@ double TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
     return least;
   const std::size_t first = found.size();
   const Vec3 margin = {reach, reach, reach};
-  const auto query = bg::index::intersects(boost_box(centre - margin, centre + margin));
+  const auto query = bg::index::intersects(boost_box({centre - margin, centre + margin}));
   for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it) {
     const double distance = closest(centre, it->second).distance;
     if (distance < reach) {

@@ -3,6 +3,7 @@
 
 #include <eunoe/core/vec3.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -24,6 +25,20 @@ struct Box
   {
     return x.x >= lower.x - margin && x.x <= upper.x + margin && x.y >= lower.y - margin &&
            x.y <= upper.y + margin && x.z >= lower.z - margin && x.z <= upper.z + margin;
+  }
+
+  /// The smallest box around points, of which there must be one at least.
+  template <class Points>
+  static Box around(const Points &points)
+  {
+    Box box{points[0], points[0]};
+    for (const Vec3 &p : points) {
+      box.lower = {std::min(box.lower.x, p.x), std::min(box.lower.y, p.y),
+                   std::min(box.lower.z, p.z)};
+      box.upper = {std::max(box.upper.x, p.x), std::max(box.upper.y, p.y),
+                   std::max(box.upper.z, p.z)};
+    }
+    return box;
   }
 };
 

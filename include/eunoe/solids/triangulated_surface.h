@@ -2,32 +2,13 @@
 #define eunoe_solids_triangulated_surface_h
 
 #include <eunoe/solids/shape.h>
+#include <eunoe/solids/triangle_mesh.h>
 
 #include <array>
 #include <memory>
 #include <string>
 
 namespace eunoe {
-
-/// Corners and triangles as they are read or made, not yet checked.
-struct TriangleMesh
-{
-  std::vector<Vec3> vertices;
-  std::vector<std::array<std::int32_t, 3>> triangles;
-
-  /// Appends the quadrilateral a-b-c-d as two triangles.
-  void add_quad(const Vec3 &a, const Vec3 &b, const Vec3 &c, const Vec3 &d);
-
-  /// Appends another mesh.
-  void append(const TriangleMesh &other);
-
-  /// Unites corners that lie closer than @p tolerance (m), as contacts need to know which
-  /// triangles are neighbours.
-  void merge_vertices(double tolerance);
-
-  /// A sentence that says why this cannot be a surface, empty if it can.
-  std::string defect() const;
-};
 
 /// A surface of triangles, two-sided: a particle is kept on the side where its centre is.
 class TriangulatedSurface : public Shape
