@@ -22,7 +22,8 @@ void print_check(const RunEstimate &estimate, const double time_step, Log &log)
            " MB for the particles, and 200 MB a rank");
   log.line("  steps:      " + format(estimate.steps) + " of " + format(time_step) + " s");
   log.line("  core-hours: about " + format(estimate.core_seconds() / 3600.) + " (" +
-           format(estimate.particle_steps()) + " particle-steps at 7 million a second and core)");
+           format(estimate.particle_steps()) + " particle-steps at " +
+           format(estimate.speed() / 1e6) + " million a second and core)");
 }
 
 int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)

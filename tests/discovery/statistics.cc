@@ -121,6 +121,15 @@ void modes_and_noise()
       {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)});
   check("noise of the instrument", std::abs(noise.cell_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
                                        std::abs(noise.modes(0, 0) - 2. / 40.) < 0.05 * 2. / 40.);
+
+  // An angle that hardly varies in runs says nothing of the profile's noise.
+  Eigen::VectorXd deviation = Eigen::VectorXd::Ones(21);
+  deviation(20) = 100.;
+  const DataNoise uneven = estimate_data_noise(modes, chaos, Eigen::VectorXd::Ones(21),
+                                               {deviation, Eigen::VectorXd::Constant(21, 5.)});
+  check("one observable without chaos",
+        std::abs(uneven.cell_variance(0) - 1. / 5.) < 0.05 / 5. &&
+            std::abs(uneven.cell_variance(20) - 1e4 / 5.) < 0.05 * 1e4 / 5.);
 }
 
 } // namespace

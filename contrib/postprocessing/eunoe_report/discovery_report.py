@@ -45,6 +45,15 @@ def _add_tie_breakers(page: Page, study: Study) -> None:
                  number(row["repeats"]) if row.get("repeats") else "1"] for row in rows[:8]])
 
 
+def _changes(study: Study) -> dict[str, list[str]]:
+    """What the found effects change in the cases, and in which experiments' cases they change that."""
+    changes: dict[str, list[str]] = {}
+    for path in sorted(study.folder.glob("model_*.diff")):
+        _, _, text = path.read_text(encoding="utf-8").partition("\n")
+        changes.setdefault(text, []).append(path.stem.removeprefix("model_"))
+    return changes
+
+
 def _add_origin(page: Page, study: Study) -> None:
     content = study.content
     made, origin = content["simulations"], content["provenance"]
@@ -60,9 +69,8 @@ def _add_origin(page: Page, study: Study) -> None:
             ["Experiment", "Amplitudes", "Seed", "Why"],
             [[run["experiment"], json.dumps(run["amplitudes"]), str(run["seed"]), run["failure"]]
              for run in failed[:40]]))
-    for path in sorted(study.folder.glob("model_*.diff")):
-        page.fold(f"What is added to the model: {path.name}",
-                  preformatted(path.read_text(encoding="utf-8")))
+    for text, experiments in _changes(study).items():
+        page.fold(f"What is added to the model of {', '.join(experiments)}", preformatted(text))
     page.fold("Provenance", preformatted(json.dumps(origin, indent=1)))
     used = study.folder / "used.prm"
     if used.exists():

@@ -109,7 +109,9 @@ def held_out_text(study: Study) -> str:
     if "shrink" not in table or table["shrink"] is None:
         return f"Held-out data: {table.get('result', 'none')}."
     low, high = table["shrink interval"]
-    return (f"On data that were held out, the gap shrinks by {percent(table['shrink'], 0)} "
+    chosen = "" if study.verdict != "tie" else (
+        f" with {plain(study.content['tie'][0]['effects'])}, the likeliest by a little, added")
+    return (f"On data that were held out, the gap shrinks by {percent(table['shrink'], 0)}{chosen} "
             f"(95{SPACE}% interval {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
             f"{table['result']}.")
 

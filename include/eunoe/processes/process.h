@@ -23,8 +23,10 @@ struct RunEstimate
   double steps = 0.;
 
   double particle_steps() const { return particles * steps; }
-  /// Measured on a settled bed of 20,000 to 200,000 particles with the full model.
-  double core_seconds() const { return particle_steps() / 7e6; }
+  /// Particle-steps per second and core, as measured on settled beds with the full model: of 20,000
+  /// particles, which fit into the caches, and of 200,000 to a million, which do not.
+  double speed() const { return most_particles < 1e5 ? 16e6 : 8e6; }
+  double core_seconds() const { return particle_steps() / speed(); }
 };
 
 /// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from

@@ -13,6 +13,14 @@ struct Witness
 {
   double ratio, weight;
   bool declared; ///< a single repeat: the deviation was not estimated from repeats
+
+  /// Of repeats that scatter so far beyond the chaos the instrument is the cause, or the observable
+  /// hardly varies in runs; what they say holds for them alone.
+  bool stands_alone() const
+  {
+    constexpr double most = 10.;
+    return ratio > most;
+  }
 };
 
 Witness witness(const Modes::Group &group, const Eigen::MatrixXd &chaos,
@@ -47,6 +55,8 @@ DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
   double sum = weight_of_one, weight = weight_of_one;
   for (const Modes::Group &group : modes.groups()) {
     witnesses.push_back(witness(group, chaos, cell_chaos, repeats));
+    if (witnesses.back().stands_alone())
+      continue;
     sum += witnesses.back().weight * witnesses.back().ratio;
     weight += witnesses.back().weight;
   }
@@ -58,9 +68,10 @@ DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
   Eigen::VectorXd instrument(n), share = Eigen::VectorXd::Zero(modes.n_modes());
   for (std::size_t g = 0; g < witnesses.size(); ++g) {
     const Witness &w = witnesses[g];
-    const double ratio = w.declared ? std::max(1., w.ratio)
-                                    : (weight_of_mean * sum / weight + w.weight * w.ratio) /
-                                          (weight_of_mean + w.weight);
+    const double ratio =
+        w.declared || w.stands_alone()
+            ? std::max(1., w.ratio)
+            : (weight_of_mean * sum / weight + w.weight * w.ratio) / (weight_of_mean + w.weight);
     double repeats_inverse = 0.;
     for (const Eigen::Index c : modes.groups()[g].cells) {
       noise.ratio(c) = ratio;
