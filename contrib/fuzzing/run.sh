@@ -25,7 +25,7 @@ if [ ! -f "$build/build.ninja" ]; then
     -DCMAKE_CXX_COMPILER=clang++ "-DEUNOE_SANITIZE=fuzzer-no-link;address;undefined" \
     -DEUNOE_FUZZERS=ON -DEUNOE_TESTS=OFF
 fi
-ninja -C "$build"
+ninja -C "$build" fuzzers
 
 # The text of the head, a byte 0, the sections: see checkpoint_image.h.
 take_apart() {
@@ -84,7 +84,7 @@ write_dictionary() {
   {
     cat contrib/fuzzing/dictionary
     sed -E 's/^ +//; s/ +#.*//; s/ +$//; s/[\\"]//g' "$build/corpus/parameters"/*.prm |
-      grep -E '^(set|subsection|end)' | sort -u | sed 's/.*/"&\\x0a"/'
+      LC_ALL=C grep -aE '^(set|subsection|end)[ -~]*$' | sort -u | sed 's/.*/"&\\x0a"/'
   } >"$build/dictionary"
 }
 

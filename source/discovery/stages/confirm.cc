@@ -10,8 +10,9 @@ Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
 {
   constexpr double relative = 0.15;
   const Amplitudes wanted = bench.amplitudes(set, position);
-  for (const auto &[amplitudes, sets] : bench.runs) {
-    if (amplitudes.size() != wanted.size() || sets.empty())
+  for (const auto &runs : bench.runs) {
+    const Amplitudes &amplitudes = runs.first;
+    if (amplitudes.size() != wanted.size() || runs.second.empty())
       continue;
     const bool near = std::all_of(wanted.begin(), wanted.end(), [&](const auto &entry) {
       const auto found = amplitudes.find(entry.first);
