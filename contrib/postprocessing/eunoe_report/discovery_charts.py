@@ -93,10 +93,10 @@ def ranking_figure(study: Study) -> Figure:
     axes.barh(range(len(bars)), values, color=colours, height=0.66)
     axes.set_yticks(range(len(bars)), names)
     axes.invert_yaxis()
-    axes.set_xlim(0., 1.)
+    axes.set_xlim(0., 1.08)
     axes.set_xlabel("Confidence")
     for k, value in enumerate(values):
-        axes.text(min(value, 0.93) + 0.01, k, f"{value:.2f}", va="center", fontsize=7.5)
+        axes.text(value + 0.01, k, f"{value:.2f}", va="center", fontsize=7.5)
     return figure
 
 
