@@ -8,54 +8,26 @@ Needs numpy and matplotlib, as Debian's packages python3-numpy and python3-matpl
 
 from __future__ import annotations
 
-import argparse
-import logging
 import sys
 from pathlib import Path
 
-try:
-    import matplotlib  # noqa: F401
-    import numpy  # noqa: F401
-except ImportError as error:
-    sys.exit(f"{sys.executable} has no {error.name}: install python3-numpy and "
-             "python3-matplotlib, and run this script with Debian's /usr/bin/python3.")
-
+from eunoe_report.command import write_page
 from eunoe_report.general_report import general_report
 from eunoe_report.heap_report import heap_report
 from eunoe_report.page import Page
-from eunoe_report.run_folder import ReportError, Run, read_run
+from eunoe_report.run_folder import read_run
 from eunoe_report.spreading_report import spreading_report
 
 
-def make_page(run: Run) -> Page:
+def make_page(folder: Path) -> Page:
+    run = read_run(folder)
     if run.layers is not None:
         return spreading_report(run, run.layers)
     return heap_report(run) if run.is_heap else general_report(run)
 
 
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("folder", type=Path, help="output folder of a run")
-    parser.add_argument("--out", type=Path, help="file to write (default: FOLDER/report.html)")
-    parser.add_argument("--figures", choices=("pdf", "png", "svg"),
-                        help="write the figures as files too, into 'figures' beside the page")
-    options = parser.parse_args(arguments)
-    # matplotlib tells of the building of its font cache, which says nothing about the run.
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)
-    target = options.out or options.folder / "report.html"
-    try:
-        page = make_page(read_run(options.folder))
-        target.write_text(page.html(), encoding="utf-8")
-        if options.figures:
-            page.write_figures(target.parent / "figures", options.figures)
-    except ReportError as error:
-        print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
-        return 2
-    print(f"Report: {target}")
-    return 0
+    return write_page(arguments, __doc__.split("\n", 1)[0], make_page, "report.html")
 
 
 if __name__ == "__main__":

@@ -1,1 +1,10 @@
-"""The parts of report.py: readers of a run's output folder, figures, and the page."""
+"""Pages about runs and studies, with their figures."""
+
+import sys
+
+try:
+    import matplotlib  # noqa: F401
+    import numpy  # noqa: F401
+except ImportError as error:
+    sys.exit(f"{sys.executable} has no {error.name}: install python3-numpy and "
+             "python3-matplotlib, and run this script with Debian's /usr/bin/python3.")

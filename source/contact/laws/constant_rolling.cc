@@ -1,34 +1,14 @@
-#include <eunoe/contact/contact_law.h>
 #include <eunoe/core/simd.h>
+
+#include "rolling_friction.h"
 
 namespace eunoe {
 namespace {
 
 /// Rolling resistance of constant magnitude mu_r R_e |F_n| against the relative spin
 /// (Zhou, Wright, Yang, Xu, Yu 1999).
-class ConstantRolling : public ContactLaw
+struct ConstantRolling
 {
-public:
-  explicit ConstantRolling(const Materials &materials)
-      : table(materials.table([](const Material &a, const Material &b) {
-          return Row{harmonic_mean(a.rolling_friction, b.rolling_friction)};
-        }))
-  {
-  }
-
-  void apply(PairBlock &block, unsigned int, double) const override
-  {
-    alignas(64) PairBlock::Lanes friction;
-    look_up(block, table, &Row::friction, friction);
-    kernel(block, friction);
-  }
-
-private:
-  struct Row
-  {
-    double friction;
-  };
-
   EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
   {
 #pragma omp simd
@@ -42,13 +22,11 @@ private:
       b.torque_z[k] += factor * b.roll_z[k];
     }
   }
-
-  const std::vector<Row> table;
 };
 
 const ContactLawRegistry::Registration registration(
     contact_laws("rolling"), "constant", [](const Materials &materials, const ContactLawOptions &) {
-      return std::make_unique<ConstantRolling>(materials);
+      return std::make_unique<RollingFriction<ConstantRolling>>(materials);
     });
 
 } // namespace

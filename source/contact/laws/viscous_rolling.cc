@@ -1,5 +1,6 @@
-#include <eunoe/contact/contact_law.h>
 #include <eunoe/core/simd.h>
+
+#include "rolling_friction.h"
 
 namespace eunoe {
 namespace {
@@ -7,29 +8,8 @@ namespace {
 /// Rolling resistance mu_r R_e |F_n| (R_e |w_p|) against the relative spin w_p: in proportion to
 /// the speed by which the surfaces roll over each other, so that mu_r is in s/m (Zhou, Wright,
 /// Yang, Xu, Yu 1999, model of the second kind).
-class ViscousRolling : public ContactLaw
+struct ViscousRolling
 {
-public:
-  explicit ViscousRolling(const Materials &materials)
-      : table(materials.table([](const Material &a, const Material &b) {
-          return Row{harmonic_mean(a.rolling_friction, b.rolling_friction)};
-        }))
-  {
-  }
-
-  void apply(PairBlock &block, unsigned int, double) const override
-  {
-    alignas(64) PairBlock::Lanes friction;
-    look_up(block, table, &Row::friction, friction);
-    kernel(block, friction);
-  }
-
-private:
-  struct Row
-  {
-    double friction;
-  };
-
   EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
   {
 #pragma omp simd
@@ -40,13 +20,11 @@ private:
       b.torque_z[k] += factor * b.roll_z[k];
     }
   }
-
-  const std::vector<Row> table;
 };
 
 const ContactLawRegistry::Registration registration(
     contact_laws("rolling"), "viscous", [](const Materials &materials, const ContactLawOptions &) {
-      return std::make_unique<ViscousRolling>(materials);
+      return std::make_unique<RollingFriction<ViscousRolling>>(materials);
     });
 
 } // namespace

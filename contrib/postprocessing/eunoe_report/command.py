@@ -1,0 +1,40 @@
+"""The command line of the scripts that turn an output folder into a page."""
+
+from __future__ import annotations
+
+import argparse
+import logging
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+from .page import Page
+from .run_folder import ReportError
+
+
+def write_page(arguments: list[str], description: str, make_page: Callable[[Path], Page],
+               name: str) -> int:
+    """Makes the page of the folder that the arguments name and writes it there, as a file of the
+    given name. Returns the exit code; what is wrong goes to stderr in one sentence."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("folder", type=Path, help="output folder")
+    parser.add_argument("--out", type=Path, help=f"file to write (default: FOLDER/{name})")
+    parser.add_argument("--figures", choices=("pdf", "png", "svg"),
+                        help="write the figures as files too, into 'figures' beside the page")
+    options = parser.parse_args(arguments)
+    # matplotlib tells of the building of its font cache, which says nothing about the run.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+    target = options.out or options.folder / name
+    try:
+        page = make_page(options.folder)
+        target.write_text(page.html(), encoding="utf-8")
+        if options.figures:
+            page.write_figures(target.parent / "figures", options.figures)
+    except ReportError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
+        return 2
+    print(f"{Path(name).stem.capitalize()}: {target}")
+    return 0
