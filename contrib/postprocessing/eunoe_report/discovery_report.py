@@ -49,7 +49,8 @@ def _changes(study: Study) -> dict[str, list[str]]:
     """What the found effects change in the cases, and in which experiments' cases they change that."""
     changes: dict[str, list[str]] = {}
     for path in sorted(study.folder.glob("model_*.diff")):
-        _, _, text = path.read_text(encoding="utf-8").partition("\n")
+        lines = path.read_text(encoding="utf-8").splitlines()
+        text = "\n".join(line for line in lines if not line.startswith("#"))
         changes.setdefault(text, []).append(path.stem.removeprefix("model_"))
     return changes
 
