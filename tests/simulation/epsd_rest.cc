@@ -1,42 +1,19 @@
 // A sphere with EPSD's rolling resistance on a plane rolls to rest and stays where it is (Ai et al.
 // 2011); on the way there its dashpot is felt as the formulas for either inertia say.
 
-#include "../spheres.h"
+#include "rolling_sphere.h"
 
 using namespace test;
 
 namespace {
 
-const double g = 9.81, radius = 0.5e-3, rolling_friction = 0.1;
-/// Of horizontal motion and of the spin that rolling gives with it.
-const Vec3 along = {0.8, -0.6, 0.}, axis = {0.6, 0.8, 0.};
+const double radius = 0.5e-3;
 
 Scene scene(const std::string &more)
 {
-  Scene s;
-  s.floor = true;
-  s.rolling = "epsd";
-  s.time_step = 1e-6;
-  s.particle.restitution = 0.5;
-  s.particle.friction = 0.5;
-  s.particle.rolling_friction = rolling_friction;
-  s.particle.rolling_viscous_damping = 0.3;
-  s.wall = s.particle;
-  s.gravity = {0., 0., -g};
-  s.spheres = {resting_sphere(s)};
+  Scene s = rolling_scene("epsd");
   s.more = "subsection model parameters\n" + more + "end\n";
   return s;
-}
-
-/// Spin about the axis at two times, the first of which is after EPSD's spring is mobilised.
-std::array<double, 2> spins(const Scene &scene, double first)
-{
-  std::array<double, 2> spin = {};
-  run(scene, [&](Simulation &simulation) {
-    const Sphere s = spheres_of(simulation)[0];
-    spin[simulation.time() > first * (1. + 1e-12)] = dot(s.w, axis);
-  });
-  return spin;
 }
 
 /// Stiffness of EPSD's spring, angle at which it is mobilised, and its damping coefficient.

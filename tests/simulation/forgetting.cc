@@ -1,30 +1,18 @@
 // A sphere that EPSD's spring holds on a slope. With its memory it stays; each time that the
 // contact forgets, it rolls on until a new spring holds it: as far as at the start.
 
-#include "../spheres.h"
+#include "rolling_sphere.h"
 
 using namespace test;
 
 namespace {
 
-constexpr double g = 9.81, rolling_friction = 0.1, slope = 0.5 * rolling_friction;
-const Vec3 along = {1., 0., 0.};
+constexpr double slope = 0.5 * rolling_friction;
 
 /// Way down the slope at the multiples of an interval (m).
 std::vector<double> ways(unsigned int interval, const std::string &more)
 {
-  Scene s;
-  s.floor = true;
-  s.rolling = "epsd";
-  s.time_step = 1e-6;
-  s.particle.restitution = 0.5;
-  s.particle.friction = 0.5;
-  s.particle.rolling_friction = rolling_friction;
-  s.particle.rolling_viscous_damping = 1.;
-  s.wall = s.particle;
-  const double angle = std::atan(slope);
-  s.gravity = g * std::sin(angle) * along - Vec3{0., 0., g * std::cos(angle)};
-  s.spheres = {resting_sphere(s)};
+  Scene s = rolling_scene("epsd", slope, 1.);
   s.time_end = 5 * interval * s.time_step;
   s.more = more;
   std::vector<double> places;

@@ -1,49 +1,19 @@
 // A sphere with rolling resistance on a plane. Constant torque: linear decay of the spin, motion on
 // an incline only above tan(angle) = mu_r. EPSD: the same, once its spring is mobilised.
 
-#include "../spheres.h"
+#include "rolling_sphere.h"
 
 using namespace test;
 
 namespace {
 
-const double g = 9.81, radius = 0.5e-3, rolling_friction = 0.1;
-/// Of horizontal motion and of the spin that rolling gives with it.
-const Vec3 along = {0.8, -0.6, 0.}, axis = {0.6, 0.8, 0.};
-
-Scene scene(const std::string &rolling, double slope = 0.)
-{
-  Scene s;
-  s.floor = true;
-  s.rolling = rolling;
-  s.time_step = 1e-6;
-  s.particle.restitution = 0.5;
-  s.particle.friction = 0.5;
-  s.particle.rolling_friction = rolling_friction;
-  s.particle.rolling_viscous_damping = 0.3;
-  s.wall = s.particle;
-  const double angle = std::atan(slope);
-  s.gravity = g * std::sin(angle) * along - Vec3{0., 0., g * std::cos(angle)};
-  s.spheres = {resting_sphere(s)};
-  return s;
-}
-
-/// Spin about the axis at two times, the first of which is after EPSD's spring is mobilised.
-std::array<double, 2> spins(const Scene &scene, double first)
-{
-  std::array<double, 2> spin = {};
-  run(scene, [&](Simulation &simulation) {
-    const Sphere s = spheres_of(simulation)[0];
-    spin[simulation.time() > first * (1. + 1e-12)] = dot(s.w, axis);
-  });
-  return spin;
-}
+const double radius = 0.5e-3;
 
 void check_decay(const std::string &rolling)
 {
   // Without friction the torque brakes the inertia 2/5 m R^2, in rolling it brakes 7/5 m R^2.
   const double first = 0.002, second = 0.01;
-  Scene s = scene(rolling);
+  Scene s = rolling_scene(rolling);
   s.time_end = second;
   s.spheres[0].w = 100. * axis;
   s.particle.friction = 0.;
@@ -64,7 +34,7 @@ void check_decay(const std::string &rolling)
 void check_viscous_decay()
 {
   constexpr double resistance = 10.; // s/m
-  Scene s = scene("viscous");
+  Scene s = rolling_scene("viscous");
   s.particle.rolling_friction = s.wall.rolling_friction = resistance;
   const double first = 0.002, second = 0.01;
   s.time_end = second;
@@ -82,7 +52,7 @@ void check_viscous_decay()
 
 void check_incline(const std::string &rolling)
 {
-  Scene s = scene(rolling, 0.9 * rolling_friction);
+  Scene s = rolling_scene(rolling, 0.9 * rolling_friction);
   const double t = s.time_end = 0.05;
   const double free_way = 0.5 * 5. / 7. * g * std::sin(std::atan(0.9 * rolling_friction)) * t * t;
   Sphere middle;
@@ -96,7 +66,7 @@ void check_incline(const std::string &rolling)
   if (rolling == "epsd")
     check_close(rolling + ": does not creep", norm(end.x - middle.x) / free_way, 0., 1e-6);
 
-  s = scene(rolling, 2. * rolling_friction);
+  s = rolling_scene(rolling, 2. * rolling_friction);
   s.time_end = t;
   end = run(s)[0];
   const double acceleration =
