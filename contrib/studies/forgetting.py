@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""What a packing loses when its contacts forget: runs the micro heap and the micro spreading with
-several intervals after which every contact loses its slip and its rolling, and several seeds, and makes a
-table of what has finished.
+"""What a packing loses when its contacts forget: runs the micro heap, the micro spreading and a pile that is
+watched at rest with several intervals after which every contact loses its slip and its rolling, and several
+seeds, and makes a table of what has finished.
 
 Usage: contrib/studies/forgetting.py path/to/eunoe-particles folder [--intervals 0 100000 10000 1000 100]
        [--seeds 1 2 3 4 5] [--jobs 1] [--table-only] [--picture FILE.png]
@@ -25,27 +25,43 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
-CASES = Path(__file__).resolve().parents[2] / "prm" / "discovery"
+CASES = Path(__file__).resolve().parents[2] / "prm"
+# The pile is watched from here to its end (s), in mean diameters (m).
+WATCHED_FROM, MEAN_DIAMETER = 0.8, 1e-3
 
 
 @dataclass(frozen=True)
 class Experiment:
     title: str
     case: str
-    section: str  # of the seed
+    seed: str  # entry
     observables: tuple[tuple[str, str, float, str], ...]  # observable/index, label, factor, format
 
 
 SPREADING = tuple((f"{name}/{layer}", f"{name} of layer {layer}", 1., ".3f")
                   for name, layer in (("LRD", 1), ("LRD", 2), ("LRD", 3), ("CRD", 2), ("CRD", 3)))
 EXPERIMENTS = {
-    "heap": Experiment("Heap", "micro_heap.prm", "heap", (
+    "heap": Experiment("Heap", "discovery/micro_heap.prm", "heap/seed", (
         ("base_angle/0", "base angle (degrees)", 1., ".2f"),
         ("height/0", "height (um)", 1e6, ".1f"),
         ("mass_on_disc/0", "mass on the disc (mg)", 1e6, ".4f"),
         ("rest", "comes to rest at (ms)", 1e3, ".1f"))),
-    "spreading": Experiment("Spreading", "micro_spreading.prm", "powder spreading", SPREADING),
+    "spreading": Experiment("Spreading", "discovery/micro_spreading.prm", "powder spreading/seed",
+                            SPREADING),
+    "pile": Experiment("Pile", "verification/pile.prm", "insertion info/insertion prn seed", (
+        ("height", "centre of mass in the end (mm)", 1e3, ".3f"),
+        ("sinks", "sinks while it is watched (1/1000 diameter)", 1e3, ".3f"),
+        ("speed", "rms speed in the end (um/s)", 1e6, ".3f"))),
 }
+
+
+def pile_at_rest(folder: Path, mass: float) -> dict[str, float]:
+    with open(folder / "energies.csv", encoding="utf-8") as file:
+        rows = [{name: float(row[name]) for name in ("time", "kinetic", "potential")}
+                for row in csv.DictReader(file)]
+    heights = [row["potential"] / (9.81 * mass) for row in rows if row["time"] >= WATCHED_FROM]
+    return {"height": heights[-1], "sinks": (heights[0] - heights[-1]) / MEAN_DIAMETER,
+            "speed": math.sqrt(2. * rows[-1]["kinetic"] / mass)}
 
 
 @dataclass(frozen=True)
@@ -61,7 +77,7 @@ class Run:
     def command(self, program: str, folder: Path) -> list[str]:
         experiment = EXPERIMENTS[self.experiment]
         settings = {
-            f"{experiment.section}/seed": self.seed,
+            experiment.seed: self.seed,
             "lagrangian physical properties/particle type 0/distribution prn seed": self.seed,
             "model parameters/contact history/forget interval": self.interval,
             "simulation control/output path": folder / self.name,
@@ -73,9 +89,12 @@ class Run:
         """Values by observable and index; None if the run has not finished."""
         try:
             summary = json.loads((folder / self.name / "summary.json").read_text(encoding="utf-8"))
-            with open(folder / self.name / "measurements.csv", encoding="utf-8") as file:
-                values = {f"{row['observable']}/{row['index']}": float(row["value"])
-                          for row in csv.DictReader(file)}
+            if self.experiment == "pile":
+                values = pile_at_rest(folder / self.name, summary["inside_mass"])
+            else:
+                with open(folder / self.name / "measurements.csv", encoding="utf-8") as file:
+                    values = {f"{row['observable']}/{row['index']}": float(row["value"])
+                              for row in csv.DictReader(file)}
         except (OSError, ValueError):
             return None
         values["steps"] = summary["steps"]
@@ -158,7 +177,8 @@ def draw(series: Series, file: Path) -> None:
     import matplotlib.pyplot as plt
     shown = (("heap", "base_angle/0", "Base angle of the heap (degrees)"),
              ("heap", "height/0", "Height of the heap (um)"),
-             ("spreading", "LRD/2", "LRD of layer 2"), ("spreading", "CRD/3", "CRD of layer 3"))
+             ("spreading", "CRD/3", "CRD of layer 3"),
+             ("pile", "sinks", "Sinking at rest (1/1000 diameter)"))
     figure, panels = plt.subplots(1, len(shown), figsize=(10., 2.7), layout="constrained")
     for axes, (key, name, label) in zip(panels, shown):
         factor = next(f for n, _, f, _ in EXPERIMENTS[key].observables if n == name)
@@ -171,6 +191,8 @@ def draw(series: Series, file: Path) -> None:
         axes.set_xticks(range(len(intervals)), [f"{n}" if n else "never" for n in intervals],
                         rotation=40)
         axes.set_title(label, fontsize=8.5)
+        if name == "sinks":
+            axes.set_yscale("symlog", linthresh=0.01)
         axes.tick_params(labelsize=7.5)
     figure.supxlabel("Steps after which the contacts forget", fontsize=8.5)
     figure.savefig(file, dpi=90)

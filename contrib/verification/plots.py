@@ -21,7 +21,7 @@ try:
 except ImportError:
     sys.exit(77)
 
-from eunoe_verification import adhesion, bulk, impacts, oblique, piles, rolling  # noqa: F401
+from eunoe_verification import adhesion, bulk, impacts, oblique, piles, rolling, sticking  # noqa: F401
 from eunoe_verification.bench import ROWS, Bench, Row, RowMaker
 
 
@@ -40,10 +40,15 @@ def draw(maker: RowMaker, row: Row, folder: Path) -> None:
 
 def table_lines(maker: RowMaker, row: Row) -> list[str]:
     def number(value: float) -> str:
-        return f"{value:.4g}"
-    return [f"| {maker.title if k == 0 else ''} | {check.what} | {number(check.reference)} | "
-            f"{number(check.result)} | {number(check.tolerance)} | {check.unit} |"
-            for k, check in enumerate(row.checks)]
+        return f"{value:.4g}" if abs(value) > 1e-13 else "0"
+    lines = []
+    for k, check in enumerate(row.checks):
+        unit = f" {check.unit}" if check.unit else ""
+        first = f"{maker.title}: `{maker.name}`" if k == 0 else ""
+        tolerance = "at least" if check.tolerance is None else f"{check.tolerance:.2g}{unit}"
+        lines.append(f"| {first} | {check.what} | {number(check.reference)}{unit} | "
+                     f"{number(check.result)}{unit} | {tolerance} |")
+    return lines
 
 
 def main(arguments: list[str]) -> int:
@@ -58,7 +63,7 @@ def main(arguments: list[str]) -> int:
     bench = Bench(str(Path(options.program).resolve()), options.folder.resolve())
     names = options.rows or [name for name, maker in ROWS.items() if options.long or not maker.is_long]
     failed = 0
-    lines = ["| case | quantity | reference | result | tolerance | unit |", "|---|---|---|---|---|---|"]
+    lines = ["| row | quantity | reference | result | tolerance |", "|---|---|---|---|---|"]
     for name in names:
         start = time.monotonic()
         row = ROWS[name].make(bench)

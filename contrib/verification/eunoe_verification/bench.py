@@ -76,21 +76,29 @@ class Bench:
 
 @dataclass(frozen=True)
 class Check:
-    """A number beside its reference. The tolerance is absolute, in the same unit."""
+    """A number beside its reference. The tolerance is absolute, in the same unit; without one the
+    reference is the least that the number may be."""
     what: str
     result: float
     reference: float
-    tolerance: float
+    tolerance: float | None
     unit: str = ""
 
     @property
-    def passes(self) -> bool:
-        return abs(self.result - self.reference) <= self.tolerance  # a NaN does not
+    def passes(self) -> bool:  # a NaN never does
+        if self.tolerance is None:
+            return self.result >= self.reference
+        return abs(self.result - self.reference) <= self.tolerance
 
     def __str__(self) -> str:
         unit = f" {self.unit}" if self.unit else ""
-        return (f"{self.what}: {self.result:.6g}{unit}, reference {self.reference:.6g}{unit}, "
-                f"tolerance {self.tolerance:.2g}{unit}")
+        demand = (f"at least {self.reference:.6g}{unit}" if self.tolerance is None else
+                  f"reference {self.reference:.6g}{unit}, tolerance {self.tolerance:.2g}{unit}")
+        return f"{self.what}: {self.result:.6g}{unit}, {demand}"
+
+
+def at_least(what: str, result: float, bound: float, unit: str = "") -> Check:
+    return Check(what, float(result), bound, None, unit)
 
 
 def relative(what: str, result: float, reference: float, tolerance: float, unit: str = "") -> Check:
