@@ -4,13 +4,14 @@
 Usage: contrib/examples/pictures.py path/to/eunoe-particles folder [--cases NAME ...]
        [--pictures doc/pictures] [--draw-only]
 
-Each case runs in a folder of its own. Needs numpy and matplotlib.
+Each case runs in a folder of its own. Needs numpy, matplotlib and Pillow.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import io
 import subprocess
 import sys
 from pathlib import Path
@@ -24,6 +25,7 @@ import numpy as np  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from PIL import Image  # noqa: E402
 from eunoe_report import style  # noqa: E402
 from eunoe_report.canvas import MM, Window, draw_circles  # noqa: E402
 from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
@@ -33,7 +35,7 @@ VIEWS = {
     "sandpile": ("xz", (-22., 22., 0., 32.), (0.2, 0.4, 1.2)),
     "packing_in_box": ("xz", (-0.3, 12.3, 0., 24.), (0.1, 0.2, 0.5)),
     "rotating_drum": ("xz", (-15.5, 15.5, -15.5, 15.5), (0.1, 0.4, 1.1)),
-    "granular_mixer": ("xz", (-15.5, 15.5, 0., 22.), (0.2, 0.5, 1.2)),
+    "granular_mixer": ("xz", (-11., 11., 0., 16.), (0.2, 0.5, 1.2)),
     "dam_break": ("xz", (0., 70., 0., 35.), (0.2, 0.3, 0.8)),
 }
 # Solids that are drawn; the others would hide the particles.
@@ -51,10 +53,13 @@ def outline(axes: Axes, file: Path, view: tuple[int, int], number: int) -> None:
 
 
 def colours(particles: dict[str, np.ndarray]) -> np.ndarray:
-    """By type where there are several, else by speed."""
+    """By type where there are several, by size where sizes differ much, else by speed."""
     kind = particles["type"].astype(int)
+    size = particles["diameter"]
     if kind.max() > 0:
         return np.array(matplotlib.colors.to_rgba_array([style.PALE_BLUE, style.VERMILLION]))[kind]
+    if size.max() > 1.5 * size.min():
+        return matplotlib.colormaps["plasma"]((size - size.min()) / np.ptp(size))
     speed = np.linalg.norm(particles["velocity"], axis=1)
     return matplotlib.colormaps["viridis"](np.clip(speed / 0.3, 0., 1.))
 
@@ -105,6 +110,13 @@ def draw_bounces(folder: Path) -> Figure:
     return figure
 
 
+def save(figure: Figure, file: Path) -> None:
+    """As a small file: 64 colours do for these pictures."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, dpi=110)
+    Image.open(buffer).convert("RGB").quantize(64).save(file, optimize=True)
+
+
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n", 1)[0])
     parser.add_argument("program")
@@ -120,7 +132,7 @@ def main(arguments: list[str]) -> int:
             subprocess.run([program, ROOT / "prm" / "examples" / f"{name}.prm", "--set",
                             f"simulation control/output path = {folder / name}"], check=True, cwd=ROOT)
         figure = draw_bounces(folder / name) if name == "bouncing_sphere" else draw_case(name, folder / name)
-        figure.savefig(options.pictures / f"example_{name}.png", dpi=80)
+        save(figure, options.pictures / f"example_{name}.png")
     return 0
 
 
