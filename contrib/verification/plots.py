@@ -3,7 +3,7 @@
 reference and tolerance, and draws both together.
 
 Usage: contrib/verification/plots.py path/to/eunoe-particles folder [--rows NAME ...] [--long]
-       [--pictures FOLDER] [--table FILE.md]
+       [--reuse] [--pictures FOLDER] [--table FILE.md]
 
 Without --rows: all rows but the long ones, which --long adds. Exit code 1 if a number is beyond its
 tolerance. Needs numpy, and matplotlib for pictures.
@@ -21,7 +21,7 @@ try:
 except ImportError:
     sys.exit(77)
 
-from eunoe_verification import adhesion, bulk, impacts, oblique, piles, rolling, sticking  # noqa: F401
+from eunoe_verification import adhesion, bulk, impacts, integrated, oblique, piles, rolling  # noqa: F401
 from eunoe_verification.bench import ROWS, Bench, Row, RowMaker
 
 
@@ -57,10 +57,11 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("folder", type=Path, help="of the runs")
     parser.add_argument("--rows", nargs="+", choices=list(ROWS))
     parser.add_argument("--long", action="store_true", help="the long rows, too")
+    parser.add_argument("--reuse", action="store_true", help="does not run again what has finished")
     parser.add_argument("--pictures", type=Path, help="folder for .png files")
     parser.add_argument("--table", type=Path, help="file for the table")
     options = parser.parse_args(arguments)
-    bench = Bench(str(Path(options.program).resolve()), options.folder.resolve())
+    bench = Bench(str(Path(options.program).resolve()), options.folder.resolve(), options.reuse)
     names = options.rows or [name for name, maker in ROWS.items() if options.long or not maker.is_long]
     failed = 0
     lines = ["| row | quantity | reference | result | tolerance |", "|---|---|---|---|---|"]

@@ -54,6 +54,7 @@ class Bench:
     """Where cases run."""
     program: str
     folder: Path
+    reuse: bool = False  # whether a run that has finished there stands as it is
 
     def run(self, case: str, label: str = "", **settings: Any) -> Results:
         """Runs prm/verification/<case>.prm.
@@ -62,6 +63,8 @@ class Bench:
         @param settings overrides, "subsection/entry" with "__" for "/" and "_" for a blank
         """
         folder = self.folder / (f"{case}_{label}" if label else case)
+        if self.reuse and (folder / "summary.json").exists():
+            return Results(folder)
         entries = {name.replace("__", "/").replace("_", " "): value for name, value in settings.items()}
         entries["simulation control/output path"] = folder
         command = [self.program, str(CASES / f"{case}.prm"), "--quiet",
