@@ -40,7 +40,7 @@ def draw(maker: RowMaker, row: Row, folder: Path) -> None:
 
 def table_lines(maker: RowMaker, row: Row) -> list[str]:
     def number(value: float) -> str:
-        return f"{value:.4g}" if abs(value) > 1e-13 else "0"
+        return f"{value:.5g}" if abs(value) > 1e-13 else "0"
     lines = []
     for k, check in enumerate(row.checks):
         unit = f" {check.unit}" if check.unit else ""
