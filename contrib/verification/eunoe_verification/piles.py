@@ -21,13 +21,13 @@ def pile(bench: Bench) -> Row:
         time, height = table["time"], table["potential"] / (mass * G)
         curves[name] = time, height, np.sqrt(2. * table["kinetic"] / mass)
         sunk[name] = (height[np.argmax(time >= FROM)] - height[-1]) / MEAN_DIAMETER
-        speed[name] = float(np.median(curves[name][2][time > TO - 0.2]))
+        speed[name] = float(curves[name][2][time >= FROM].max())
     checks = [absolute(f"EPSD: sinking of the centre of mass from {FROM:g} to {TO:g} s, over a diameter",
                        sunk["epsd"], 0., 1e-4),
-              absolute("EPSD: root mean square speed at the end", speed["epsd"], 0., 1e-6, "m/s"),
+              absolute("EPSD: largest root mean square speed from then on", speed["epsd"], 0., 1e-5, "m/s"),
               # Far beyond what EPSD is allowed, so that the row can tell the two.
               at_least("constant torque: sinking over a diameter", sunk["constant"], 1e-3),
-              at_least("constant torque: root mean square speed at the end", speed["constant"], 1e-5, "m/s")]
+              at_least("constant torque: largest root mean square speed", speed["constant"], 1e-4, "m/s")]
 
     def draw(axes) -> None:
         for name, colour in (("epsd", "#0072b2"), ("constant", "#d55e00")):
