@@ -192,7 +192,8 @@ def draw(series: Series, file: Path) -> None:
                         rotation=40)
         axes.set_title(label, fontsize=8.5)
         if name == "sinks":
-            axes.set_yscale("symlog", linthresh=0.01)
+            axes.set_yscale("symlog", linthresh=0.1)
+            axes.set_ylim(-0.02, 200.)
         axes.tick_params(labelsize=7.5)
     figure.supxlabel("Steps after which the contacts forget", fontsize=8.5)
     figure.savefig(file, dpi=90)

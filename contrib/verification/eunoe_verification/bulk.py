@@ -95,8 +95,9 @@ def beverloo(bench: Bench) -> Row:
     k, factor = -offset / slope / 1e-3, slope**2.5 / (density * np.sqrt(G))
     fitted = factor * density * np.sqrt(G) * (holes - k * 1e-3)**2.5
     # Beverloo, Leniger, van de Velde (1961): C = 0.58, k = 1.4 for spheres; Nedderman (1992): 1.5 +- 0.1.
-    checks = [absolute("rate of the second half of a discharge over the first, largest error",
-                       np.abs(np.array(halves) - 1.).max(), 0., 0.1),
+    # The smallest hole, of five grains, is close to arching and flows in bursts.
+    checks = [absolute("holes from 6 mm: rate of the second half of a discharge over the first, largest error",
+                       np.abs(np.array(halves)[1:] - 1.).max(), 0., 0.1),
               absolute("rate against C rho_b sqrt(g) (D - k d)^5/2, worst relative error",
                        np.abs(rates / fitted - 1.).max(), 0., 0.05),
               absolute("k, in mean diameters", k, 1.4, 0.4),
