@@ -48,7 +48,7 @@ def janssen(bench: Bench) -> Row:
               absolute("Janssen's curve with one fitted mass, worst error over that mass",
                        np.abs(floor / G - model).max() / limit, 0., 0.06),
               at_least("mass filled in over that on the floor, 2200 grains", mass[-1] * G / floor[-1], 3.),
-              # Between the active and the passive state of a material with 25 to 35 degrees of friction, 0.3 to 3.
+              # Between the active and the passive state of a material with 30 degrees of friction, 1/3 to 3.
               absolute("logarithm of the stress ratio K that follows", np.log(share), 0., np.log(3.))]
 
     def draw(axes) -> None:
