@@ -72,7 +72,7 @@ def check_examples(program: str) -> list[str]:
                                       text=True, check=False)
             if done.returncode != 0:
                 place = page.relative_to(ROOT)
-                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}")
+                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}{done.stderr}")
     if count == 0:
         wrong.append("No example is marked as complete.")
     cases = [case for folder in ("examples", "verification")
@@ -82,7 +82,7 @@ def check_examples(program: str) -> list[str]:
         done = subprocess.run([program, str(case), "--check"], capture_output=True, text=True,
                               check=False, cwd=ROOT)
         if done.returncode != 0:
-            wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}")
+            wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}{done.stderr}")
     case = ROOT / "prm" / "examples" / "falling_particles.prm"
     if case.read_text(encoding="utf-8") not in (ROOT / "README.md").read_text(encoding="utf-8"):
         wrong.append(f"README.md does not show {case.name} as it is.")
