@@ -1,6 +1,6 @@
 """The pages of the documentation: relative links lead to files and headings that exist, every page
-of doc/ is reached from its index, and the examples marked as complete (```prm complete) are
-accepted by the program.
+of doc/ is reached from its index, and the examples marked as complete (```prm complete) and
+the cases of prm/examples and prm/verification are accepted by the program.
 
 Usage: check_pages.py path/to/eunoe-particles
 """
@@ -72,14 +72,17 @@ def check_examples(program: str) -> list[str]:
                                       text=True, check=False)
             if done.returncode != 0:
                 place = page.relative_to(ROOT)
-                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}")
+                wrong.append(f"{place}: example {count} is refused:\n{done.stdout}{done.stderr}")
     if count == 0:
         wrong.append("No example is marked as complete.")
-    for case in sorted((ROOT / "prm" / "examples").glob("*.prm")):
+    cases = [case for folder in ("examples", "verification")
+             for case in sorted((ROOT / "prm" / folder).glob("*.prm"))]
+    for case in cases:
+        # Files that a case names are relative to the folder where the program starts.
         done = subprocess.run([program, str(case), "--check"], capture_output=True, text=True,
-                              check=False)
+                              check=False, cwd=ROOT)
         if done.returncode != 0:
-            wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}")
+            wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}{done.stderr}")
     case = ROOT / "prm" / "examples" / "falling_particles.prm"
     if case.read_text(encoding="utf-8") not in (ROOT / "README.md").read_text(encoding="utf-8"):
         wrong.append(f"README.md does not show {case.name} as it is.")

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Runs the cases of prm/examples and draws the pictures of doc/examples.md from their output.
+
+Usage: contrib/examples/pictures.py path/to/eunoe-particles folder [--cases NAME ...]
+       [--pictures doc/pictures] [--draw-only]
+
+Each case runs in a folder of its own. Needs numpy, matplotlib and Pillow.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import io
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "contrib" / "postprocessing"))
+
+import matplotlib  # noqa: E402
+matplotlib.use("Agg")
+import numpy as np  # noqa: E402
+from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
+from PIL import Image  # noqa: E402
+from eunoe_report import style  # noqa: E402
+from eunoe_report.canvas import MM, Window, draw_circles  # noqa: E402
+from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
+
+# Of each case: the view (axes to the right and upwards), the window (mm), the times (s) of the panels.
+VIEWS = {
+    "sandpile": ("xz", (-22., 22., 0., 32.), (0.2, 0.4, 1.2)),
+    "packing_in_box": ("xz", (-0.3, 12.3, 0., 24.), (0.1, 0.2, 0.5)),
+    "rotating_drum": ("xz", (-15.5, 15.5, -15.5, 15.5), (0.1, 0.4, 1.1)),
+    "granular_mixer": ("xz", (-11., 11., 0., 16.), (0.2, 0.5, 1.2)),
+    "dam_break": ("xz", (0., 70., 0., 35.), (0.2, 0.3, 0.8)),
+}
+# Solids that are drawn; the others would hide the particles.
+DRAWN = {"granular_mixer": 1, "rotating_drum": 0, "sandpile": 0}
+
+
+def outline(axes: Axes, file: Path, view: tuple[int, int], number: int) -> None:
+    """The triangles of one solid, behind the particles' outlines but without faces."""
+    data = read_vtu(file, ("solid",))
+    points = data["points"][:, list(view)]
+    solid = np.asarray(data["solid"], dtype=int)
+    corners = points[solid == np.unique(solid)[number]].reshape(-1, 3, 2)
+    axes.add_collection(PolyCollection(MM * corners, facecolors="none", edgecolors="#00000030",
+                                       linewidths=0.4, zorder=3))
+
+
+def colours(particles: dict[str, np.ndarray]) -> np.ndarray:
+    """By type where there are several, by size where sizes differ much, else by speed."""
+    kind = particles["type"].astype(int)
+    size = particles["diameter"]
+    if kind.max() > 0:
+        return np.array(matplotlib.colors.to_rgba_array([style.PALE_BLUE, style.VERMILLION]))[kind]
+    if size.max() > 1.5 * size.min():
+        return matplotlib.colormaps["plasma"]((size - size.min()) / np.ptp(size))
+    speed = np.linalg.norm(particles["velocity"], axis=1)
+    return matplotlib.colormaps["viridis"](np.clip(speed / 0.3, 0., 1.))
+
+
+def draw_case(name: str, folder: Path) -> Figure:
+    names, (x0, x1, y0, y1), times = VIEWS[name]
+    view = ("xyz".index(names[0]), "xyz".index(names[1]))
+    depth = 3 - sum(view)
+    window = Window(x0 / MM, x1 / MM, y0 / MM, y1 / MM)
+    pictures, solids = read_pvd(folder / "out.pvd"), read_pvd(folder / "out_solids.pvd")
+    width = 6.5 / len(times)
+    figure = Figure(figsize=(6.5, width * (y1 - y0) / (x1 - x0) + 0.35), layout="constrained")
+    panels = figure.subplots(1, len(times), sharey=True)
+    for axes, time in zip(panels, times):
+        picture = min(pictures, key=lambda p: abs(p.time - time))
+        particles = read_vtu(picture.file, ("diameter", "velocity", "type"))
+        points = particles["points"].astype(float)
+        axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=f"{picture.time:.2g} s")
+        axes.tick_params(labelsize=6.5)
+        rows = np.flatnonzero(window.shows(points[:, view[0]], points[:, view[1]], particles["diameter"]))
+        # Seen from the front: the nearest, with the least coordinate in depth, are drawn last.
+        rows = rows[np.argsort(-points[rows, depth])]
+        draw_circles(axes, points[rows, view[0]], points[rows, view[1]], particles["diameter"][rows],
+                     colours(particles)[rows])
+        if name in DRAWN and solids:
+            outline(axes, min(solids, key=lambda p: abs(p.time - time)).file, view, DRAWN[name])
+    panels[0].set_ylabel(f"{names[1]} (mm)")
+    return figure
+
+
+def draw_bounces(folder: Path) -> Figure:
+    """Height of the bouncing sphere over the time, and the peaks that its restitution prescribes."""
+    with open(folder / "energies.csv", encoding="utf-8") as file:
+        rows = [(float(row["time"]), float(row["potential"])) for row in csv.DictReader(file)]
+    time, potential = np.array(rows).T
+    restitution, start = 0.9, 0.2
+    height = (potential / potential[0]) * (start + 0.5e-3) - 0.5e-3
+    fall = np.sqrt(2. * start / 9.81)
+    n = np.arange(12)
+    peaks = fall * (2. * np.cumsum(restitution**n) - 1.) + fall * restitution**(n + 1.)
+    figure = Figure(figsize=(4.5, 2.4), layout="constrained")
+    axes = figure.subplots()
+    axes.plot(time, MM * height, color=style.BLUE, label="Eunoe")
+    axes.plot(peaks, MM * start * restitution**(2. * (n + 1.)), "o", color=style.VERMILLION,
+              markerfacecolor="none", label="0.81 of the height before")
+    axes.set(xlabel="Time (s)", ylabel="Height (mm)", xlim=(0., 2.), ylim=(0., None))
+    axes.legend()
+    return figure
+
+
+def save(figure: Figure, file: Path) -> None:
+    """As a small file: 64 colours do for these pictures."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, dpi=110)
+    Image.open(buffer).convert("RGB").quantize(64).save(file, optimize=True)
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n", 1)[0])
+    parser.add_argument("program")
+    parser.add_argument("folder", type=Path)
+    all_cases = ["bouncing_sphere", *VIEWS]
+    parser.add_argument("--cases", nargs="+", default=all_cases, choices=all_cases)
+    parser.add_argument("--pictures", type=Path, default=ROOT / "doc" / "pictures")
+    parser.add_argument("--draw-only", action="store_true", help="runs nothing")
+    options = parser.parse_args(arguments)
+    program, folder = Path(options.program).resolve(), options.folder.resolve()
+    for name in options.cases:
+        if not options.draw_only:
+            subprocess.run([program, ROOT / "prm" / "examples" / f"{name}.prm", "--set",
+                            f"simulation control/output path = {folder / name}"], check=True, cwd=ROOT)
+        figure = draw_bounces(folder / name) if name == "bouncing_sphere" else draw_case(name, folder / name)
+        save(figure, options.pictures / f"example_{name}.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

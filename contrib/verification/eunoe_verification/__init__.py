@@ -1,0 +1,1 @@
+"""Runs the cases of prm/verification and compares their results with references."""
