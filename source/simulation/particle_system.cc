@@ -172,6 +172,27 @@ void ParticleSystem::add_forces_on_new(const ParticleId first_new,
   solid_contacts.reset(solids_before);
 }
 
+std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid> &solids,
+                                                         const double time)
+{
+  const auto forces = particles.force, torques = particles.torque;
+  const PairList pairs_before = pairs;
+  const SolidContacts::Memory solids_before = solid_contacts.save();
+  // Those of sleepers, too.
+  pairs.some_sleep = false;
+  std::vector<ContactForce> list;
+  pair_forces.record_to(&list);
+  solid_contacts.record_to(&list);
+  add_contact_forces(solids, time, 0., nullptr);
+  pair_forces.record_to(nullptr);
+  solid_contacts.record_to(nullptr);
+  particles.force = forces;
+  particles.torque = torques;
+  pairs = pairs_before;
+  solid_contacts.reset(solids_before);
+  return list;
+}
+
 void ParticleSystem::rebuild(const std::vector<Solid> &solids,
                              const LoadBalancingParameters *balance)
 {

@@ -11,6 +11,18 @@
 
 namespace eunoe {
 
+class Domain;
+class ParticleStore;
+
+/// What an insertion finds where its particles are to come.
+struct Surroundings
+{
+  const Domain &domain;
+  const ParticleArrays &particles;  ///< with ghosts
+  const ParticleStore &store;       ///< knows their cells
+  const std::vector<bool> &leaving; ///< owned particles that are taken out before, by their rows
+};
+
 /// `subsection insertion info`.
 struct InsertionParameters : public ParameterSection
 {
@@ -47,6 +59,9 @@ public:
   /// Number of particles that @p n_events events supply together.
   virtual std::size_t supply(std::size_t n_events) const = 0;
 
+  /// Looks around before the next event; collective.
+  virtual void survey(const Surroundings &) {}
+
   /// This rank's share of the particles of the next event; the shares of all ranks together are
   /// the same for any number of ranks.
   /// @param next_id first free id, raised by the number of particles of all ranks
@@ -56,7 +71,8 @@ public:
   virtual std::vector<Vec3> known_places() const { return {}; }
 
   /// Passes over the particles of the first events, which have been supplied already.
-  virtual void skip(std::size_t n_events) = 0;
+  /// @param n_particles that they supplied
+  virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
 
   /// Whether all particles have been supplied.
   virtual bool finished() const = 0;

@@ -112,7 +112,7 @@ public:
     return all ? n_remaining() : std::min(n_remaining(), n_events * of_event);
   }
 
-  void skip(std::size_t n_events) override { take(supply(n_events)); }
+  void skip(std::size_t, std::size_t n_particles) override { take(n_particles); }
 
   bool finished() const override { return n_remaining() == 0; }
 
