@@ -112,6 +112,7 @@ struct Ignored
 const std::vector<Ignored> &ignored()
 {
   static const std::string of_fluids = "is for flows of fluids.";
+  static const std::string of_tables = "is not needed: what is recorded is in tables.";
   static const std::vector<Ignored> list = {
       {no_section, {"print parameters"}, "is not needed: used.prm holds all parameters."},
       {no_section, {"comment message"}, "is a remark."},
@@ -124,6 +125,9 @@ const std::vector<Ignored> &ignored()
       {control, {"log precision"}, "is not needed."},
       {control, {"group files"}, "is not needed: every picture is one file a rank."},
       {{"timer"}, {}, "is not needed: summary.json has the times of all parts of the program."},
+      {{"boundary forces"}, {"verbosity"}, of_tables},
+      {{"post-processing", "solid forces"}, {"verbosity"}, of_tables},
+      {{"post-processing", "particle wall collision statistics"}, {"verbosity"}, of_tables},
       {{"test"}, {}, "is not needed: --dump writes the complete state at the end."},
       {mesh,
        {"check diamond cells", "expand particle-wall contact search"},
