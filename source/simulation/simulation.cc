@@ -68,8 +68,10 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
 {
   Problems problems;
   check_domain(domain, parameters, largest_diameter + skin + model.range(), problems);
-  if (insertion)
+  if (insertion) {
     check_places(domain, insertion->known_places(), comm, problems);
+    insertion->check(domain, problems);
+  }
   const int wall = parameters.physics.wall_material();
   solids = domain.walls();
   const auto append = [this](const std::vector<Solid> &more) {
@@ -97,6 +99,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
   for (const std::string &name : eunoe::loads().list())
     if (auto load = eunoe::loads().make(name, parameters.physics))
       loads.push_back(std::move(load));
+  // A trial without a folder finds what is wrong with them before anything is written.
+  for (const auto &[name, section] : parameters.observables)
+    section->make(*this);
 }
 
 RunEstimate Simulation::estimate() const
@@ -326,15 +331,16 @@ void Simulation::insert_if_due()
   if (step != 0 && (frequency == 0 || step % frequency != 0))
     return;
   std::vector<std::size_t> removed;
+  std::vector<bool> leaving(system.particles.size(), false);
   const InsertionParameters &p = parameters.insertion;
   if (p.removes)
-    for (std::size_t row = 0; row < system.particles.n_owned; ++row)
-      if (is_in_box(system.particles.position[row].vec(), p.removal_lower, p.removal_upper))
-        removed.push_back(row);
-  std::vector<bool> leaving(system.particles.n_owned, false);
-  for (const std::size_t row : removed)
-    leaving[row] = true;
-  insertion->survey({domain, system.particles, system.get_store(), leaving});
+    for (std::size_t row = 0; row < system.particles.size(); ++row)
+      if (is_in_box(system.particles.position[row].vec(), p.removal_lower, p.removal_upper)) {
+        leaving[row] = true;
+        if (row < system.particles.n_owned)
+          removed.push_back(row);
+      }
+  insertion->survey({domain, system.particles, leaving});
   Delivery delivery;
   delivery.particles = insertion->next(next_id);
   exchange(delivery, removed);

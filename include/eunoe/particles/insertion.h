@@ -12,15 +12,13 @@
 namespace eunoe {
 
 class Domain;
-class ParticleStore;
 
 /// What an insertion finds where its particles are to come.
 struct Surroundings
 {
   const Domain &domain;
   const ParticleArrays &particles;  ///< with ghosts
-  const ParticleStore &store;       ///< knows their cells
-  const std::vector<bool> &leaving; ///< owned particles that are taken out before, by their rows
+  const std::vector<bool> &leaving; ///< those that are taken out before, by their rows
 };
 
 /// `subsection insertion info`.
@@ -34,6 +32,7 @@ struct InsertionParameters : public ParameterSection
       list_diameters;
   std::vector<int> directions = {0, 1, 2};
   Vec3 box_lower, box_upper = {1., 1., 1.};
+  Vec3 plane_point, plane_normal = {1., 0., 0.};
   double distance_threshold = 1.;
   double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
   unsigned int seed = 1;
@@ -59,6 +58,9 @@ public:
   /// Number of particles that @p n_events events supply together.
   virtual std::size_t supply(std::size_t n_events) const = 0;
 
+  /// What is wrong with the insertion in the light of the mesh; collective.
+  virtual void check(const Domain &, Problems &) const {}
+
   /// Looks around before the next event; collective.
   virtual void survey(const Surroundings &) {}
 
@@ -81,6 +83,25 @@ public:
 using InsertionRegistry = Registry<std::unique_ptr<Insertion>, const InsertionParameters &,
                                    const PhysicalProperties &, MPI_Comm>;
 InsertionRegistry &insertion_methods();
+
+/// Particles of all types that are still to come, one type after another.
+class ParticleSupply
+{
+public:
+  explicit ParticleSupply(const std::vector<ParticleType> &types);
+
+  double largest_diameter() const { return largest; }
+  std::size_t n_remaining() const;
+  /// The k-th of those that remain, at no place yet.
+  NewParticle particle(std::size_t k, ParticleId id) const;
+  void take(std::size_t n);
+
+private:
+  std::vector<ParticleType> types;
+  std::vector<std::unique_ptr<SizeDistribution>> sizes;
+  std::vector<std::size_t> remaining; ///< of each type
+  double largest = 0.;
+};
 
 /// Rank's part [first, second) of a range of @p n items.
 std::pair<std::size_t, std::size_t> share_of(std::size_t n, MPI_Comm comm);
