@@ -176,8 +176,11 @@ std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid
                                                          const double time)
 {
   const auto forces = particles.force, torques = particles.torque;
+  const auto velocities = particles.velocity, spins = particles.spin;
   const PairList pairs_before = pairs;
   const SolidContacts::Memory solids_before = solid_contacts.save();
+  // The velocities of ghosts are behind those of owned particles, which are of the present time.
+  halo.update(particles);
   // Those of sleepers, too.
   pairs.some_sleep = false;
   std::vector<ContactForce> list;
@@ -188,6 +191,8 @@ std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid
   solid_contacts.record_to(nullptr);
   particles.force = forces;
   particles.torque = torques;
+  particles.velocity = velocities;
+  particles.spin = spins;
   pairs = pairs_before;
   solid_contacts.reset(solids_before);
   return list;
