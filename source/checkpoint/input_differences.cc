@@ -22,7 +22,8 @@ bool is_harmless(const Path &path, const std::string &entry)
     return entry == "lost particles" || entry == "largest overlap";
   if (!path.empty() && path.back().compare(0, 12, "solid object") == 0)
     return entry == "output solid object";
-  return !path.empty() && (path.front() == "restart" || path.front() == "post-processing");
+  return !path.empty() && (path.front() == "restart" || path.front() == "post-processing" ||
+                           path.front() == "boundary forces");
 }
 
 /// Whether two values are the same text or the same numbers.

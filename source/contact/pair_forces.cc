@@ -239,6 +239,16 @@ void PairForces::run_block(ParticleArrays &particles, PairList &pairs, const std
   model.apply(*block, dt);
   scatter(*block, particles, i, j, ri, rj);
   remember(*block, pairs.memory, record);
+  if (recorded != nullptr)
+    for (unsigned int k = 0; k < n; ++k)
+      recorded->push_back({i[k],
+                           j[k],
+                           -1,
+                           {block->nx[k], block->ny[k], block->nz[k]},
+                           block->distance[k],
+                           block->overlap[k],
+                           block->contact_force[k] - block->cohesion[k],
+                           {block->shear_x[k], block->shear_y[k], block->shear_z[k]}});
 }
 
 void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt)

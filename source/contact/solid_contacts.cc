@@ -141,7 +141,7 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
     way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
   for (Candidate &candidate : candidates) {
     // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
-    if (loads == nullptr && !particles.is_awake(candidate.particle))
+    if (loads == nullptr && recorded == nullptr && !particles.is_awake(candidate.particle))
       continue;
     // Too far for a contact, as long as both together have not gone the gap that there was.
     const double spare = candidate.gap - model.range() - way[candidate.solid];
@@ -242,6 +242,9 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
     const Vec3 shear = {b.shear_x[k], b.shear_y[k], b.shear_z[k]};
     const Vec3 rolling = {b.torque_x[k], b.torque_y[k], b.torque_z[k]};
     const Vec3 force = (b.contact_force[k] - b.cohesion[k]) * n + shear;
+    if (recorded != nullptr)
+      recorded->push_back({p, -1, places->solid[k], n, b.distance[k], b.overlap[k],
+                           b.contact_force[k] - b.cohesion[k], shear});
     if (loads != nullptr) {
       SolidLoad &load = (*loads)[places->solid[k]];
       const Vec3 torque =

@@ -7,12 +7,11 @@ namespace {
 class Energies : public Observable
 {
 public:
-  Energies(const ObservableParameters &parameters, Simulation &simulation)
-      : frequency(parameters.energies_frequency),
-        file(simulation.output_folder().table(parameters.energies_file + ".csv",
-                                              {"time", "particles", "kinetic", "rotational",
-                                               "potential", "momentum_x", "momentum_y",
-                                               "momentum_z"}))
+  Energies(const RecordSection &section, Simulation &simulation)
+      : frequency(section.frequency),
+        file(simulation.output_folder().table(
+            section.file + ".csv", {"time", "particles", "kinetic", "rotational", "potential",
+                                    "momentum_x", "momentum_y", "momentum_z"}))
   {
   }
 
@@ -74,10 +73,12 @@ private:
   std::vector<double> last;
 };
 
-const ObservableRegistry::Registration registration(
-    observables(), "energies", [](const ObservableParameters &parameters, Simulation &simulation) {
-      return parameters.energies ? std::make_unique<Energies>(parameters, simulation) : nullptr;
-    });
+const ObservableRegistry::Registration registration(observables(), "energies", [] {
+  return std::make_unique<SectionOf<Energies>>(
+      ParameterCheck::Path{"post-processing", "energies"},
+      RecordSection::Texts{"Whether momentum and energies of the particles are recorded."},
+      "energies");
+});
 
 } // namespace
 } // namespace eunoe

@@ -9,9 +9,7 @@ namespace {
 class FinalState : public Observable
 {
 public:
-  explicit FinalState(std::string name) : name(std::move(name)) {}
-
-  void step(Simulation &) override {}
+  FinalState(const RecordSection &section, Simulation &) : name(section.file) {}
 
   void finish(Simulation &simulation) override
   {
@@ -62,10 +60,14 @@ private:
   const std::string name;
 };
 
-const ObservableRegistry::Registration registration(
-    observables(), "final state", [](const ObservableParameters &parameters, Simulation &) {
-      return parameters.write_state ? std::make_unique<FinalState>(parameters.state_file) : nullptr;
-    });
+const ObservableRegistry::Registration registration(observables(), "final state", [] {
+  return std::make_unique<SectionOf<FinalState>>(
+      ParameterCheck::Path{"post-processing", "final state"},
+      RecordSection::Texts{
+          "Whether the particles are written at the end, in the format that the 'file' "
+          "insertion reads."},
+      "particles", 0);
+});
 
 } // namespace
 } // namespace eunoe

@@ -7,8 +7,7 @@ namespace {
 class SolidForces : public Observable
 {
 public:
-  SolidForces(const ObservableParameters &parameters, Simulation &simulation)
-      : frequency(parameters.solid_forces_frequency)
+  SolidForces(const RecordSection &section, Simulation &simulation) : frequency(section.frequency)
   {
     const auto &solids = simulation.get_solids();
     for (std::size_t s = 0; s < solids.size(); ++s) {
@@ -17,9 +16,8 @@ public:
       char number[8];
       std::snprintf(number, sizeof number, "_%02zu", files.size());
       numbers.push_back(s);
-      files.push_back(
-          simulation.output_folder().table(parameters.solid_forces_file + number + ".csv",
-                                           {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
+      files.push_back(simulation.output_folder().table(
+          section.file + number + ".csv", {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
     }
   }
 
@@ -45,12 +43,15 @@ private:
   std::vector<std::shared_ptr<CsvFile>> files;
 };
 
-const ObservableRegistry::Registration registration(
-    observables(), "solid forces",
-    [](const ObservableParameters &parameters, Simulation &simulation) {
-      return parameters.solid_forces ? std::make_unique<SolidForces>(parameters, simulation)
-                                     : nullptr;
-    });
+const ObservableRegistry::Registration registration(observables(), "solid forces", [] {
+  return std::make_unique<SectionOf<SolidForces>>(
+      ParameterCheck::Path{"post-processing", "solid forces"},
+      RecordSection::Texts{
+          "Whether force and torque of the particles on every solid are recorded.",
+          "Beginning of the names of the files, one a solid, with the columns time, f_x, f_y, "
+          "f_z, T_x, T_y, T_z (N, N m; torque about the centre of rotation)."},
+      "solid_forces");
+});
 
 } // namespace
 } // namespace eunoe

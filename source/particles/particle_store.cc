@@ -340,6 +340,11 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   }
 }
 
+unsigned int ParticleStore::cell(const std::size_t row) const
+{
+  return implementation->cells[row];
+}
+
 void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, const double reach,
                                std::vector<int> &ranks) const
 {

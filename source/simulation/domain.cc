@@ -155,7 +155,8 @@ Domain::Domain(const MeshParameters &parameters, const BoundaryParameters &bound
                             std::abs(cell->vertex(v)[d] - cell_box.second[d]) < tolerance);
     }
   cell_width = dealii::Utilities::MPI::min(cell_width, comm);
-  if (dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1)
+  mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;
+  if (mesh_data->has_boxes)
     mesh_data->mapping = std::make_unique<dealii::MappingCartesian<3>>();
   else
     mesh_data->mapping = std::make_unique<dealii::MappingQ1<3>>();

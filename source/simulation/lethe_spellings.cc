@@ -112,6 +112,7 @@ struct Ignored
 const std::vector<Ignored> &ignored()
 {
   static const std::string of_fluids = "is for flows of fluids.";
+  static const std::string of_tables = "is not needed: what is recorded is in tables.";
   static const std::vector<Ignored> list = {
       {no_section, {"print parameters"}, "is not needed: used.prm holds all parameters."},
       {no_section, {"comment message"}, "is a remark."},
@@ -124,7 +125,16 @@ const std::vector<Ignored> &ignored()
       {control, {"log precision"}, "is not needed."},
       {control, {"group files"}, "is not needed: every picture is one file a rank."},
       {{"timer"}, {}, "is not needed: summary.json has the times of all parts of the program."},
+      {{"boundary forces"}, {"verbosity"}, of_tables},
+      {{"post-processing", "solid forces"}, {"verbosity"}, of_tables},
+      {{"post-processing", "particle wall collision statistics"}, {"verbosity"}, of_tables},
       {{"test"}, {}, "is not needed: --dump writes the complete state at the end."},
+      {{"box refinement"}, {}, "has no effect: cells are refined all alike."},
+      {{"box refinement", "*"}, {}, "has no effect."},
+      {{"box refinement", "*", "mesh"}, {}, "has no effect."},
+      {{"grid motion"}, {}, "has no effect: the background mesh does not move."},
+      {{"floating grid"}, {}, "has no effect: such a grid is a solid, in 'solid objects'."},
+      {{"floating grid", "*"}, {}, "has no effect."},
       {mesh,
        {"check diamond cells", "expand particle-wall contact search"},
        "is not needed: walls are found from every cell."},
@@ -147,12 +157,22 @@ struct Refused
 const std::vector<Refused> &refused()
 {
   static const std::string heat = "Heat between particles is out of scope.";
+  static const std::string one_size =
+      "Cells are refined all alike: give 0 here, and a finer 'mesh' if it must be.";
   static const std::vector<Refused> list = {
       {no_section, "dimension", "3", "Simulations are in three dimensions: give 3."},
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},
       {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
-      {insertion, "list temperatures", "", heat + " Remove the entry."}};
+      {insertion, "list temperatures", "", heat + " Remove the entry."},
+      {{"box refinement"}, "number of refinement boxes", "0", one_size},
+      {{"box refinement"}, "initial refinement", "0", one_size},
+      {{"grid motion"},
+       "motion type",
+       "none",
+       "The background mesh does not move: give a wall that slides or turns in place in 'DEM "
+       "boundary conditions', and a vessel that moves in 'solid objects'."},
+      {{"floating grid"}, "end time", "0", "Give the grid as a solid, in 'solid objects'."}};
   return list;
 }
 
@@ -254,6 +274,12 @@ private:
 
   bool takes_out(const InputEntry &entry)
   {
+    for (const Refused &rule : refused())
+      if (fits(entry.path, rule.path) && entry.name == rule.entry) {
+        if (entry.value != rule.harmless)
+          problems.add(place(entry), "is '" + entry.value + "'.", rule.why);
+        return true;
+      }
     for (const Ignored &rule : ignored()) {
       const bool of_section = rule.entries.empty();
       if (!fits(entry.path, rule.path) ||
@@ -264,12 +290,6 @@ private:
         problems.warn(place(entry), rule.why, "It is ignored.");
       return true;
     }
-    for (const Refused &rule : refused())
-      if (fits(entry.path, rule.path) && entry.name == rule.entry) {
-        if (entry.value != rule.harmless)
-          problems.add(place(entry), "is '" + entry.value + "'.", rule.why);
-        return true;
-      }
     return false;
   }
 

@@ -1,4 +1,4 @@
-// What a run has measured, as discovery asks for it.
+// What a run has measured, as observables and discovery ask for it.
 
 #include <eunoe/simulation/simulation.h>
 
@@ -6,6 +6,17 @@
 #include <map>
 
 namespace eunoe {
+
+std::vector<SolidLoad> Simulation::global_solid_loads() const
+{
+  std::vector<SolidLoad> sums = solid_loads;
+  for (SolidLoad &load : sums)
+    for (unsigned int d = 0; d < 3; ++d) {
+      load.force[d].reduce(comm);
+      load.torque[d].reduce(comm);
+    }
+  return sums;
+}
 
 std::vector<Measurement> Simulation::measurements() const
 {
@@ -15,7 +26,7 @@ std::vector<Measurement> Simulation::measurements() const
   };
   if (const Process *const process = parameters.process())
     append(process->measurements());
-  for (const auto &observable : observable_list)
+  for (const auto &[name, observable] : observable_list)
     append(observable->measurements());
   return all;
 }
@@ -28,7 +39,7 @@ std::vector<ObservableDescription> Simulation::described_observables() const
   };
   if (const Process *const process = parameters.process())
     append(process->observables());
-  for (const auto &observable : observable_list)
+  for (const auto &[name, observable] : observable_list)
     append(observable->descriptions());
   return all;
 }

@@ -21,6 +21,7 @@ struct Domain::Mesh
   /// Cartesian where all cells are boxes: it finds the cell of a particle that lies exactly on a
   /// face, and does so twice as fast.
   std::unique_ptr<dealii::Mapping<3>> mapping;
+  bool has_boxes = false; ///< whether all cells are boxes along the axes
 };
 
 inline dealii::Point<3> to_point(const Vec3 &v)

@@ -25,7 +25,8 @@ using Ranges =
 class ParticlePatches : public dealii::DataOutInterface<0, 3>
 {
 public:
-  ParticlePatches(const ParticleArrays &p, const std::vector<Process::Field> &fields)
+  ParticlePatches(const ParticleArrays &p, const std::vector<Process::Field> &fields,
+                  const std::vector<PictureField> &more)
   {
     const auto add = [this](const std::string &name, unsigned int n) {
       const auto first = static_cast<unsigned int>(names.size());
@@ -43,6 +44,9 @@ public:
       add(field.name, field.n_components);
       n_extra += field.n_components;
     }
+
+    for (const PictureField &field : more)
+      add(field.name, field.n_components);
 
     patches.resize(p.n_owned);
     for (std::size_t k = 0; k < p.n_owned; ++k) {
@@ -66,6 +70,9 @@ public:
         patch.data(c++, 0) = static_cast<float>(value);
       for (unsigned int e = 0; e < n_extra; ++e)
         patch.data(c++, 0) = static_cast<float>(p.extra[e][k]);
+      for (const PictureField &field : more)
+        for (unsigned int d = 0; d < field.n_components; ++d)
+          patch.data(c++, 0) = static_cast<float>(field.values[k * field.n_components + d]);
     }
   }
 
@@ -158,23 +165,40 @@ void PictureSeries::resume(const Files &earlier)
   agree_on_success(written, folder + "/" + name + ".pvd", comm);
 }
 
-void PictureSeries::write(const double time, const ParticleArrays &particles,
-                          const std::vector<Process::Field> &fields)
+template <int dim>
+void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterface<dim, 3> &data)
 {
   if (folder.empty())
     return;
   const std::string path = folder + "/" + next_file(time);
-  ParticlePatches patches(particles, fields);
-  patches.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
+  data.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
   bool written = true;
   try {
-    patches.write_vtu_in_parallel(path, comm);
+    data.write_vtu_in_parallel(path, comm);
     if (is_first(comm))
       write_index();
   } catch (const std::exception &) {
     written = false;
   }
   agree_on_success(written, path, comm);
+}
+
+void PictureSeries::write(const double time, const ParticleArrays &particles,
+                          const std::vector<Process::Field> &fields,
+                          const std::vector<PictureField> &more)
+{
+  ParticlePatches patches(particles, fields, more);
+  write_in_parallel(time, patches);
+}
+
+void PictureSeries::write(const double time, dealii::DataOutInterface<3, 3> &cells)
+{
+  write_in_parallel(time, cells);
+}
+
+void PictureSeries::write(const double time, dealii::DataOutInterface<1, 3> &lines)
+{
+  write_in_parallel(time, lines);
 }
 
 void PictureSeries::write(const double time, const std::vector<Solid> &solids)

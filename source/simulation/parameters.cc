@@ -55,13 +55,17 @@ Parameters::Parameters(const SectionCounts &counts)
 {
   for (const std::string &name : process_kinds().list())
     processes[name] = process_kinds().make(name);
+  for (const std::string &name : eunoe::observables().list())
+    observables[name] = eunoe::observables().make(name);
 }
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {&control,     &mesh,   &boundaries,     &physics,
-                                         &insertion,   &model,  &floating_walls, &solids,
-                                         &observables, &restart};
+  std::vector<ParameterSection *> all = {&control,        &mesh,      &boundaries,
+                                         &physics,        &insertion, &model,
+                                         &floating_walls, &solids,    &restart};
+  for (auto &[name, observable] : observables)
+    all.push_back(observable.get());
   for (auto &[name, process] : processes)
     all.push_back(process.get());
   return all;

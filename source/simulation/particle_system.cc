@@ -172,6 +172,32 @@ void ParticleSystem::add_forces_on_new(const ParticleId first_new,
   solid_contacts.reset(solids_before);
 }
 
+std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid> &solids,
+                                                         const double time)
+{
+  const auto forces = particles.force, torques = particles.torque;
+  const auto velocities = particles.velocity, spins = particles.spin;
+  const PairList pairs_before = pairs;
+  const SolidContacts::Memory solids_before = solid_contacts.save();
+  // The velocities of ghosts are behind those of owned particles, which are of the present time.
+  halo.update(particles);
+  // Those of sleepers, too.
+  pairs.some_sleep = false;
+  std::vector<ContactForce> list;
+  pair_forces.record_to(&list);
+  solid_contacts.record_to(&list);
+  add_contact_forces(solids, time, 0., nullptr);
+  pair_forces.record_to(nullptr);
+  solid_contacts.record_to(nullptr);
+  particles.force = forces;
+  particles.torque = torques;
+  particles.velocity = velocities;
+  particles.spin = spins;
+  pairs = pairs_before;
+  solid_contacts.reset(solids_before);
+  return list;
+}
+
 void ParticleSystem::rebuild(const std::vector<Solid> &solids,
                              const LoadBalancingParameters *balance)
 {

@@ -133,6 +133,11 @@ void Simulation::resume()
     n_particles = system.n_global();
     if (Process *const process = parameters.process())
       process->resume(*this, *checkpoint);
+    const auto remembered = head.find("observables");
+    if (remembered != head.end())
+      for (const auto &[name, observable] : observable_list)
+        if (remembered->contains(name))
+          observable->resume(remembered->at(name));
   });
   move_solids();
   log.line("Continuing from " + checkpoint->path + ": step " + std::to_string(step) +
@@ -160,7 +165,8 @@ void Simulation::take_over(const Json &head)
   for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o)
     ledger.through_outlet[o] = to_tally(head.at("through_outlet").at(o), comm);
   if (insertion)
-    insertion->skip(n_insertions);
+    // Ids are given one after another from 1.
+    insertion->skip(n_insertions, next_id - 1);
 
   solids_at_search.clear();
   for (std::size_t s = 0; s < solids.size(); ++s) {
@@ -205,6 +211,12 @@ void Simulation::checkpoint_if_due()
   writer.head["last_balance"] = last_balance;
   writer.head["input"] = parameters.as_input_file();
   writer.head["output"] = output.save();
+  for (const auto &[name, observable] : observable_list) {
+    Json remembered;
+    observable->save(remembered);
+    if (!remembered.is_null())
+      writer.head["observables"][name] = remembered;
+  }
   const std::string path = checkpoints.write(writer, step);
   last_checkpoint = MPI_Wtime();
   if (stopped)

@@ -8,12 +8,6 @@
 
 namespace eunoe {
 
-ObservableRegistry &observables()
-{
-  static ObservableRegistry registry;
-  return registry;
-}
-
 namespace {
 
 /// Prepares the parameters that a process decides, before anything is built from them.
@@ -74,8 +68,10 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
 {
   Problems problems;
   check_domain(domain, parameters, largest_diameter + skin + model.range(), problems);
-  if (insertion)
+  if (insertion) {
     check_places(domain, insertion->known_places(), comm, problems);
+    insertion->check(domain, problems);
+  }
   const int wall = parameters.physics.wall_material();
   solids = domain.walls();
   const auto append = [this](const std::vector<Solid> &more) {
@@ -103,6 +99,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
   for (const std::string &name : eunoe::loads().list())
     if (auto load = eunoe::loads().make(name, parameters.physics))
       loads.push_back(std::move(load));
+  // A trial without a folder finds what is wrong with them before anything is written.
+  for (const auto &[name, section] : parameters.observables)
+    section->make(*this);
 }
 
 RunEstimate Simulation::estimate() const
@@ -136,9 +135,9 @@ void Simulation::open_output()
 
 void Simulation::make_observables()
 {
-  for (const std::string &name : eunoe::observables().list())
-    if (auto observable = eunoe::observables().make(name, parameters.observables, *this))
-      observable_list.push_back(std::move(observable));
+  for (const auto &[name, section] : parameters.observables)
+    if (auto observable = section->make(*this))
+      observable_list[name] = std::move(observable);
 }
 
 Simulation::~Simulation() = default;
@@ -177,7 +176,7 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
   complete_step();
   if (stopped)
     return false;
-  for (auto &observable : observable_list)
+  for (const auto &[name, observable] : observable_list)
     observable->finish(*this);
   report_progress(true);
   write_measurements();
@@ -249,7 +248,7 @@ void Simulation::compute_forces(const double dt)
   const bool wanted =
       (process != nullptr && process->wants_solid_loads(step)) ||
       std::any_of(observable_list.begin(), observable_list.end(),
-                  [this](const auto &observable) { return observable->wants_solid_loads(step); });
+                  [this](const auto &entry) { return entry.second->wants_solid_loads(step); });
   if (wanted)
     solid_loads.assign(solids.size(), SolidLoad());
   system.add_contact_forces(solids, present_time, dt, wanted ? &solid_loads : nullptr);
@@ -332,33 +331,31 @@ void Simulation::insert_if_due()
   if (step != 0 && (frequency == 0 || step % frequency != 0))
     return;
   std::vector<std::size_t> removed;
+  std::vector<bool> leaving(system.particles.size(), false);
   const InsertionParameters &p = parameters.insertion;
   if (p.removes)
-    for (std::size_t row = 0; row < system.particles.n_owned; ++row)
-      if (is_in_box(system.particles.position[row].vec(), p.removal_lower, p.removal_upper))
-        removed.push_back(row);
+    for (std::size_t row = 0; row < system.particles.size(); ++row)
+      if (is_in_box(system.particles.position[row].vec(), p.removal_lower, p.removal_upper)) {
+        leaving[row] = true;
+        if (row < system.particles.n_owned)
+          removed.push_back(row);
+      }
+  insertion->survey({domain, system.particles, leaving});
   Delivery delivery;
   delivery.particles = insertion->next(next_id);
   exchange(delivery, removed);
   ++n_insertions;
 }
 
-std::vector<SolidLoad> Simulation::global_solid_loads() const
-{
-  std::vector<SolidLoad> sums = solid_loads;
-  for (SolidLoad &load : sums)
-    for (unsigned int d = 0; d < 3; ++d) {
-      load.force[d].reduce(comm);
-      load.torque[d].reduce(comm);
-    }
-  return sums;
-}
-
 void Simulation::write_pictures(PictureSeries &series)
 {
   complete_step();
   const Timers::Scope scope(timers, Section::output);
-  series.write(present_time, system.particles, fields);
+  std::vector<PictureField> more;
+  for (const auto &[name, observable] : observable_list)
+    for (PictureField &field : observable->fields(*this))
+      more.push_back(std::move(field));
+  series.write(present_time, system.particles, fields, more);
 }
 
 /// What happens between two steps, at the present time.
@@ -369,7 +366,7 @@ void Simulation::do_what_is_due()
     const Timers::Scope scope(timers, Section::process);
     parameters.process()->step(*this);
   }
-  for (auto &observable : observable_list)
+  for (const auto &[name, observable] : observable_list)
     observable->step(*this);
 
   const ControlParameters &control = parameters.control;
@@ -386,6 +383,8 @@ void Simulation::do_what_is_due()
     write_pictures(*particle_pictures);
     const Timers::Scope scope(timers, Section::output);
     solid_pictures->write(present_time, solids);
+    for (const auto &[name, observable] : observable_list)
+      observable->draw(*this);
   }
   report_progress(false);
 }

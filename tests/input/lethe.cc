@@ -86,6 +86,12 @@ subsection model parameters
   end
 end
 
+subsection boundary forces
+  set calculation = true
+  set verbosity   = quiet
+  set filename    = boundaries
+end
+
 subsection floating walls
   set number of floating walls = 1
   subsection wall 0
@@ -169,6 +175,11 @@ subsection model parameters
   subsection adaptive sparse contacts
     set enable adaptive sparse contacts = false
   end
+end
+
+subsection boundary forces
+  set calculation = true
+  set filename    = boundaries
 end
 
 subsection floating walls

@@ -30,6 +30,12 @@ SPARSE = "model parameters/adaptive sparse contacts/"
 # Far too easily put to sleep for physics, so that there is much of it.
 SLEEPY = (SPARSE + "enable adaptive sparse contacts = true", SPARSE + "rest time = 2e-4",
           SPARSE + "granular temperature threshold = 0.2", SPARSE + "check frequency = 20")
+# Particles come wherever there is none near a plane.
+ON_PLANE = ("insertion info/insertion method = plane",
+            "insertion info/insertion plane point = 0, 7e-3, 0",
+            "insertion info/insertion plane normal vector = 0, 1, 0",
+            "insertion info/insertion maximum offset = 1",
+            "insertion info/insertion frequency = 2000")
 # Every law that acts across gaps, with what its contacts remember, and drag.
 PHYSICS = "lagrangian physical properties/"
 ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
@@ -123,6 +129,16 @@ def all_laws(program: str, folder: Path) -> None:
         compare(reference, other, f"With all laws, {name}, restarted")
 
 
+def on_plane(program: str, folder: Path) -> None:
+    """The same bits where the places of insertion depend on the particles that are there."""
+    reference = Case(program, CASE, folder / "reference", list(ON_PLANE))
+    reference.run(1)
+    other = Case(program, CASE, folder / "restarted", list(ON_PLANE))
+    other.run(2, *EVERY, *FREQUENT, "simulation control/iteration end = 11111")
+    other.run(4, *EVERY, "restart/restart = true")
+    compare(reference, other, "With insertion on a plane, restarted")
+
+
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 100000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
@@ -147,6 +163,7 @@ def main(program: str, folder: Path) -> int:
     check("write failure", lambda: write_failure(reference, folder / "full"))
     check("sleep", lambda: sleeping(reference.program, folder / "sleep"))
     check("all laws", lambda: all_laws(reference.program, folder / "laws"))
+    check("plane", lambda: on_plane(reference.program, folder / "plane"))
     check("kill", lambda: killed(reference.program, folder / "killed"))
     return 1 if failures else 0
 

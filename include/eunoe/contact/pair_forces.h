@@ -1,6 +1,7 @@
 #ifndef eunoe_contact_pair_forces_h
 #define eunoe_contact_pair_forces_h
 
+#include <eunoe/contact/contact_force.h>
 #include <eunoe/contact/contact_model.h>
 #include <eunoe/contact/pair_list.h>
 #include <eunoe/core/periodic_box.h>
@@ -20,6 +21,9 @@ public:
   /// sums without meaning) and advances the memory of the contacts by @p dt.
   void add(ParticleArrays &particles, PairList &pairs, double dt);
 
+  /// From now on `add` appends every contact to @p list; null: no longer.
+  void record_to(std::vector<ContactForce> *list) { recorded = list; }
+
 private:
   void run_block(ParticleArrays &particles, PairList &pairs, const std::int32_t *active,
                  unsigned int n, double dt);
@@ -28,6 +32,7 @@ private:
   const PeriodicBox box;
   std::unique_ptr<PairBlock> block;
   std::vector<std::int32_t> active, ended;
+  std::vector<ContactForce> *recorded = nullptr;
 };
 
 } // namespace eunoe

@@ -1,6 +1,7 @@
 #ifndef eunoe_contact_solid_contacts_h
 #define eunoe_contact_solid_contacts_h
 
+#include <eunoe/contact/contact_force.h>
 #include <eunoe/contact/contact_memory.h>
 #include <eunoe/contact/contact_model.h>
 #include <eunoe/particles/particle_arrays.h>
@@ -36,6 +37,9 @@ public:
   /// @param loads if not null, one a solid: what the particles exert is added to it
   void add_forces(ParticleArrays &particles, const std::vector<Solid> &solids, double time,
                   double dt, std::vector<SolidLoad> *loads);
+
+  /// From now on `add_forces` appends every contact to @p list; null: no longer.
+  void record_to(std::vector<ContactForce> *list) { recorded = list; }
 
   /// @name Memory of the living contacts
   ///@{
@@ -91,6 +95,7 @@ private:
   std::vector<Vec3> normals;
   std::unique_ptr<PairBlock> block;
   std::unique_ptr<Places> places;
+  std::vector<ContactForce> *recorded = nullptr;
 };
 
 } // namespace eunoe

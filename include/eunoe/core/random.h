@@ -11,7 +11,8 @@ enum class Draw : std::uint32_t
 {
   size = 1,
   offset = 2,
-  feed_copy = 3
+  feed_copy = 3,
+  packing = 4
 };
 
 /// Philox 4x32-10, a counter-based generator (Salmon, Moraes, Dror, Shaw 2011): a function of its

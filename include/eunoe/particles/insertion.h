@@ -11,6 +11,16 @@
 
 namespace eunoe {
 
+class Domain;
+
+/// What an insertion finds where its particles are to come.
+struct Surroundings
+{
+  const Domain &domain;
+  const ParticleArrays &particles;  ///< with ghosts
+  const std::vector<bool> &leaving; ///< those that are taken out before, by their rows
+};
+
 /// `subsection insertion info`.
 struct InsertionParameters : public ParameterSection
 {
@@ -22,6 +32,7 @@ struct InsertionParameters : public ParameterSection
       list_diameters;
   std::vector<int> directions = {0, 1, 2};
   Vec3 box_lower, box_upper = {1., 1., 1.};
+  Vec3 plane_point, plane_normal = {1., 0., 0.};
   double distance_threshold = 1.;
   double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
   unsigned int seed = 1;
@@ -47,6 +58,12 @@ public:
   /// Number of particles that @p n_events events supply together.
   virtual std::size_t supply(std::size_t n_events) const = 0;
 
+  /// What is wrong with the insertion in the light of the mesh; collective.
+  virtual void check(const Domain &, Problems &) const {}
+
+  /// Looks around before the next event; collective.
+  virtual void survey(const Surroundings &) {}
+
   /// This rank's share of the particles of the next event; the shares of all ranks together are
   /// the same for any number of ranks.
   /// @param next_id first free id, raised by the number of particles of all ranks
@@ -56,7 +73,8 @@ public:
   virtual std::vector<Vec3> known_places() const { return {}; }
 
   /// Passes over the particles of the first events, which have been supplied already.
-  virtual void skip(std::size_t n_events) = 0;
+  /// @param n_particles that they supplied
+  virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
 
   /// Whether all particles have been supplied.
   virtual bool finished() const = 0;
@@ -65,6 +83,25 @@ public:
 using InsertionRegistry = Registry<std::unique_ptr<Insertion>, const InsertionParameters &,
                                    const PhysicalProperties &, MPI_Comm>;
 InsertionRegistry &insertion_methods();
+
+/// Particles of all types that are still to come, one type after another.
+class ParticleSupply
+{
+public:
+  explicit ParticleSupply(const std::vector<ParticleType> &types);
+
+  double largest_diameter() const { return largest; }
+  std::size_t n_remaining() const;
+  /// The k-th of those that remain, at no place yet.
+  NewParticle particle(std::size_t k, ParticleId id) const;
+  void take(std::size_t n);
+
+private:
+  std::vector<ParticleType> types;
+  std::vector<std::unique_ptr<SizeDistribution>> sizes;
+  std::vector<std::size_t> remaining; ///< of each type
+  double largest = 0.;
+};
 
 /// Rank's part [first, second) of a range of @p n items.
 std::pair<std::size_t, std::size_t> share_of(std::size_t n, MPI_Comm comm);

@@ -64,6 +64,9 @@ public:
   void ranks_near(std::size_t row, const Vec3 &position, double reach,
                   std::vector<int> &ranks) const;
 
+  /// Active index of the cell in which an owned particle was found, by its row in the last `read`.
+  unsigned int cell(std::size_t row) const;
+
 private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation;

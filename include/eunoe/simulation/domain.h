@@ -85,6 +85,7 @@ public:
   /// The mesh itself, for the parts that speak deal.II (source/simulation/mesh.h).
   struct Mesh;
   Mesh &mesh() { return *mesh_data; }
+  const Mesh &mesh() const { return *mesh_data; }
 
 private:
   void find_boundaries(const BoundaryParameters &boundaries, int wall_material);

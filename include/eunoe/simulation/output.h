@@ -9,7 +9,20 @@
 #include <string>
 #include <vector>
 
+namespace dealii {
+template <int dim, int spacedim>
+class DataOutInterface;
+}
+
 namespace eunoe {
+
+/// Data of particles for one picture.
+struct PictureField
+{
+  std::string name;
+  unsigned int n_components;  ///< 3 for a vector
+  std::vector<double> values; ///< `[particle * n_components + component]`, of owned particles
+};
 
 /// A series of .vtu files with their exact times in a .pvd file, for ParaView. Without a folder it
 /// goes nowhere.
@@ -24,8 +37,15 @@ public:
 
   /// Writes the owned particles of all ranks; collective.
   /// @param fields names of the extra doubles
+  /// @param more further data of the particles
   void write(double time, const ParticleArrays &particles,
-             const std::vector<Process::Field> &fields);
+             const std::vector<Process::Field> &fields, const std::vector<PictureField> &more = {});
+
+  /// Writes what all ranks together draw with deal.II, cells or lines; collective.
+  ///@{
+  void write(double time, dealii::DataOutInterface<3, 3> &cells);
+  void write(double time, dealii::DataOutInterface<1, 3> &lines);
+  ///@}
 
   /// Writes the surfaces of those solids that are drawn; collective.
   void write(double time, const std::vector<Solid> &solids);
@@ -37,6 +57,8 @@ public:
   void resume(const Files &earlier);
 
 private:
+  template <int dim>
+  void write_in_parallel(double time, dealii::DataOutInterface<dim, 3> &data);
   std::string next_file(double time);
   void write_index() const;
 

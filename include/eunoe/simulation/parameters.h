@@ -3,7 +3,7 @@
 
 #include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/contact/model_parameters.h>
-#include <eunoe/observables/observable_parameters.h>
+#include <eunoe/observables/observable.h>
 #include <eunoe/particles/insertion.h>
 #include <eunoe/particles/physical_properties.h>
 #include <eunoe/processes/process.h>
@@ -59,10 +59,10 @@ public:
   ModelParameters model;
   FloatingWallParameters floating_walls;
   SolidObjectParameters solids;
-  ObservableParameters observables;
   RestartParameters restart;
   std::string process_name = "none";
   std::map<std::string, std::unique_ptr<Process>> processes;
+  std::map<std::string, std::unique_ptr<ObservableSection>> observables;
 
 private:
   void declare(dealii::ParameterHandler &prm);

@@ -83,6 +83,10 @@ public:
   void add_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
                          const std::vector<Solid> &solids, double time);
 
+  /// What acts at present in all contacts of owned particles; changes nothing. A contact of two
+  /// ranks is known to both.
+  std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time);
+
   /// Adds all particles, with what their contacts remember and where they were at the last search,
   /// to a checkpoint; collective. Velocities must belong to the present time.
   void save(CheckpointWriter &writer) const;
@@ -106,6 +110,8 @@ public:
   unsigned long long n_searches() const { return searches; }
   unsigned long long n_balances() const { return balances; }
   std::size_t n_pairs() const { return pairs.size(); }
+  const SolidContacts &get_solid_contacts() const { return solid_contacts; }
+  const ParticleStore &get_store() const { return store; }
 
   ParticleArrays particles;
 

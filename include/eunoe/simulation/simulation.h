@@ -146,7 +146,7 @@ private:
   } last_look;
   std::vector<std::unique_ptr<Load>> loads;
   std::unique_ptr<Integrator> integrator;
-  std::vector<std::unique_ptr<Observable>> observable_list;
+  std::map<std::string, std::unique_ptr<Observable>> observable_list;
   std::vector<SolidLoad> solid_loads;
   OutputFolder output;
   std::shared_ptr<PictureSeries> particle_pictures, solid_pictures;

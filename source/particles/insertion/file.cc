@@ -48,7 +48,7 @@ public:
     return places;
   }
 
-  void skip(std::size_t n) override { n_events = n; }
+  void skip(std::size_t n, std::size_t) override { n_events = n; }
 
   bool finished() const override { return !repeats && n_events > 0; }
 

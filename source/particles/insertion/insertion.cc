@@ -30,9 +30,11 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
   using declare::Patterns::Integer;
   using declare::Patterns::List;
   prm.enter_subsection(section);
-  declare::choice(prm, "insertion method", method, insertion_methods().names(),
-                  "Where the particles come from: a random grid in a box (volume), the lists of "
-                  "this section (list), or files (file).");
+  declare::choice(
+      prm, "insertion method", method, insertion_methods().names(),
+      "Where the particles come from: a random grid in a box (volume), the lists of "
+      "this section (list), files (file), the empty cells of the mesh that a plane cuts, "
+      "one particle each (plane), or a dense random packing in a box (packed).");
   declare::count(prm, "inserted number of particles at each time step", per_event,
                  "volume: number of particles of an event.");
   declare::count(prm, "insertion frequency", frequency,
@@ -55,17 +57,22 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
                     "volume: axes in the order in which the box is filled.",
                     List(Integer(0, 2), 3, 3));
   declare::corners(prm, "insertion box points coordinates", box_lower, box_upper,
-                   "volume: two opposite corners of the box (m).");
+                   "volume, packed: two opposite corners of the box (m).");
+  declare::vector(prm, "insertion plane point", plane_point, "plane: a point of the plane (m).");
+  declare::vector(prm, "insertion plane normal vector", plane_normal,
+                  "plane: direction normal to the plane.");
   prm.add_parameter("insertion distance threshold", distance_threshold,
                     "volume: distance of the grid points over the largest diameter.", Double(0.5));
   prm.add_parameter("insertion maximum offset", maximum_offset,
-                    "volume: largest random shift of a particle over the largest diameter.",
+                    "volume: largest random shift of a particle over the largest diameter; plane: "
+                    "likewise, as far as the particle stays in its cell.",
                     Double(0.));
-  declare::count(prm, "insertion prn seed", seed, "volume: seed of the random shifts.");
+  declare::count(prm, "insertion prn seed", seed,
+                 "Seed of the random shifts (volume, plane) or places (packed).");
   prm.enter_subsection("insertion acceptance function");
   prm.add_parameter("Function expression", acceptance,
-                    "volume: expression in x, y, z; points of the grid are used where it is "
-                    "positive.");
+                    "Expression in x, y, z: volume uses points of the grid, and packed places, "
+                    "where it is positive.");
   prm.add_parameter("Function constants", acceptance_constants,
                     "Constants of the expression, 'a=1, b=2'.");
   prm.leave_subsection();
@@ -73,9 +80,10 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
                     "Whether the removal box is emptied before every event.");
   declare::corners(prm, "removal box points coordinates", removal_lower, removal_upper,
                    "Two opposite corners of the removal box (m).");
-  declare::vector(prm, "initial velocity", velocity, "volume: velocity of the particles (m/s).");
+  declare::vector(prm, "initial velocity", velocity,
+                  "volume, plane, packed: velocity of the particles (m/s).");
   declare::vector(prm, "initial angular velocity", spin,
-                  "volume: angular velocity of the particles (rad/s).");
+                  "volume, plane, packed: angular velocity of the particles (rad/s).");
   prm.leave_subsection();
 }
 
@@ -87,7 +95,7 @@ void InsertionParameters::check(const ParameterCheck &check) const
                   {section}, "removal box points coordinates",
                   "has a first corner that is not below the second in every direction.",
                   "Give the lower corner first.");
-  if (method == "volume") {
+  if (method == "volume" || method == "packed") {
     try {
       Expressions(acceptance, acceptance_constants, 1);
     } catch (const std::invalid_argument &error) {
@@ -100,6 +108,8 @@ void InsertionParameters::check(const ParameterCheck &check) const
                   {section}, "insertion box points coordinates",
                   "has a first corner that is not below the second in every direction.",
                   "Give the lower corner first.");
+  }
+  if (method == "volume") {
     std::vector<int> sorted = directions;
     std::sort(sorted.begin(), sorted.end());
     check.require(sorted == std::vector<int>({0, 1, 2}), {section}, "insertion direction sequence",
@@ -110,6 +120,9 @@ void InsertionParameters::check(const ParameterCheck &check) const
                      format(distance_threshold) + ".",
                  "Give at most 'insertion distance threshold' - 1, or raise the threshold.");
   }
+  if (method == "plane")
+    check.require(norm(plane_normal) > 0., {section}, "insertion plane normal vector", "is zero.",
+                  "Give the direction normal to the plane.");
   if (method == "list") {
     const std::vector<const std::vector<double> *> others = {&list_y,  &list_z,  &list_vx,
                                                              &list_vy, &list_vz, &list_wx,

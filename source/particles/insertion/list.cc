@@ -33,7 +33,7 @@ public:
     return places;
   }
 
-  void skip(std::size_t n_events) override { done = n_events > 0; }
+  void skip(std::size_t n_events, std::size_t) override { done = n_events > 0; }
 
   bool finished() const override { return done; }
 

@@ -3,7 +3,6 @@
 #include <eunoe/particles/insertion.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace eunoe {
 
@@ -68,22 +67,17 @@ class Volume : public Insertion
 {
 public:
   Volume(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
-      : parameters(parameters), types(physics.types), comm(comm)
+      : parameters(parameters), particles(physics.types), comm(comm)
   {
-    for (const ParticleType &type : types) {
-      sizes.push_back(type.sizes.make());
-      largest = std::max(largest, sizes.back()->largest());
-      remaining.push_back(type.number);
-    }
     grid.lower = parameters.box_lower;
     grid.upper = parameters.box_upper;
-    grid.pitch = parameters.distance_threshold * largest;
-    grid.offset = parameters.maximum_offset * largest;
+    grid.pitch = parameters.distance_threshold * largest_diameter();
+    grid.offset = parameters.maximum_offset * largest_diameter();
     grid.order = parameters.directions;
     if (parameters.acceptance != "1")
       restrict_grid();
 
-    const std::size_t room = grid.capacity(), wanted = n_remaining();
+    const std::size_t room = grid.capacity(), wanted = particles.n_remaining();
     const std::string box =
         "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
         "room for " +
@@ -103,43 +97,35 @@ public:
           "all at once, or set an 'insertion frequency'.");
   }
 
-  double largest_diameter() const override { return largest; }
+  double largest_diameter() const override { return particles.largest_diameter(); }
 
   std::size_t supply(const std::size_t n_events) const override
   {
     const std::size_t of_event = std::min(of_next_event(), grid.capacity());
-    const bool all = of_event > 0 && n_events >= n_remaining() / of_event + 1;
-    return all ? n_remaining() : std::min(n_remaining(), n_events * of_event);
+    const std::size_t left = particles.n_remaining();
+    const bool all = of_event > 0 && n_events >= left / of_event + 1;
+    return all ? left : std::min(left, n_events * of_event);
   }
 
-  void skip(std::size_t n_events) override { take(supply(n_events)); }
+  void skip(std::size_t, std::size_t n_particles) override { particles.take(n_particles); }
 
-  bool finished() const override { return n_remaining() == 0; }
+  bool finished() const override { return particles.n_remaining() == 0; }
 
   std::vector<NewParticle> next(ParticleId &next_id) override
   {
     const std::size_t n = std::min(of_next_event(), grid.capacity());
     const auto [begin, end] = share_of(n, comm);
-    std::vector<NewParticle> particles;
-    std::size_t type = 0, last_of_type = remaining[0];
-    for (std::size_t k = 0; k < end; ++k) {
-      while (k == last_of_type)
-        last_of_type += remaining[++type];
-      if (k < begin)
-        continue;
-      NewParticle p;
-      p.id = next_id + static_cast<ParticleId>(k);
-      p.type = static_cast<int>(type);
-      p.radius = 0.5 * sizes[type]->diameter(uniform(types[type].sizes.seed, Draw::size, p.id));
-      p.mass = sphere_mass(p.radius, types[type].density);
+    std::vector<NewParticle> share;
+    for (std::size_t k = begin; k < end; ++k) {
+      NewParticle p = particles.particle(k, next_id + static_cast<ParticleId>(k));
       p.position = grid.point(k, parameters.seed, p.id);
       p.velocity = parameters.velocity;
       p.spin = parameters.spin;
-      particles.push_back(p);
+      share.push_back(p);
     }
     next_id += static_cast<ParticleId>(n);
-    take(n);
-    return particles;
+    particles.take(n);
+    return share;
   }
 
 private:
@@ -153,30 +139,15 @@ private:
                       " points. Make the insertion box smaller, or the distance threshold larger.");
     grid.restrict_to([&](const Vec3 &x) { return acceptance.value(0, x, 0.) > 0.; });
   }
-  std::size_t n_remaining() const
-  {
-    return std::accumulate(remaining.begin(), remaining.end(), std::size_t(0));
-  }
-  void take(std::size_t n)
-  {
-    for (std::size_t &left : remaining) {
-      const std::size_t now = std::min(left, n);
-      left -= now;
-      n -= now;
-    }
-  }
   std::size_t of_next_event() const
   {
-    return parameters.per_event > 0 ? std::min<std::size_t>(parameters.per_event, n_remaining())
-                                    : n_remaining();
+    const std::size_t left = particles.n_remaining();
+    return parameters.per_event > 0 ? std::min<std::size_t>(parameters.per_event, left) : left;
   }
 
   const InsertionParameters parameters;
-  const std::vector<ParticleType> types;
+  ParticleSupply particles;
   MPI_Comm comm;
-  double largest = 0.;
-  std::vector<std::unique_ptr<SizeDistribution>> sizes;
-  std::vector<std::size_t> remaining; ///< of each type
   VolumeGrid grid;
 };
 

@@ -1,0 +1,96 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <map>
+
+namespace eunoe {
+namespace {
+
+class BoundaryForcesSection : public RecordSection
+{
+public:
+  BoundaryForcesSection()
+      : RecordSection({"boundary forces"},
+                      {"Whether force and torque of the particles on every wall of the mesh are "
+                       "recorded.",
+                       "Beginning of the names of the files, one a boundary, with the columns "
+                       "time, f_x, f_y, f_z, T_x, T_y, T_z (N, N m)."},
+                      "force", 1)
+  {
+  }
+
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    RecordSection::declare(prm);
+    prm.enter_subsection("boundary forces");
+    prm.enter_subsection("center of mass coordinate");
+    for (unsigned int d = 0; d < 3; ++d)
+      prm.add_parameter(std::string(1, "xyz"[d]), centre[d],
+                        "Point about which the torques are (m).");
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  Vec3 centre;
+};
+
+/// Force and torque of the particles on every wall of the mesh, row by row.
+class BoundaryForces : public Observable
+{
+public:
+  BoundaryForces(const BoundaryForcesSection &section, Simulation &simulation)
+      : frequency(section.frequency), centre(section.centre)
+  {
+    // The walls of the mesh are the first solids; one boundary may have several sides.
+    const auto &walls = simulation.get_domain().walls();
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      const std::string id = walls[w].name.substr(walls[w].name.find(' ') + 1);
+      Boundary &boundary = boundaries[id];
+      boundary.walls.push_back(w);
+      if (boundary.file == nullptr)
+        boundary.file = simulation.output_folder().table(
+            section.file + "_" + id + ".csv", {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"});
+    }
+  }
+
+  bool wants_solid_loads(unsigned long long step) const override { return step % frequency == 0; }
+
+  void step(Simulation &simulation) override
+  {
+    if (!wants_solid_loads(simulation.step_number()))
+      return;
+    const std::vector<SolidLoad> loads = simulation.global_solid_loads();
+    for (const auto &[id, boundary] : boundaries) {
+      Vec3 force, torque;
+      for (const std::size_t w : boundary.walls) {
+        const auto value = [](const std::array<ExactSum, 3> &sum) {
+          return Vec3{sum[0].value(), sum[1].value(), sum[2].value()};
+        };
+        const Vec3 f = value(loads[w].force);
+        force += f;
+        torque +=
+            value(loads[w].torque) + cross(simulation.get_solids()[w].state.centre - centre, f);
+      }
+      boundary.file->write(
+          {simulation.time(), force.x, force.y, force.z, torque.x, torque.y, torque.z});
+    }
+  }
+
+private:
+  struct Boundary
+  {
+    std::vector<std::size_t> walls;
+    std::shared_ptr<CsvFile> file;
+  };
+
+  const unsigned long long frequency;
+  const Vec3 centre;
+  std::map<std::string, Boundary> boundaries;
+};
+
+const ObservableRegistry::Registration registration(observables(), "boundary forces", [] {
+  return std::make_unique<SectionOf<BoundaryForces, BoundaryForcesSection>>();
+});
+
+} // namespace
+} // namespace eunoe

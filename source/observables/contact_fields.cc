@@ -1,0 +1,57 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/simulation.h>
+
+namespace eunoe {
+namespace {
+
+class ContactFieldsSection : public ObservableSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("post-processing");
+    prm.add_parameter("contact fields", calculation,
+                      "Whether the particles in pictures have their coordination number and mean "
+                      "normal and tangential force of their contacts.");
+    prm.leave_subsection();
+  }
+
+  bool calculation = false;
+};
+
+/// Coordination number and forces per contact of every particle, in its pictures.
+class ContactFields : public Observable
+{
+public:
+  ContactFields(const ContactFieldsSection &, Simulation &) {}
+
+  std::vector<PictureField> fields(Simulation &simulation) const override
+  {
+    const ParticleArrays &p = simulation.complete_step();
+    std::vector<double> number(p.n_owned, 0.), normal = number, tangential = number;
+    for (const ContactForce &contact :
+         simulation.get_system().contact_forces(simulation.get_solids(), simulation.time()))
+      if (contact.overlap > 0.)
+        for (const std::int32_t row : {contact.first, contact.second})
+          if (row >= 0 && static_cast<std::size_t>(row) < p.n_owned) {
+            ++number[row];
+            normal[row] += contact.normal_force;
+            tangential[row] += norm(contact.tangential_force);
+          }
+    for (std::size_t k = 0; k < p.n_owned; ++k)
+      if (number[k] > 0.) {
+        normal[k] /= number[k];
+        tangential[k] /= number[k];
+      }
+    return {{"coordination_number", 1, number},
+            {"normal_force_per_contact", 1, normal},
+            {"tangential_force_per_contact", 1, tangential}};
+  }
+};
+
+const ObservableRegistry::Registration registration(observables(), "contact fields", [] {
+  return std::make_unique<SectionOf<ContactFields, ContactFieldsSection>>();
+});
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,113 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <deal.II/base/data_out_base.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace eunoe {
+namespace {
+
+class ForceChainsSection : public ObservableSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("post-processing");
+    prm.add_parameter("force chains", calculation,
+                      "Whether all contacts are drawn with every picture, as lines with their "
+                      "forces and overlaps.");
+    prm.leave_subsection();
+  }
+
+  bool calculation = false;
+};
+
+using dealii::DataComponentInterpretation::DataComponentInterpretation;
+using dealii::DataOutBase::Patch;
+using Ranges =
+    std::vector<std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation>>;
+
+/// Contacts as lines with data that are constant on each, in the form in which deal.II writes them.
+class ContactLines : public dealii::DataOutInterface<1, 3>
+{
+public:
+  /// A line from the centre of the first body to that of the second, or to the solid's surface. It
+  /// begins in the first body's place, wherever beyond a periodic face the second has its own.
+  void add(const ContactForce &contact, const ParticleArrays &p)
+  {
+    Patch<1, 3> patch;
+    patch.patch_index = static_cast<unsigned int>(patches.size());
+    patch.n_subdivisions = 1;
+    const Vec3 begin = p.position[contact.first].vec();
+    const Vec3 end = begin + contact.distance * contact.normal;
+    patch.vertices[0] = {begin.x, begin.y, begin.z};
+    patch.vertices[1] = {end.x, end.y, end.z};
+    const double values[] = {contact.normal_force,
+                             norm(contact.tangential_force),
+                             contact.overlap,
+                             static_cast<double>(p.id[contact.first]),
+                             contact.second < 0 ? -1. : static_cast<double>(p.id[contact.second]),
+                             static_cast<double>(contact.solid)};
+    const unsigned int n = std::size(values);
+    patch.data.reinit(n, 2);
+    for (unsigned int c = 0; c < n; ++c)
+      patch.data(c, 0) = patch.data(c, 1) = static_cast<float>(values[c]);
+    patches.push_back(patch);
+  }
+
+private:
+  const std::vector<Patch<1, 3>> &get_patches() const override { return patches; }
+  std::vector<std::string> get_dataset_names() const override
+  {
+    return {"normal_force", "tangential_force", "overlap", "first", "second", "solid"};
+  }
+  Ranges get_nonscalar_data_ranges() const override { return {}; }
+
+  std::vector<Patch<1, 3>> patches;
+};
+
+/// All contacts with their forces, as pictures.
+class ForceChains : public Observable
+{
+public:
+  ForceChains(const ForceChainsSection &, Simulation &simulation)
+      : pictures(simulation.output_folder().pictures(
+            simulation.get_parameters().control.output_name + "_force_chains"))
+  {
+  }
+
+  void draw(Simulation &simulation) override
+  {
+    const ParticleArrays &p = simulation.complete_step();
+    std::vector<ContactForce> contacts =
+        simulation.get_system().contact_forces(simulation.get_solids(), simulation.time());
+    const auto is_drawn = [&p](const ContactForce &c) {
+      // A contact of two ranks is drawn by that of the first particle.
+      return static_cast<std::size_t>(c.first) < p.n_owned &&
+             (c.overlap > 0. || c.normal_force != 0.);
+    };
+    const auto key = [&p](const ContactForce &c) {
+      return std::make_tuple(p.id[c.first], c.second < 0 ? 0 : p.id[c.second], c.solid, c.normal.x,
+                             c.normal.y, c.normal.z);
+    };
+    std::sort(contacts.begin(), contacts.end(),
+              [&key](const ContactForce &a, const ContactForce &b) { return key(a) < key(b); });
+    ContactLines lines;
+    for (const ContactForce &contact : contacts)
+      if (is_drawn(contact))
+        lines.add(contact, p);
+    pictures->write(simulation.time(), lines);
+  }
+
+private:
+  const std::shared_ptr<PictureSeries> pictures;
+};
+
+const ObservableRegistry::Registration registration(observables(), "force chains", [] {
+  return std::make_unique<SectionOf<ForceChains, ForceChainsSection>>();
+});
+
+} // namespace
+} // namespace eunoe

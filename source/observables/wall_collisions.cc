@@ -1,0 +1,266 @@
+#include <eunoe/checkpoint/head_values.h>
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/simulation.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <unordered_set>
+
+namespace eunoe {
+namespace {
+
+class WallCollisionsSection : public ObservableSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    for (const std::string &name : path)
+      prm.enter_subsection(name);
+    prm.add_parameter("enable particle wall collision statistics", calculation,
+                      "Whether beginning and end of every collision of a particle with a wall of "
+                      "the mesh are recorded.");
+    prm.add_parameter("log collisions with all walls", all_walls,
+                      "Whether all walls of the mesh count, or those of 'wall boundary ids'.");
+    prm.add_parameter("wall boundary ids", ids, "Boundaries that count if not all do.",
+                      declare::Patterns::List(declare::Patterns::Integer(0)));
+    prm.add_parameter("collision statistics file", file,
+                      "Name of the file; its values are separated by commas.");
+    for (std::size_t k = 0; k < path.size(); ++k)
+      prm.leave_subsection();
+  }
+
+  void check(const ParameterCheck &check) const override
+  {
+    check.require(!file.empty() && file.find('/') == std::string::npos, path,
+                  "collision statistics file", "is '" + file + "'.", "Give a name without '/'.");
+  }
+
+  /// Throws a UserError if a boundary is named that is no wall.
+  void find_walls(const Domain &domain) const
+  {
+    std::set<unsigned int> boundaries;
+    for (const Solid &wall : domain.walls())
+      boundaries.insert(boundary_of(wall));
+    std::string walls;
+    for (const unsigned int id : boundaries)
+      walls += (walls.empty() ? "" : ", ") + std::to_string(id);
+    for (const unsigned int id : ids)
+      if (boundaries.count(id) == 0)
+        throw UserError(describe(path, "wall boundary ids") + " names " + std::to_string(id) +
+                        ", which is no wall of the mesh. " +
+                        (walls.empty() ? "The mesh has none." : "Name some of " + walls + "."));
+  }
+
+  static unsigned int boundary_of(const Solid &wall)
+  {
+    return static_cast<unsigned int>(std::stoul(wall.name.substr(wall.name.find(' ') + 1)));
+  }
+
+  bool counts(const Solid &wall) const
+  {
+    return all_walls || std::find(ids.begin(), ids.end(), boundary_of(wall)) != ids.end();
+  }
+
+  const ParameterCheck::Path path = {"post-processing", "particle wall collision statistics"};
+  bool calculation = false, all_walls = true;
+  std::vector<unsigned int> ids = {0};
+  std::string file = "collision_statistics.csv";
+};
+
+/// A particle near a wall: while it touches, how the collision began; else how it moves now.
+struct Approach
+{
+  ParticleId particle = 0;
+  int wall = -1; ///< among the walls of the mesh, -1 for a place that holds none
+  bool touches = false;
+  double start = 0.;   ///< of the collision (s)
+  Vec3 velocity, spin; ///< at the step before it (m/s, rad/s)
+
+  std::vector<double> row() const
+  {
+    return {double(particle), double(wall), touches ? 1. : 0., start,
+            velocity.x,       velocity.y,   velocity.z,        spin.x,
+            spin.y,           spin.z};
+  }
+  static Approach of(const std::vector<double> &row)
+  {
+    return {static_cast<ParticleId>(row[0]), static_cast<int>(row[1]), row[2] != 0., row[3],
+            {row[4], row[5], row[6]},        {row[7], row[8], row[9]}};
+  }
+};
+
+using Rows = std::vector<std::vector<double>>;
+
+Rows of_all_ranks(const Rows &mine, MPI_Comm comm)
+{
+  Rows all;
+  for (const Rows &part : dealii::Utilities::MPI::all_gather(comm, mine))
+    all.insert(all.end(), part.begin(), part.end());
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// Velocities before and after every collision of a particle with a wall of the mesh.
+class WallCollisions : public Observable
+{
+public:
+  WallCollisions(const WallCollisionsSection &section, Simulation &simulation)
+      : comm(simulation.communicator()),
+        file(simulation.output_folder().table(
+            section.file,
+            {"collision", "particle", "wall", "start_time", "start_v_x", "start_v_y", "start_v_z",
+             "start_omega_x", "start_omega_y", "start_omega_z", "end_time", "end_v_x", "end_v_y",
+             "end_v_z", "end_omega_x", "end_omega_y", "end_omega_z"}))
+  {
+    if (!section.all_walls)
+      section.find_walls(simulation.get_domain());
+    for (const Solid &wall : simulation.get_domain().walls()) {
+      boundary.push_back(WallCollisionsSection::boundary_of(wall));
+      counts.push_back(section.counts(wall));
+    }
+  }
+
+  void step(Simulation &simulation) override
+  {
+    const ParticleArrays &p = simulation.complete_step();
+    const ParticleSystem &system = simulation.get_system();
+    const SolidContacts &contacts = system.get_solid_contacts();
+    if (searches != system.n_searches())
+      follow(p, contacts);
+    searches = system.n_searches();
+
+    Rows ended;
+    for (std::size_t k = 0; k < approaches.size(); ++k) {
+      const SolidContacts::Candidate &candidate = contacts.get_candidates()[k];
+      if (!is_watched(candidate.solid))
+        continue;
+      const std::int32_t row = candidate.particle;
+      const Quad &x = p.position[row];
+      const Vec3 v = p.velocity[row].vec(), w = p.spin[row].vec();
+      const bool touches =
+          contacts.deepest_overlap(candidate, simulation.get_solids()[candidate.solid], x.vec(),
+                                   x.w) > 0.;
+      Approach &approach = approaches[k];
+      if (approach.touches && !touches) {
+        ended.push_back(approach.row());
+        ended.back().insert(ended.back().end(), {simulation.time(), v.x, v.y, v.z, w.x, w.y, w.z});
+      }
+      if (touches && !approach.touches)
+        // Velocities are those of the step before, if there was one near the wall.
+        approach = {p.id[row],
+                    candidate.solid,
+                    true,
+                    simulation.time(),
+                    approach.wall < 0 ? v : approach.velocity,
+                    approach.wall < 0 ? w : approach.spin};
+      else if (!touches)
+        approach = {p.id[row], candidate.solid, false, 0., v, w};
+    }
+    write(ended);
+  }
+
+  void save(nlohmann::ordered_json &json) const override
+  {
+    json["collisions"] = n_collisions;
+    json["near"] = nlohmann::ordered_json::array();
+    for (const std::vector<double> &row : of_all_ranks(rows(), comm))
+      json["near"].push_back(row);
+  }
+
+  void resume(const nlohmann::ordered_json &json) override
+  {
+    n_collisions = count_in(json.at("collisions"));
+    for (const auto &values : json.at("near")) {
+      std::vector<double> row;
+      for (const auto &value : values)
+        row.push_back(number_in(value));
+      if (row.size() != Approach().row().size())
+        throw std::invalid_argument("this is no particle near a wall");
+      kept.push_back(row);
+    }
+    has_kept = true;
+  }
+
+private:
+  bool is_watched(std::int32_t solid) const
+  {
+    return static_cast<std::size_t>(solid) < counts.size() && counts[solid];
+  }
+
+  Rows rows() const
+  {
+    Rows mine;
+    for (const Approach &approach : approaches)
+      if (approach.wall >= 0)
+        mine.push_back(approach.row());
+    return mine;
+  }
+
+  /// After a search, puts what is remembered of each particle to its new place, on whatever rank;
+  /// collective, as all ranks search together.
+  void follow(const ParticleArrays &p, const SolidContacts &contacts)
+  {
+    Rows mine = has_kept ? kept : rows();
+    if (!has_kept) {
+      const std::unordered_set<ParticleId> owned(p.id.begin(),
+                                                 p.id.begin() + static_cast<long>(p.n_owned));
+      const auto gone = std::stable_partition(mine.begin(), mine.end(), [&owned](const auto &row) {
+        return owned.count(static_cast<ParticleId>(row[0])) > 0;
+      });
+      const Rows moved = of_all_ranks(Rows(gone, mine.end()), comm);
+      mine.erase(gone, mine.end());
+      mine.insert(mine.end(), moved.begin(), moved.end());
+    }
+    has_kept = false;
+    kept.clear();
+
+    std::map<std::pair<ParticleId, int>, Approach> found;
+    for (const std::vector<double> &row : mine) {
+      const Approach approach = Approach::of(row);
+      found[{approach.particle, approach.wall}] = approach;
+    }
+    approaches.assign(contacts.get_candidates().size(), Approach());
+    for (std::size_t k = 0; k < approaches.size(); ++k) {
+      const SolidContacts::Candidate &candidate = contacts.get_candidates()[k];
+      const auto it = found.find({p.id[candidate.particle], candidate.solid});
+      if (it != found.end())
+        approaches[k] = it->second;
+    }
+  }
+
+  /// Writes the collisions that have ended, of all ranks, by particle; collective.
+  void write(const Rows &mine)
+  {
+    unsigned long long n = mine.size();
+    MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm);
+    if (n == 0)
+      return;
+    for (std::vector<double> row : of_all_ranks(mine, comm)) {
+      row[1] = boundary[static_cast<std::size_t>(row[1])];
+      row.erase(row.begin() + 2);
+      row.insert(row.begin(), static_cast<double>(n_collisions++));
+      file->write(row);
+    }
+  }
+
+  MPI_Comm comm;
+  const std::shared_ptr<CsvFile> file;
+  std::vector<unsigned int> boundary; ///< of each wall
+  std::vector<bool> counts;           ///< whether its collisions do
+  std::vector<Approach> approaches;   ///< one a candidate of the contacts with solids
+  /// At which the approaches were put in their places, at first none.
+  unsigned long long searches = std::numeric_limits<unsigned long long>::max();
+  std::uint64_t n_collisions = 0;
+  Rows kept; ///< of all ranks, from a checkpoint
+  bool has_kept = false;
+};
+
+const ObservableRegistry::Registration registration(observables(), "wall collisions", [] {
+  return std::make_unique<SectionOf<WallCollisions, WallCollisionsSection>>();
+});
+
+} // namespace
+} // namespace eunoe

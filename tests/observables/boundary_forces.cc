@@ -1,0 +1,145 @@
+// Forces on the walls of the mesh: a packing at rest weighs on its floor what its particles weigh,
+// and pushes its walls apart in balance; a sphere at rest beside the centre exerts the torque of
+// its weight. The tables are the same on any number of ranks. Reference: statics.
+
+#include <eunoe/core/files.h>
+
+#include "../tests.h"
+
+using namespace test;
+
+namespace {
+
+std::string floor_case(const std::string &type, const std::string &insertion, double time_end,
+                       const std::string &more)
+{
+  char head[256];
+  std::snprintf(head, sizeof head,
+                "subsection simulation control\n set time step = 1e-5\n set time end = %g\n"
+                " set log frequency = 0\n set output path = results\nend\n",
+                time_end);
+  return head +
+         std::string("subsection mesh\n set grid type = subdivided_hyper_rectangle\n"
+                     " set grid arguments = 3, 3, 4 : 0, 0, 0 : 6e-3, 6e-3, 8e-3 : true\n"
+                     "end\nsubsection lagrangian physical properties\n"
+                     " set g = 0, 0, -9.81\n set friction coefficient wall = 0.3\n"
+                     " subsection particle type 0\n") +
+         type +
+         "  set young modulus particles = 1e6\n  set friction coefficient particles = 0.3\n"
+         "  set restitution coefficient particles = 0.1\n"
+         " end\nend\nsubsection model parameters\n set rolling resistance torque method = none\n"
+         "end\nsubsection insertion info\n" +
+         insertion + "end\nsubsection boundary forces\n set calculation = true\n" + more + "end\n";
+}
+
+Table table_of(const std::string &name)
+{
+  return parse_table(read_file("results/" + name, MPI_COMM_WORLD), name);
+}
+
+/// Largest component of the forces on particles and walls less the weight, over the weight:
+/// forces between particles cancel, so that nothing else is left.
+double imbalance(Simulation &simulation)
+{
+  const ParticleArrays &p = simulation.complete_step();
+  ExactSum weight;
+  std::array<ExactSum, 3> sums;
+  for (std::size_t k = 0; k < p.n_owned; ++k) {
+    weight += 9.81 * p.velocity[k].w;
+    for (unsigned int d = 0; d < 3; ++d)
+      sums[d] += p.force[k].vec()[d];
+  }
+  weight.reduce(simulation.communicator());
+  double largest = 0.;
+  const std::vector<SolidLoad> loads = simulation.global_solid_loads();
+  for (unsigned int d = 0; d < 3; ++d) {
+    sums[d].reduce(simulation.communicator());
+    double total = sums[d].value() + (d == 2 ? weight.value() : 0.);
+    for (const SolidLoad &load : loads)
+      total += load.force[d].value();
+    largest = std::max(largest, std::abs(total));
+  }
+  return largest / weight.value();
+}
+
+void test_packing()
+{
+  Case packing(
+      floor_case("  set size distribution type = normal\n  set average diameter = 1e-3\n"
+                 "  set standard deviation = 1e-4\n  set number of particles = 60\n",
+                 " set insertion box points coordinates = 0, 0, 0 : 6e-3, 6e-3, 8e-3\n"
+                 " set insertion distance threshold = 1.1\n set insertion maximum offset = 0.1\n",
+                 0.4, " set filename = packing\n set output frequency = 2000\n"));
+  double worst = 0.;
+  packing.run([&worst](Simulation &simulation) {
+    if (simulation.step_number() % 2000 == 0 && simulation.step_number() > 0)
+      worst = std::max(worst, imbalance(simulation));
+  });
+  check_close("walls bear what the particles do not accelerate", worst, 0., 1e-13);
+  double weight = 0., time = 0.;
+  for (const auto &particle : particle_table(*packing))
+    weight += sphere_mass(particle[c_radius], 1000.) * 9.81;
+  Vec3 sum;
+  for (const char *const id : {"0", "1", "2", "3", "4", "5"}) {
+    const Table table = table_of(std::string("packing_") + id + ".csv");
+    check(std::string("rows of boundary ") + id, table.rows.size() == 21);
+    const auto &row = table.rows.back();
+    time = row[0];
+    sum += Vec3{row[1], row[2], row[3]};
+  }
+  const auto bottom = table_of("packing_4.csv").rows.back();
+  check_close("time of the last row", time, 0.4, 1e-12);
+  check_close("weight on all walls", sum.z / weight, -1., 1e-6);
+  check_close("the side walls balance", std::hypot(sum.x, sum.y) / weight, 0., 1e-6);
+  check("the floor bears most of it", -bottom[3] > 0.9 * weight && -bottom[3] <= 1.05 * weight);
+  // The same digits must come out on one rank and on two: sums are exact.
+  char text[128];
+  std::snprintf(text, sizeof text, "force on the floor %.17g %.17g %.17g", bottom[1], bottom[2],
+                bottom[3]);
+  print(text);
+}
+
+void test_torque()
+{
+  Case sphere(floor_case("  set diameter = 1e-3\n",
+                         " set insertion method = list\n set list x = 2e-3\n set list y = 4.5e-3\n"
+                         " set list z = 0.5e-3\n set list diameters = 1e-3\n",
+                         0.1,
+                         " set filename = torque\n set output frequency = 500\n"
+                         " subsection center of mass coordinate\n  set x = 3e-3\n  set y = 3e-3\n"
+                         "  set z = 4e-3\n end\n"));
+  sphere.run();
+  const double weight = sphere_mass(0.5e-3, 1000.) * 9.81;
+  const Table table = table_of("torque_4.csv");
+  const auto &row = table.rows.back();
+  check_relative("force of a sphere", -row[3], weight, 1e-9);
+  // r = (-1, 1.5, -4) mm, F = (0, 0, -weight): r x F = (-1.5 w, -1 w, 0).
+  check_close("its torque about x", row[4] / weight, -1.5e-3, 1e-9);
+  check_close("its torque about y", row[5] / weight, -1e-3, 1e-9);
+  check_close("its torque about z", row[6] / weight, 0., 1e-9);
+  check("nothing on the walls", table_of("torque_0.csv").rows.back()[1] == 0.);
+}
+
+/// A boundary with several sides has one table: the sum over all of them.
+void test_sides_of_one_id()
+{
+  std::string input = floor_case("  set diameter = 1e-3\n",
+                                 " set insertion method = list\n set list x = 2e-3\n"
+                                 " set list y = 4.5e-3\n set list z = 0.5e-3\n",
+                                 0.1, " set filename = sides\n set output frequency = 500\n");
+  input.replace(input.find(" : true"), 7, " : false");
+  Case sphere(input);
+  sphere.run();
+  check_relative("one id for all sides", -table_of("sides_0.csv").rows.back()[3],
+                 sphere_mass(0.5e-3, 1000.) * 9.81, 1e-9);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_packing();
+  test_torque();
+  test_sides_of_one_id();
+}

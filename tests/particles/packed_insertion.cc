@@ -1,0 +1,148 @@
+// Dense random packings: all particles come at once, none overlaps another or leaves its box,
+// periodic faces are no walls, only places that are accepted are taken; the same on any number of
+// ranks, and the run goes on with them. Reference: geometry.
+
+#include "../tests.h"
+
+using namespace test;
+
+namespace {
+
+std::string case_of_packing(unsigned int number, const std::string &insertion,
+                            const std::string &more = "")
+{
+  return box_input(1e-6, 1e-6,
+                   "subsection lagrangian physical properties\n subsection particle type 0\n"
+                   "  set size distribution type = normal\n  set average diameter = 1e-3\n"
+                   "  set standard deviation = 1e-4\n  set number of particles = " +
+                       std::to_string(number) +
+                       "\n end\nend\nsubsection insertion info\n set insertion method = packed\n"
+                       " set insertion prn seed = 5\n" +
+                       insertion + "end\n" + more);
+}
+
+/// What there is to know of a packing.
+struct Result
+{
+  std::size_t number = 0;
+  double largest_overlap = -1.; ///< over the sum of the radii, negative for gaps
+  double volume = 0.;           ///< of all particles (m3)
+  double order = 0.;            ///< a sum that changes with any digit
+  Vec3 lowest = {1., 1., 1.}, highest = {-1., -1., -1.}; ///< of the surfaces (m)
+};
+
+Result look_at(Simulation &simulation)
+{
+  Result result;
+  const PeriodicBox &box = simulation.get_domain().periods();
+  const auto all = particle_table(simulation);
+  result.number = all.size();
+  for (const auto &a : all) {
+    const Vec3 x = {a[c_x], a[c_y], a[c_z]};
+    const double r = a[c_radius];
+    result.volume += sphere_mass(r, 1.);
+    result.order += a[c_id] * (x.x + 2. * x.y + 3. * x.z);
+    for (unsigned int d = 0; d < 3; ++d) {
+      result.lowest[d] = std::min(result.lowest[d], x[d] - r);
+      result.highest[d] = std::max(result.highest[d], x[d] + r);
+    }
+    for (const auto &b : all)
+      if (a[c_id] < b[c_id]) {
+        const double sum = r + b[c_radius];
+        const double distance = norm(box.shortest(x - Vec3{b[c_x], b[c_y], b[c_z]}));
+        result.largest_overlap = std::max(result.largest_overlap, 1. - distance / sum);
+      }
+  }
+  return result;
+}
+
+Result pack(const std::string &input)
+{
+  Result result;
+  Case packing(input);
+  packing.run([&result](Simulation &simulation) {
+    if (simulation.step_number() == 0)
+      result = look_at(simulation);
+  });
+  return result;
+}
+
+void print_fingerprint(const Result &result)
+{
+  // Must be the same on one rank and on two.
+  char text[64];
+  std::snprintf(text, sizeof text, "fingerprint %.17g", result.order);
+  print(text);
+}
+
+void test_box()
+{
+  // 8 mm x 8 mm x 8 mm.
+  const Result r = pack(case_of_packing(
+      500, " set insertion box points coordinates = -4e-3,-4e-3,-9e-3 : 4e-3,4e-3,-1e-3\n"));
+  const double fraction = r.volume / std::pow(8e-3, 3);
+  check("all have come", r.number == 500);
+  check("none overlaps", r.largest_overlap <= 0.);
+  check("many nearly touch", r.largest_overlap > -2e-3);
+  // The walls of this box take away several percent of what is possible.
+  check("dense", fraction > 0.52 && fraction < 0.54);
+  check("inside the box", r.lowest.x >= -4e-3 - 1e-15 && r.highest.y <= 4e-3 + 1e-15 &&
+                              r.lowest.z >= -9e-3 - 1e-15 && r.highest.z <= -1e-3 + 1e-15);
+  print_fingerprint(r);
+}
+
+void test_periods()
+{
+  const Result r = pack(case_of_packing(
+      1900, " set insertion box points coordinates = -1e-2,-1e-2,-1e-2 : 1e-2,1e-2,-5e-3\n",
+      "subsection DEM boundary conditions\n set number of boundary conditions = 1\n"
+      " subsection boundary condition 0\n  set type = periodic\n  set periodic id 0 = 0\n"
+      "  set periodic id 1 = 1\n  set periodic direction = 0\n end\nend\n"));
+  check("periodic: none overlaps", r.number == 1900 && r.largest_overlap <= 0.);
+  check("periodic: no wall there", r.lowest.x < -1e-2 && r.highest.x > 1e-2);
+  check("periodic: walls elsewhere", r.lowest.y >= -1e-2 - 1e-15 && r.highest.y <= 1e-2 + 1e-15);
+  print_fingerprint(r);
+}
+
+void test_acceptance()
+{
+  Case cylinder(case_of_packing(
+      150, " set insertion box points coordinates = -4e-3,-4e-3,-9e-3 : 4e-3,4e-3,-1e-3\n"
+           " subsection insertion acceptance function\n"
+           "  set Function expression = 2.5e-3^2 - x^2 - y^2\n end\n"));
+  cylinder.run([](Simulation &simulation) {
+    if (simulation.step_number() != 0)
+      return;
+    const auto all = particle_table(simulation);
+    check("acceptance function", std::all_of(all.begin(), all.end(), [](const auto &p) {
+            return std::hypot(p[c_x], p[c_y]) < 2.5e-3;
+          }));
+    check("none overlaps there", all.size() == 150 && look_at(simulation).largest_overlap <= 0.);
+  });
+}
+
+/// Too many to be packed, but not so many that it is known beforehand.
+void test_too_many()
+{
+  Case crowded(case_of_packing(
+      570, " set insertion box points coordinates = -4e-3,-4e-3,-9e-3 : 4e-3,4e-3,-1e-3\n"));
+  std::string message;
+  try {
+    crowded.run();
+  } catch (const UserError &error) {
+    message = error.what();
+  }
+  check("too many are refused",
+        message.find("could not be packed into the box without overlap") != std::string::npos);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  test_box();
+  test_periods();
+  test_acceptance();
+  test_too_many();
+}
