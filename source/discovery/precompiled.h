@@ -1,0 +1,13 @@
+#ifndef eunoe_source_discovery_precompiled_h
+#define eunoe_source_discovery_precompiled_h
+
+// Headers that most files of discovery share and that take long to compile.
+
+#include <Eigen/Dense>
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#endif

@@ -1,0 +1,2 @@
+// The file that a library must have; the precompiled header beside it is what it is for.
+#include "tests.h"
