@@ -3,9 +3,9 @@
 
 // Headers that most files of discovery share and that take long to compile.
 
-#include <Eigen/Dense>
 #include <nlohmann/json.hpp>
 
+#include <Eigen/Dense>
 #include <map>
 #include <string>
 #include <vector>

@@ -9,9 +9,10 @@
 #include <eunoe/discovery/statistics/random_stream.h>
 #include <eunoe/discovery/study.h>
 
+#include "../tests.h"
+
 #include <Eigen/Dense>
 #include <cstring>
-#include <iostream>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,11 +21,6 @@ namespace test {
 
 using namespace eunoe;
 using namespace eunoe::discovery;
-
-inline void check(const std::string &name, bool ok, const std::string &otherwise = "is not so")
-{
-  std::cout << name << ": " << (ok ? "ok" : otherwise) << std::endl;
-}
 
 struct ObservableShape
 {

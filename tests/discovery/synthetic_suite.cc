@@ -19,7 +19,7 @@ using namespace test;
 Nature common_nature;
 const std::vector<std::string> fit = {"spreading", "heap"}, held_out = {"thick layers"};
 
-struct Case
+struct StudyKind
 {
   std::string name;
   double strength = 0.;
@@ -28,7 +28,7 @@ struct Case
 };
 
 /// Sums over all studies of one case.
-struct Tally
+struct StudyTally
 {
   double studies = 0., detected = 0., first = 0., covered = 0., set_size = 0., sets = 0.;
   double wrong = 0., off = 0., amplitude_covered = 0., amplitudes = 0., error = 0., runs = 0.;
@@ -49,7 +49,7 @@ std::vector<std::string> split(const std::string &set)
   return result;
 }
 
-void score(const Discovery &d, const Amplitudes &truth, const Case &which, Tally &t)
+void score(const Discovery &d, const Amplitudes &truth, const StudyKind &which, StudyTally &t)
 {
   const auto &c = d.content;
   if (truth.empty() && std::getenv("EUNOE_SUITE_VERBOSE") != nullptr)
@@ -118,7 +118,7 @@ void score(const Discovery &d, const Amplitudes &truth, const Case &which, Tally
   t.confidence += candidates[0]["confidence"].get<double>();
 }
 
-Discovery study(const Case &which, std::uint32_t seed, const StudyOptions &base_options,
+Discovery study(const StudyKind &which, std::uint32_t seed, const StudyOptions &base_options,
                 Amplitudes &truth, Log &log)
 {
   RandomStream random(seed, 99);
@@ -157,7 +157,7 @@ Discovery study(const Case &which, std::uint32_t seed, const StudyOptions &base_
   return discover(options, data, factors, laboratory, store, log);
 }
 
-void print(const Case &which, Tally &t)
+void print(const StudyKind &which, StudyTally &t)
 {
   std::sort(t.shrinks.begin(), t.shrinks.end());
   const double median = t.shrinks.empty() ? 0. : t.shrinks[t.shrinks.size() / 2];
@@ -207,16 +207,16 @@ int main(int argc, char **argv)
   }
   {
     Log log(MPI_COMM_SELF, true);
-    std::vector<Case> cases = {{"none"}};
+    std::vector<StudyKind> cases = {{"none"}};
     for (const double strength : {2., 4., 8.})
       cases.push_back({"one " + std::to_string(int(strength)), strength, 1});
     cases.push_back({"two 6", 6., 2});
     cases.push_back({"deleted 8", 8., 1, true});
     cases.push_back({"alike 8", 8., 1, false, true});
-    for (const Case &which : cases) {
+    for (const StudyKind &which : cases) {
       if (!only.empty() && which.name.find(only) != 0)
         continue;
-      Tally tally;
+      StudyTally tally;
       for (std::uint32_t seed = first; seed < first + number; ++seed) {
         Amplitudes truth;
         const Discovery d = study(which, seed, options, truth, log);
