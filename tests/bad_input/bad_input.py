@@ -48,7 +48,7 @@ def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
            codes: tuple[int, ...] = (2,)) -> None:
     options = [word for setting in settings for word in ("--set", setting)]
     for launch in ([], TWO_RANKS):
-        place = f"{case} on {2 if launch else 1} rank(s)"
+        place = f"{folder.name}/{case} on {2 if launch else 1} rank(s)"
         try:
             run = subprocess.run([*launch, program, f"{case}.prm", *options], cwd=folder, timeout=60,
                                  capture_output=True, check=False)
@@ -67,34 +67,43 @@ def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
 def spoil_checkpoints(program: str, folder: Path) -> None:
     """Checkpoints that were cut short or damaged, and inputs that do not fit to them."""
     subprocess.run([program, "checkpointed.prm", "--quiet"], cwd=folder, check=True)
-    results = folder / "checkpointed"
-    original = next(results.glob("*.checkpoint"))
+    data = next((folder / "checkpointed").glob("*.checkpoint")).read_bytes()
     again = "restart/restart = true"
-    refuse(program, "checkpointed", "time step' is '2e-6', and was '1e-6' in the run that wrote",
-           folder, again, "simulation control/time step = 2e-6")
-    refuse(program, "checkpointed", "'number of floating walls' is '1', and was '0'", folder, again,
-           "floating walls/number of floating walls = 1",
-           "floating walls/wall 0/end time = 1")
-    data = original.read_bytes()
-    for name, broken, sentence in (
-            ("cut short", data[:-9], "its checksum does not fit"),
-            ("nearly empty", data[:20], "is cut short: it has 20 bytes"),
-            ("empty", b"", "is cut short: it has 0 bytes"),
-            ("one bit", data[:-40] + bytes([data[-40] ^ 1]) + data[-39:], "its checksum does not fit"),
-            ("a bit of the head", data[:60] + bytes([data[60] ^ 4]) + data[61:],
-             "its checksum does not fit")):
-        original.write_bytes(broken)
-        print(name, end="; ")
-        refuse(program, "checkpointed", sentence, folder, again)
-    for name, change, sentence in FORGERIES:
-        original.write_bytes(forged(data, change))
-        print(name, end="; ")
-        # Some is found when the results are open already.
-        refuse(program, "checkpointed", sentence, folder, again, codes=(1, 2))
-    original.write_bytes(assembled(b"[]", b""))
-    refuse(program, "checkpointed", "is damaged: its head is not understood.", folder, again)
-    original.unlink()
-    refuse(program, "checkpointed", "cannot be read: No such file", folder, again)
+
+    def spoil(name: str, content: bytes | None, sentence: str, *settings: str,
+              codes: tuple[int, ...] = (2,)) -> None:
+        place = folder / "spoiled" / name.replace(" ", "_")
+        place.mkdir(parents=True)
+        shutil.copy(folder / "checkpointed.prm", place)
+        shutil.copytree(folder / "checkpointed", place / "checkpointed")
+        file = next((place / "checkpointed").glob("*.checkpoint"))
+        if content is None:
+            file.unlink()
+        else:
+            file.write_bytes(content)
+        refuse(program, "checkpointed", sentence, place, again, *settings, codes=codes)
+
+    # Some forgeries are found when the results are open already.
+    work = [(("another time step", data,
+              "time step' is '2e-6', and was '1e-6' in the run that wrote",
+              "simulation control/time step = 2e-6"), (2,)),
+            (("another wall", data, "'number of floating walls' is '1', and was '0'",
+              "floating walls/number of floating walls = 1", "floating walls/wall 0/end time = 1"),
+             (2,)),
+            *(((name, broken, sentence), (2,)) for name, broken, sentence in (
+                ("cut short", data[:-9], "its checksum does not fit"),
+                ("nearly empty", data[:20], "is cut short: it has 20 bytes"),
+                ("empty", b"", "is cut short: it has 0 bytes"),
+                ("one bit", data[:-40] + bytes([data[-40] ^ 1]) + data[-39:],
+                 "its checksum does not fit"),
+                ("a bit of the head", data[:60] + bytes([data[60] ^ 4]) + data[61:],
+                 "its checksum does not fit"),
+                ("no head", assembled(b"[]", b""), "is damaged: its head is not understood."),
+                ("no file", None, "cannot be read: No such file"))),
+            *(((name, forged(data, change), sentence), (1, 2)) for name, change, sentence in FORGERIES)]
+    with ThreadPoolExecutor(8) as pool:
+        for waiting in [pool.submit(spoil, *what, codes=codes) for what, codes in work]:
+            waiting.result()
 
 
 def main(program: str, folder: Path) -> int:
