@@ -128,11 +128,12 @@ public:
     const ParticleArrays &p = simulation.complete_step();
     const ParticleSystem &system = simulation.get_system();
     const SolidContacts &contacts = system.get_solid_contacts();
-    if (searches != system.n_searches())
+    if (searches != system.n_searches()) {
+      write();
       follow(p, contacts);
+    }
     searches = system.n_searches();
 
-    Rows ended;
     for (std::size_t k = 0; k < approaches.size(); ++k) {
       const SolidContacts::Candidate &candidate = contacts.get_candidates()[k];
       if (!is_watched(candidate.solid))
@@ -159,11 +160,15 @@ public:
       else if (!touches)
         approach = {p.id[row], candidate.solid, false, 0., v, w};
     }
-    write(ended);
   }
 
-  void save(nlohmann::ordered_json &json) const override
+  void draw(Simulation &) override { write(); }
+
+  void finish(Simulation &) override { write(); }
+
+  void save(nlohmann::ordered_json &json) override
   {
+    write();
     json["collisions"] = n_collisions;
     json["near"] = nlohmann::ordered_json::array();
     for (const std::vector<double> &row : of_all_ranks(rows(), comm))
@@ -231,14 +236,17 @@ private:
     }
   }
 
-  /// Writes the collisions that have ended, of all ranks, by particle; collective.
-  void write(const Rows &mine)
+  /// Writes the collisions that have ended since the last time, of all ranks, by time and particle;
+  /// collective. To do so after every step would make all ranks wait for each other once more.
+  void write()
   {
-    unsigned long long n = mine.size();
-    MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm);
-    if (n == 0)
-      return;
-    for (std::vector<double> row : of_all_ranks(mine, comm)) {
+    Rows all = of_all_ranks(ended, comm);
+    ended.clear();
+    const std::size_t end_time = Approach().row().size();
+    std::stable_sort(all.begin(), all.end(), [end_time](const auto &a, const auto &b) {
+      return a[end_time] < b[end_time];
+    });
+    for (std::vector<double> &row : all) {
       row[1] = boundary[static_cast<std::size_t>(row[1])];
       row.erase(row.begin() + 2);
       row.insert(row.begin(), static_cast<double>(n_collisions++));
@@ -253,6 +261,7 @@ private:
   std::vector<Approach> approaches;   ///< one a candidate of the contacts with solids
   /// At which the approaches were put in their places, at first none.
   unsigned long long searches = std::numeric_limits<unsigned long long>::max();
+  Rows ended; ///< collisions of this rank that are not written yet
   std::uint64_t n_collisions = 0;
   Rows kept; ///< of all ranks, from a checkpoint
   bool has_kept = false;

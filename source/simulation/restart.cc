@@ -210,13 +210,14 @@ void Simulation::checkpoint_if_due()
   writer.head["balanced_once"] = balanced_once;
   writer.head["last_balance"] = last_balance;
   writer.head["input"] = parameters.as_input_file();
-  writer.head["output"] = output.save();
   for (const auto &[name, observable] : observable_list) {
     Json remembered;
     observable->save(remembered);
     if (!remembered.is_null())
       writer.head["observables"][name] = remembered;
   }
+  // After the observables, which may have held rows back.
+  writer.head["output"] = output.save();
   const std::string path = checkpoints.write(writer, step);
   last_checkpoint = MPI_Wtime();
   if (stopped)

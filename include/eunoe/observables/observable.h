@@ -39,11 +39,11 @@ public:
   virtual std::vector<Measurement> measurements() const { return {}; }
   virtual std::vector<ObservableDescription> descriptions() const { return {}; }
 
-  /// Adds what it remembers from step to step to a checkpoint, the same on any number of ranks, and
-  /// takes it back on every rank; collective. `resume` throws a std::invalid_argument for what is
-  /// none.
+  /// Writes the rows that it holds back, adds what it remembers from step to step to a checkpoint,
+  /// the same on any number of ranks, and takes it back on every rank; collective. `resume` throws
+  /// a std::invalid_argument for what is none.
   ///@{
-  virtual void save(nlohmann::ordered_json &) const {}
+  virtual void save(nlohmann::ordered_json &) {}
   virtual void resume(const nlohmann::ordered_json &) {}
   ///@}
 };
