@@ -18,6 +18,7 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
 {
   candidates.clear();
   facets.clear();
+  planes.clear();
   normals.clear();
   memory.clear(model.history_size());
   std::vector<Box> boxes;
@@ -40,8 +41,16 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
           solids[s].shape->find_facets(centre, near, facets) - particles.position[p].w;
       candidate.gap = std::nextafter(static_cast<float>(gap), -std::numeric_limits<float>::max());
       candidate.n_facets = static_cast<std::int32_t>(facets.size()) - candidate.first_facet;
-      if (candidate.n_facets > 0)
-        candidates.push_back(candidate);
+      if (candidate.n_facets == 0)
+        continue;
+      const std::int32_t *const first = facets.data() + candidate.first_facet;
+      Plane plane;
+      candidate.plane = -1;
+      if (solids[s].shape->is_plane(centre, near, first, first + candidate.n_facets, plane)) {
+        candidate.plane = static_cast<std::int32_t>(planes.size());
+        planes.push_back(plane);
+      }
+      candidates.push_back(candidate);
     }
 }
 
@@ -54,14 +63,28 @@ std::int32_t SolidContacts::create(const Vec3 &normal)
   return record;
 }
 
+unsigned int SolidContacts::find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
+                                 SurfaceContact *found) const
+{
+  const Vec3 centre = solid.to_own_frame(sphere.vec());
+  const double reach = sphere.w + model.range();
+  if (candidate.plane >= 0) {
+    const Plane &plane = planes[candidate.plane];
+    const double height = dot(plane.normal, centre) - plane.offset;
+    found[0] = {height < 0. ? plane.normal : -plane.normal, std::abs(height)};
+    return found[0].distance < reach ? 1 : 0;
+  }
+  const std::int32_t *const first = facets.data() + candidate.first_facet;
+  return solid.shape->find_contacts(centre, sphere.w, reach, first, first + candidate.n_facets,
+                                    found);
+}
+
 double SolidContacts::deepest_overlap(const Candidate &candidate, const Solid &solid,
                                       const Vec3 &centre, const double radius) const
 {
   std::array<SurfaceContact, Shape::max_contacts> found;
-  const std::int32_t *const first = facets.data() + candidate.first_facet;
   const unsigned int n =
-      solid.shape->find_contacts(solid.to_own_frame(centre), radius, radius + model.range(), first,
-                                 first + candidate.n_facets, found.data());
+      find(candidate, solid, {centre.x, centre.y, centre.z, radius}, found.data());
   double deepest = -model.range();
   for (unsigned int k = 0; k < n; ++k)
     deepest = std::max(deepest, radius - found[k].distance);
@@ -151,14 +174,9 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
       continue;
     const Solid &solid = solids[candidate.solid];
     const Quad &position = particles.position[candidate.particle];
-    const double reach = position.w + model.range();
     std::array<SurfaceContact, Shape::max_contacts> found;
-    const std::int32_t *const first = facets.data() + candidate.first_facet;
     const unsigned int n_found =
-        solid.is_active(time)
-            ? solid.shape->find_contacts(solid.to_own_frame(position.vec()), position.w, reach,
-                                         first, first + candidate.n_facets, found.data())
-            : 0;
+        solid.is_active(time) ? find(candidate, solid, position, found.data()) : 0;
 
     Candidate asleep = candidate;
     const bool is_awake = particles.is_awake(candidate.particle);
@@ -233,7 +251,9 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
     for (unsigned int h = 0; h < model.history_size(); ++h)
       b.history[h][k] = b.history[h][b.n - 1];
   }
-  b.uniform_kind = -1;
+  b.uniform_kind = std::all_of(b.kind, b.kind + b.n, [&b](auto kind) { return kind == b.kind[0]; })
+                       ? static_cast<int>(b.kind[0])
+                       : -1;
   model.apply(b, dt);
 
   for (unsigned int k = 0; k < b.n; ++k) {

@@ -32,6 +32,14 @@ Edge edge_of(const std::array<std::int32_t, 3> &triangle, unsigned int e)
   return std::minmax(triangle[e], triangle[(e + 1) % 3]);
 }
 
+/// Distance of a point to the line from a to b, which ends there.
+double distance_to_segment(const Vec3 &x, const Vec3 &a, const Vec3 &b)
+{
+  const Vec3 ab = b - a, ax = x - a;
+  const double share = std::min(std::max(dot(ax, ab) / norm_square(ab), 0.), 1.);
+  return norm(ax - share * ab);
+}
+
 } // namespace
 
 struct TriangulatedSurface::Tree
@@ -112,6 +120,12 @@ TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
       },
       [](std::size_t, std::int32_t) {});
 
+  for (Facet &facet : facets)
+    for (unsigned int e = 0; e < 3; ++e) {
+      const std::vector<std::int32_t> &around = around_edge.at(edge_of(facet.vertex, e));
+      facet.is_border[e] = around.size() != 2 || facets[around[0]].plane != facets[around[1]].plane;
+    }
+
   flat_vertex.assign(mesh.vertices.size(), true);
   std::vector<std::int32_t> plane_of_vertex(mesh.vertices.size(), -1);
   for (const Facet &facet : facets)
@@ -158,6 +172,24 @@ double TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
   }
   std::sort(found.begin() + first, found.end());
   return least;
+}
+
+bool TriangulatedSurface::is_plane(const Vec3 &centre, const double reach,
+                                   const std::int32_t *begin, const std::int32_t *end,
+                                   Plane &plane) const
+{
+  // If no border is within reach, the nearest place lies inside the plane and stays there.
+  for (const std::int32_t *number = begin; number != end; ++number) {
+    const Facet &facet = facets[*number];
+    if (facet.plane != facets[*begin].plane)
+      return false;
+    for (unsigned int e = 0; e < 3; ++e)
+      if (facet.is_border[e] &&
+          distance_to_segment(centre, facet.corner[e], facet.corner[(e + 1) % 3]) < reach)
+        return false;
+  }
+  plane = {facets[*begin].normal, facets[*begin].offset};
+  return begin != end;
 }
 
 /// Distance of a point to a triangle by Voronoi regions (Ericson, Real-Time Collision Detection,

@@ -21,6 +21,7 @@ public:
   {
     std::int32_t particle, solid;
     std::int32_t first_facet, n_facets;
+    std::int32_t plane; ///< that stands for the facets until the next search, -1 if none does
     std::uint32_t n_living = 0;
     float gap = 0.f; ///< least distance of the surfaces when they were searched (m), rounded down
     /// Records of the contacts that touched at the last step.
@@ -76,6 +77,9 @@ private:
     std::array<bool, PairBlock::size> feels; ///< the particle is awake
   };
 
+  /// The contacts of a sphere with the solid that it is near.
+  unsigned int find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
+                    SurfaceContact *found) const;
   void add_to_block(const ParticleArrays &particles, const Solid &solid, const Candidate &candidate,
                     const SurfaceContact &contact, std::int32_t record);
   void run_block(ParticleArrays &particles, const std::vector<Solid> &solids, double dt,
@@ -91,6 +95,7 @@ private:
   std::vector<RigidState> solids_at_search;
   std::vector<Candidate> candidates;
   std::vector<std::int32_t> facets;
+  std::vector<Plane> planes;
   ContactMemory memory;
   std::vector<Vec3> normals;
   std::unique_ptr<PairBlock> block;

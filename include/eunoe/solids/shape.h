@@ -16,6 +16,13 @@ struct SurfaceContact
   double distance; ///< from the centre to the surface; negative beyond a one-sided surface (m)
 };
 
+/// The points x with normal . x = offset.
+struct Plane
+{
+  Vec3 normal; ///< of length one
+  double offset;
+};
+
 /// Axis-aligned box.
 struct Box
 {
@@ -67,6 +74,15 @@ public:
   virtual unsigned int find_contacts(const Vec3 &centre, double radius, double reach,
                                      const std::int32_t *begin, const std::int32_t *end,
                                      SurfaceContact *contacts) const = 0;
+
+  /// Whether the facets [begin, end), all those closer than @p reach to @p centre, are the inner
+  /// part of one plane, so that a sphere that stays within that reach of the centre finds what the
+  /// plane gives: a contact at its distance, on either side.
+  virtual bool is_plane(const Vec3 & /*centre*/, double /*reach*/, const std::int32_t * /*begin*/,
+                        const std::int32_t * /*end*/, Plane & /*plane*/) const
+  {
+    return false;
+  }
 
   /// What encloses the shape; may be infinite.
   virtual Box bounding_box() const = 0;

@@ -26,6 +26,8 @@ public:
   unsigned int find_contacts(const Vec3 &centre, double radius, double reach,
                              const std::int32_t *begin, const std::int32_t *end,
                              SurfaceContact *contacts) const override;
+  bool is_plane(const Vec3 &centre, double reach, const std::int32_t *begin,
+                const std::int32_t *end, Plane &plane) const override;
   Box bounding_box() const override { return box; }
   std::vector<Vec3> triangles() const override;
 
@@ -35,9 +37,11 @@ private:
     std::array<Vec3, 3> corner;
     std::array<std::int32_t, 3> vertex;
     Vec3 normal;         ///< unit normal; the same bits in all triangles of a plane
-    double offset;       ///< normal . x on the plane
+    double offset;       ///< normal . x on the plane; the same bits, too
     std::int32_t plane;  ///< connected coplanar triangles share a number
     std::int32_t smooth; ///< triangles connected by smooth edges share a number
+    /// Whether the plane ends at the edge from each corner to the next.
+    std::array<bool, 3> is_border;
   };
   struct Touch;
   struct Tree;
