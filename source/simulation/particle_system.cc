@@ -72,6 +72,10 @@ std::vector<double> ParticleSystem::work() const
   // two to three contacts.
   constexpr double of_particle = 0.15, of_pair = 0.04, of_contact = 0.28;
   std::vector<double> work(particles.size(), of_particle);
+  int n_ranks;
+  MPI_Comm_size(domain.communicator(), &n_ranks);
+  if (n_ranks == 1)
+    return work;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const double half = 0.5 * (is_within_reach(k) ? of_pair + of_contact : of_pair);
     work[pairs.i[k]] += half;
