@@ -6,6 +6,12 @@
 #include <utility>
 
 namespace eunoe {
+namespace {
+
+/// Between the normals of a contact at two steps, below which it is another one.
+constexpr double least_cosine = 0.9;
+
+} // namespace
 
 SolidContacts::SolidContacts(const ContactModel &model)
     : model(model), block(std::make_unique<PairBlock>()), places(std::make_unique<Places>())
@@ -123,7 +129,7 @@ void SolidContacts::restore(const std::int32_t particle, const std::int32_t soli
 std::int32_t SolidContacts::take_living(Candidate &candidate, const Vec3 &normal) const
 {
   unsigned int best = candidate.n_living;
-  double best_cosine = 0.9;
+  double best_cosine = least_cosine;
   for (unsigned int l = 0; l < candidate.n_living; ++l) {
     const double cosine = candidate.living[l] == ContactMemory::none
                               ? -1.
@@ -140,6 +146,15 @@ std::int32_t SolidContacts::take_living(Candidate &candidate, const Vec3 &normal
 void SolidContacts::go_on(Candidate &candidate, const SurfaceContact *found,
                           const unsigned int n_found)
 {
+  if (n_found == 0 && candidate.n_living == 0)
+    return;
+  // The usual case: one contact, which goes on.
+  if (n_found == 1 && candidate.n_living == 1 &&
+      dot(found[0].normal, normals[candidate.living[0]]) > least_cosine)
+  {
+    normals[candidate.living[0]] = found[0].normal;
+    return;
+  }
   std::array<std::int32_t, Shape::max_contacts> living = {};
   for (unsigned int k = 0; k < n_found; ++k) {
     living[k] = take_living(candidate, found[k].normal);
@@ -162,6 +177,7 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
   std::vector<double> way(solids.size());
   for (std::size_t s = 0; s < solids.size(); ++s)
     way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
+  Candidate asleep = {}; // a copy, from which contacts may be taken
   for (Candidate &candidate : candidates) {
     // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
     if (loads == nullptr && recorded == nullptr && !particles.is_awake(candidate.particle))
@@ -178,10 +194,11 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
     const unsigned int n_found =
         solid.is_active(time) ? find(candidate, solid, position, found.data()) : 0;
 
-    Candidate asleep = candidate;
     const bool is_awake = particles.is_awake(candidate.particle);
     if (is_awake)
       go_on(candidate, found.data(), n_found);
+    else
+      asleep = candidate;
     for (unsigned int k = 0; k < n_found; ++k) {
       add_to_block(particles, solid, candidate, found[k],
                    is_awake ? candidate.living[k] : take_living(asleep, found[k].normal));

@@ -207,8 +207,15 @@ void Simulation::advance()
     const Timers::Scope scope(timers, Section::integration);
     moved2 = integrator->begin_step(system.particles, dt);
   }
-  const bool searches = search_is_due(moved2);
-  const bool looks = sparse.is_enabled() && (searches || step % sparse.frequency() == 0);
+  ask_for_search(moved2);
+  const bool look_is_due = sparse.is_enabled() && step % sparse.frequency() == 0;
+  if (!look_is_due) {
+    // While the answers of all ranks come; in vain if they want a search.
+    const Timers::Scope scope(timers, Section::ghosts);
+    system.update_ghosts();
+  }
+  const bool searches = search_is_due();
+  const bool looks = look_is_due || (sparse.is_enabled() && searches);
   if (searches) {
     const Timers::Scope scope(timers, Section::search);
     const std::vector<std::size_t> lost = inspect();
@@ -216,9 +223,6 @@ void Simulation::advance()
     for (std::size_t s = 0; s < solids.size(); ++s)
       solids_at_search[s] = solids[s].state;
     n_particles = system.n_global();
-  } else if (!looks) {
-    const Timers::Scope scope(timers, Section::ghosts);
-    system.update_ghosts();
   }
   if (looks)
     update_sleep(false);
@@ -254,20 +258,32 @@ void Simulation::compute_forces(const double dt)
   system.add_contact_forces(solids, present_time, dt, wanted ? &solid_loads : nullptr);
 }
 
-bool Simulation::search_is_due(const double moved2)
+/// Asks how far particles have moved on any rank since the last search.
+/// @param moved2 square of the largest displacement on this one (m2)
+void Simulation::ask_for_search(const double moved2)
 {
   const ModelParameters &p = parameters.model;
+  largest_displacement = 0.;
   if (step % p.detection_frequency != 0)
-    return false;
-  if (p.detection_method == "constant")
-    return true;
+    return;
   // How the largest over ranks treats what is no number depends on the MPI.
-  double moved = std::isnan(moved2) ? std::numeric_limits<double>::infinity() : std::sqrt(moved2);
-  MPI_Allreduce(MPI_IN_PLACE, &moved, 1, MPI_DOUBLE, MPI_MAX, comm);
+  if (p.detection_method == "constant" || std::isnan(moved2))
+    largest_displacement = std::numeric_limits<double>::infinity();
+  else
+    largest_displacement = std::sqrt(moved2);
+  MPI_Iallreduce(MPI_IN_PLACE, &largest_displacement, 1, MPI_DOUBLE, MPI_MAX, comm, &answer);
+}
+
+bool Simulation::search_is_due()
+{
+  if (answer == MPI_REQUEST_NULL)
+    return false;
+  MPI_Wait(&answer, MPI_STATUS_IGNORE);
   double solid_moved = 0.;
   for (std::size_t s = 0; s < solids.size(); ++s)
     solid_moved =
         std::max(solid_moved, displacement(solids[s], solids_at_search[s], solids[s].state));
+  const double moved = largest_displacement;
   return !(moved + std::max(moved, solid_moved) <= allowed_displacement);
 }
 

@@ -98,7 +98,9 @@ private:
   void advance();
   void compute_forces(double dt);
   void move_solids();
-  bool search_is_due(double moved2);
+  void ask_for_search(double moved2);
+  /// Whether it is, once all ranks have answered.
+  bool search_is_due();
   /// Looks for particles with something wrong before a search; stops the run on all ranks, or
   /// returns the rows of those to take out.
   std::vector<std::size_t> inspect();
@@ -155,6 +157,8 @@ private:
 
   /// Largest sum of the displacements of two bodies before the next search (m).
   const double allowed_displacement;
+  double largest_displacement = 0.; ///< of a particle since the last search, on any rank (m)
+  MPI_Request answer = MPI_REQUEST_NULL;
   unsigned long long step = 0;
   double present_time = 0.;
   double next_output = 0.;
