@@ -1,5 +1,6 @@
 #include <eunoe/contact/model_parameters.h>
 #include <eunoe/core/declare.h>
+#include <eunoe/core/expressions.h>
 
 namespace eunoe {
 
@@ -163,6 +164,13 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
                     "contacts').");
   declare::positive(prm, "inactive weight factor", load_balancing.inactive_factor,
                     "Factor on the weight of particles that sleep.");
+  prm.enter_subsection("cell weight function");
+  prm.add_parameter("Function expression", load_balancing.cell_weight_expression,
+                    "Cost of a cell as an expression in x, y, z, its centre (m); empty: 'cell "
+                    "weight'. Below 1 counts as 1.");
+  prm.add_parameter("Function constants", load_balancing.cell_weight_constants,
+                    "Constants of the expression, 'a=1, b=2'.");
+  prm.leave_subsection();
   prm.leave_subsection();
 
   prm.enter_subsection("adaptive sparse contacts");
@@ -191,6 +199,14 @@ void ModelParameters::check(const ParameterCheck &check) const
   check.require(neighborhood_threshold > 1., {section, "contact detection"},
                 "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
                 "Give a value above 1, for example 1.1.");
+  if (!load_balancing.cell_weight_expression.empty())
+    try {
+      Expressions(load_balancing.cell_weight_expression, load_balancing.cell_weight_constants, 1);
+    } catch (const std::invalid_argument &error) {
+      check.require(false, {section, "load balancing", "cell weight function"},
+                    "Function expression", "is not understood: " + std::string(error.what()) + ".",
+                    "Write one expression in x, y and z.");
+    }
   const ParameterCheck::Path bridges = {section, capillary_section};
   check.require(options.contact_angle < 90., bridges, "contact angle",
                 "is " + format(options.contact_angle) + " degrees.",

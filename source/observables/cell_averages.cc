@@ -71,7 +71,7 @@ Cell cell_of(Cell cell, const Vec3 &x)
 }
 
 /// What counts of a particle, with its id in front.
-using Row = std::array<double, 5>; // id, velocity (m/s), volume (m3)
+using Row = std::array<double, 6>; // id, velocity (m/s), volume (m3), whether it is awake
 
 /// The averages of one cell.
 struct Averages
@@ -79,6 +79,7 @@ struct Averages
   double number = 0.;
   Vec3 velocity;           ///< mean over the particles (m/s)
   double temperature = 0.; ///< a third of the mean square of the deviation from it (m2/s2)
+  double awake = 0.;       ///< share of the particles that do not sleep
   double fraction = 0.;    ///< volume of the particles whose centres are in it, over its own
 
   Averages(std::vector<Row> rows, double volume)
@@ -91,6 +92,7 @@ struct Averages
     for (const Row &row : rows) {
       velocity += Vec3{row[1], row[2], row[3]};
       fraction += row[4];
+      awake += row[5] / number;
     }
     velocity = velocity / number;
     for (const Row &row : rows)
@@ -114,8 +116,8 @@ public:
     Patch<3, 3> patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
     patch.n_subdivisions = 1;
-    const std::array<double, 6> values = {a.velocity.x,  a.velocity.y, a.velocity.z,
-                                          a.temperature, a.fraction,   a.number};
+    const std::array<double, 7> values = {a.velocity.x, a.velocity.y, a.velocity.z, a.temperature,
+                                          a.fraction,   a.number,     a.awake};
     patch.data.reinit(static_cast<unsigned int>(values.size()), cell->n_vertices());
     for (const unsigned int v : cell->vertex_indices()) {
       patch.vertices[v] = cell->vertex(v);
@@ -129,8 +131,8 @@ private:
   const std::vector<Patch<3, 3>> &get_patches() const override { return patches; }
   std::vector<std::string> get_dataset_names() const override
   {
-    return {"velocity",       "velocity", "velocity", "granular_temperature",
-            "solid_fraction", "particles"};
+    return {"velocity",       "velocity",  "velocity", "granular_temperature",
+            "solid_fraction", "particles", "awake"};
   }
   Ranges get_nonscalar_data_ranges() const override
   {
@@ -178,7 +180,8 @@ private:
       const Quad &x = p.position[k], &v = p.velocity[k];
       const Cell found = cells[store.cell(k)];
       const Cell cell = mesh.has_boxes ? cell_of(found, x.vec()) : found;
-      const Row row = {static_cast<double>(p.id[k]), v.x, v.y, v.z, sphere_mass(x.w, 1.)};
+      const Row row = {static_cast<double>(p.id[k]), v.x, v.y, v.z, sphere_mass(x.w, 1.),
+                       p.is_awake(k) ? 1. : 0.};
       if (cell->is_locally_owned())
         rows[cell->active_cell_index()].push_back(row);
       else

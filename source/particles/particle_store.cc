@@ -1,118 +1,14 @@
 #include <eunoe/contact/model_parameters.h>
 #include <eunoe/core/compat.h>
-#include <eunoe/particles/particle_store.h>
 
-#include <deal.II/grid/filtered_iterator.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/particles/particle_handler.h>
 
-#include "../simulation/mesh.h"
+#include "particle_store_implementation.h"
 
 #include <algorithm>
-#include <numeric>
 #include <set>
 
 namespace eunoe {
-
-namespace {
-
-/// Places of a particle's data among its properties in the handler.
-namespace property {
-constexpr unsigned int velocity = 0, spin = 3, force = 6, torque = 9, radius = 12, mass = 13,
-                       type = 14, origin = 15, id = 16, work = 17, extra = 18;
-} // namespace property
-
-void store(const Vec3 &v, double *values)
-{
-  values[0] = v.x;
-  values[1] = v.y;
-  values[2] = v.z;
-}
-
-Quad load(const double *values, const double w)
-{
-  return {values[0], values[1], values[2], w};
-}
-
-/// A place in memory as one double, exact below 2^53.
-double encode(const Origin &origin)
-{
-  return origin.rank < 0 ? -1. : origin.rank * 0x1p32 + origin.row;
-}
-
-Origin decode(const double code)
-{
-  if (code < 0.)
-    return {};
-  const double rank = std::floor(code / 0x1p32);
-  return {static_cast<std::int32_t>(rank), static_cast<std::int32_t>(code - rank * 0x1p32)};
-}
-
-} // namespace
-
-struct ParticleStore::Implementation
-{
-  using Handler = dealii::Particles::ParticleHandler<3>;
-
-  Implementation(Domain &domain, unsigned int n_extra, int asleep)
-      : domain(domain), triangulation(domain.mesh().triangulation), n_extra(n_extra),
-        asleep(asleep), handler(triangulation, *domain.mesh().mapping, property::extra + n_extra)
-  {
-    MPI_Comm_rank(domain.communicator(), &rank);
-    find_foreign_neighbours();
-  }
-
-  void find_foreign_neighbours();
-
-  static std::vector<double> properties_of(const NewParticle &p, const Origin &origin,
-                                           const std::vector<double> &extra)
-  {
-    std::vector<double> values(property::extra, 0.);
-    store(p.velocity, &values[property::velocity]);
-    store(p.spin, &values[property::spin]);
-    values[property::radius] = p.radius;
-    values[property::mass] = p.mass;
-    values[property::type] = p.type;
-    values[property::origin] = encode(origin);
-    values[property::id] = p.id;
-    values[property::work] = 1.;
-    values.insert(values.end(), extra.begin(), extra.end());
-    return values;
-  }
-
-  /// Cost of particles, as they were when they were last written.
-  template <typename Range>
-  double weight(const Range &particles, const LoadBalancingParameters &p) const
-  {
-    double sum = 0.;
-    for (const auto &particle : particles) {
-      const auto values = particle.get_properties();
-      sum += values[property::work] * (asleep >= 0 && values[property::extra + asleep] != 0.
-                                           ? p.inactive_factor
-                                           : p.active_factor);
-    }
-    return sum * p.particle_weight;
-  }
-
-  Domain &domain;
-  dealii::parallel::distributed::Triangulation<3> &triangulation;
-  const unsigned int n_extra;
-  const int asleep;
-  Handler handler;
-  int rank;
-
-  /// A cell of another rank: its owner and its box.
-  struct ForeignCell
-  {
-    int rank;
-    Vec3 centre, half;
-  };
-  /// Neighbours of a cell that others own, ordered by rank, by active cell index.
-  std::vector<std::vector<ForeignCell>> near_cell;
-  /// The particles of the last read and their cells, in the order of the arrays.
-  std::vector<Handler::particle_iterator> particles;
-  std::vector<unsigned int> cells;
-};
 
 void ParticleStore::Implementation::find_foreign_neighbours()
 {
@@ -155,6 +51,18 @@ void ParticleStore::Implementation::find_foreign_neighbours()
     }
 }
 
+void ParticleStore::Implementation::measure_gaps(const ParticleArrays &arrays)
+{
+  largest_gap = 0.;
+  for (std::size_t row = 0; row < arrays.n_owned; ++row)
+    largest_gap = std::max(largest_gap, locator->gap(cells[row], arrays.position[row].vec()));
+  largest_gap = dealii::Utilities::MPI::max(largest_gap, domain.communicator());
+  if (largest_gap > 0.5 * domain.smallest_cell_width())
+    throw UserError("A particle is " + format(largest_gap) +
+                    " m away from the cells of the mesh. Check the time step and the solids, or "
+                    "make the cells at the boundary smaller, so that they follow it more closely.");
+}
+
 ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra, const int asleep)
     : implementation(std::make_unique<Implementation>(domain, n_extra, asleep))
 {
@@ -167,60 +75,19 @@ std::uint64_t ParticleStore::n_global() const
   return implementation->handler.n_global_particles();
 }
 
-void ParticleStore::insert(const std::vector<NewParticle> &particles,
-                           const std::vector<double> &extra, const std::vector<Origin> &origins)
-{
-  Implementation &impl = *implementation;
-  MPI_Comm comm = impl.domain.communicator();
-  // Refused here, as the search for the cells of such points does not come back.
-  const std::uint64_t outside = dealii::Utilities::MPI::sum(
-      static_cast<std::uint64_t>(
-          std::count_if(particles.begin(), particles.end(),
-                        [&](const NewParticle &p) { return !impl.domain.contains(p.position); })),
-      comm);
-  if (outside > 0)
-    throw UserError("Of the particles to insert, " + std::to_string(outside) +
-                    " lie outside the mesh. Enlarge the mesh or move the place of insertion.");
-
-  const auto owned = dealii::IteratorFilters::LocallyOwnedCell();
-  const auto boxes = dealii::Utilities::MPI::all_gather(
-      comm,
-      dealii::GridTools::compute_mesh_predicate_bounding_box(
-          impl.triangulation,
-          std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned)));
-  const std::uint64_t expected =
-      n_global() + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
-  // In portions, as each is copied several times on its way.
-  constexpr std::size_t portion = 50000;
-  const std::size_t most =
-      dealii::Utilities::MPI::max(static_cast<std::uint64_t>(particles.size()), comm);
-  for (std::size_t begin = 0; begin < most; begin += portion) {
-    std::vector<dealii::Point<3>> positions;
-    std::vector<std::vector<double>> properties;
-    for (std::size_t k = begin; k < std::min(begin + portion, particles.size()); ++k) {
-      const NewParticle &p = particles[k];
-      positions.push_back(to_point(impl.domain.periods().wrap(p.position)));
-      properties.push_back(impl.properties_of(p, origins.empty() ? Origin() : origins[k], extra));
-    }
-    // Ids go with the properties: given apart, they are exchanged only among ranks that have
-    // particles to insert, and these wait for the others forever (deal.II 9.4).
-    impl.handler.insert_global_particles(positions, boxes, properties);
-  }
-  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
-    particle->set_id(
-        static_cast<dealii::types::particle_index>(particle->get_properties()[property::id]));
-  if (n_global() != expected)
-    throw std::logic_error("the mesh did not take over all inserted particles");
-}
-
 void ParticleStore::write(const ParticleArrays &particles, const std::vector<double> &work)
 {
   Implementation &impl = *implementation;
   const PeriodicBox &box = impl.domain.periods();
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     auto &particle = *impl.particles[row];
-    particle.set_location(to_point(box.wrap(particles.position[row].vec())));
     const auto values = particle.get_properties();
+    const Vec3 x = box.wrap(particles.position[row].vec());
+    if (impl.locator) {
+      particle.set_location(impl.locator->cell(impl.locator->walk(impl.cells[row], x))->center());
+      store(x, &values[property::extra + impl.n_extra]);
+    } else
+      particle.set_location(to_point(x));
     store(particles.velocity[row].vec(), &values[property::velocity]);
     store(particles.spin[row].vec(), &values[property::spin]);
     store(particles.force[row].vec(), &values[property::force]);
@@ -272,23 +139,24 @@ void ParticleStore::repartition(const LoadBalancingParameters &parameters)
 {
   Implementation &impl = *implementation;
   const auto connection = compat::connect_weight(impl.triangulation, [&](const auto &cell) {
-    return parameters.cell_weight +
-           static_cast<unsigned int>(impl.weight(impl.handler.particles_in_cell(cell), parameters));
+    return static_cast<unsigned int>(impl.cell_weight(to_vec3(cell->center()), parameters) +
+                                     impl.weight(impl.handler.particles_in_cell(cell), parameters));
   });
   impl.handler.prepare_for_coarsening_and_refinement();
   impl.triangulation.repartition();
   impl.handler.unpack_after_coarsening_and_refinement();
   connection.disconnect();
-  impl.find_foreign_neighbours();
+  impl.look_at_cells();
   impl.particles.clear();
 }
 
 double ParticleStore::imbalance(const LoadBalancingParameters &parameters) const
 {
-  const Implementation &impl = *implementation;
-  const double load = static_cast<double>(parameters.cell_weight) *
-                          impl.triangulation.n_locally_owned_active_cells() +
-                      impl.weight(impl.handler, parameters);
+  Implementation &impl = *implementation;
+  double load = impl.weight(impl.handler, parameters);
+  for (const auto &cell : impl.triangulation.active_cell_iterators())
+    if (cell->is_locally_owned())
+      load += impl.cell_weight(to_vec3(cell->center()), parameters);
   const auto loads = dealii::Utilities::MPI::min_max_avg(load, impl.domain.communicator());
   return (loads.max - loads.min) / loads.avg;
 }
@@ -308,7 +176,7 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   const std::size_t n = impl.handler.n_locally_owned_particles();
   entries.reserve(n);
   for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
-    entries.push_back({grid.key(to_vec3(particle->get_location())),
+    entries.push_back({grid.key(impl.position_of(*particle)),
                        static_cast<ParticleId>(particle->get_id()),
                        particle->get_surrounding_cell()->active_cell_index(), particle});
   std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
@@ -324,7 +192,7 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
     impl.particles[row] = entry.particle;
     impl.cells[row] = entry.cell;
     const auto values = entry.particle->get_properties();
-    const Vec3 x = to_vec3(entry.particle->get_location());
+    const Vec3 x = impl.position_of(*entry.particle);
     const double radius = values[property::radius], mass = values[property::mass];
     arrays.position[row] = {x.x, x.y, x.z, radius};
     arrays.velocity[row] = load(&values[property::velocity], mass);
@@ -338,6 +206,8 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
     for (unsigned int e = 0; e < impl.n_extra; ++e)
       arrays.extra[e][row] = values[property::extra + e];
   }
+  if (impl.locator)
+    impl.measure_gaps(arrays);
 }
 
 unsigned int ParticleStore::cell(const std::size_t row) const
@@ -359,7 +229,8 @@ void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, cons
       const double outside = std::max(0., std::abs(away[d]) - cell.half[d]);
       distance2 += outside * outside;
     }
-    if (distance2 <= reach * reach)
+    const double far = reach + implementation->largest_gap;
+    if (distance2 <= far * far)
       ranks.push_back(cell.rank);
   }
 }

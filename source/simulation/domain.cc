@@ -1,19 +1,18 @@
+#include <eunoe/solids/enclosure.h>
 #include <eunoe/solids/half_space.h>
+#include <eunoe/solids/surface_part.h>
 
 #include <deal.II/fe/mapping_cartesian.h>
 #include <deal.II/fe/mapping_q1.h>
-#include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include "mesh.h"
+#include "mesh_boundary.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <fstream>
 #include <map>
-#include <sstream>
+#include <set>
 
 namespace eunoe {
 
@@ -21,141 +20,85 @@ namespace {
 
 using Triangulation = dealii::parallel::distributed::Triangulation<3>;
 
-/// What went wrong inside deal.II, without its stack trace.
-std::string first_line_of_message(const std::exception &error)
+/// Refines the cells that meet the box around a region's mesh by more than a face; collective.
+void refine(Triangulation &triangulation, const RefinementParameters::Region &region)
 {
-  const auto *const exception = dynamic_cast<const dealii::ExceptionBase *>(&error);
-  if (exception == nullptr)
-    return error.what();
-  std::ostringstream text;
-  exception->print_info(text);
-  std::string line = text.str();
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  const std::size_t begin = line.find_first_not_of(' ');
-  return begin == std::string::npos ? "unknown reason" : line.substr(begin);
-}
-
-/// Number of cells of a mesh before its refinement as far as it can be known beforehand, else 1.
-double count_coarse_cells(const MeshParameters &mesh)
-{
-  if (mesh.type == "gmsh" || mesh.grid_type.compare(0, 11, "subdivided_") != 0)
-    return 1.;
-  std::istringstream stream(mesh.grid_arguments.substr(0, mesh.grid_arguments.find(':')));
-  double product = 1.;
-  unsigned int n_numbers = 0;
-  for (std::string word; std::getline(stream, word, ','); ++n_numbers)
-    product *= std::strtod(word.c_str(), nullptr);
-  return n_numbers == 1 ? std::pow(product, 3) : product;
-}
-
-/// Refuses what would fill the memory before anything else could be said of it.
-void check_size(const MeshParameters &mesh)
-{
-  // Every rank holds the coarse cells, about a kilobyte each.
-  constexpr double most_coarse = 1e7, most = 1e9;
-  const double coarse = count_coarse_cells(mesh);
-  const double cells = coarse * std::pow(8., mesh.refinement);
-  if (coarse > most_coarse || cells > most)
-    throw UserError("subsection 'mesh': the mesh would have " + format(cells) + " cells, " +
-                    format(coarse) + " of them before the refinement. Give at most " +
-                    format(most) + " and " + format(most_coarse) +
-                    "; 8 to 10 particles a cell are best.");
-}
-
-void create(Triangulation &triangulation, const MeshParameters &mesh)
-{
-  check_size(mesh);
-  try {
-    if (mesh.type == "gmsh") {
-      std::ifstream stream(mesh.file);
-      if (!stream)
-        throw UserError("subsection 'mesh' / entry 'file name': " + mesh.file +
-                        " cannot be read. Check the name and the permissions.");
-      dealii::GridIn<3> reader;
-      reader.attach_triangulation(triangulation);
-      reader.read_msh(stream);
-    } else
-      dealii::GridGenerator::generate_from_name_and_arguments(triangulation, mesh.grid_type,
-                                                              mesh.grid_arguments);
-  } catch (const UserError &) {
-    throw;
-  } catch (const std::exception &error) {
-    throw UserError("subsection 'mesh': the mesh cannot be made (" + first_line_of_message(error) +
-                    "). Check " +
-                    (mesh.type == "gmsh"
-                         ? "that " + mesh.file + " is a Gmsh file of hexahedra."
-                         : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));
-  }
-  if (!mesh.placement.is_identity())
-    dealii::GridTools::transform(
-        [&mesh](const dealii::Point<3> &x) { return to_point(mesh.placement(to_vec3(x))); },
-        triangulation);
-}
-
-/// A flat part of the boundary with one id.
-struct Side
-{
-  unsigned int id;
-  Vec3 point, inward;
-};
-
-/// All flat parts of the boundary of the coarse mesh.
-std::vector<Side> find_sides(const Triangulation &triangulation, double tolerance)
-{
-  std::vector<Side> sides;
-  for (const auto &cell : triangulation.cell_iterators_on_level(0))
-    for (const auto &face : cell->face_iterators()) {
-      if (!face->at_boundary())
+  dealii::Triangulation<3> mesh;
+  create_mesh(mesh, region.mesh);
+  const auto box = dealii::GridTools::compute_bounding_box(mesh).get_boundary_points();
+  const double tolerance = 1e-9 * box.first.distance(box.second);
+  for (unsigned int time = 0; time < region.additional; ++time) {
+    for (const auto &cell : triangulation.active_cell_iterators()) {
+      if (!cell->is_locally_owned())
         continue;
-      const Vec3 point = to_vec3(face->vertex(0));
-      Vec3 normal = cross(to_vec3(face->vertex(1)) - point, to_vec3(face->vertex(2)) - point);
-      normal = normal / norm(normal);
-      if (dot(normal, to_vec3(cell->center()) - point) < 0.)
-        normal = -normal;
-      const auto same = [&](const Side &side) {
-        return side.id == face->boundary_id() && dot(side.inward, normal) > 0.5 &&
-               std::all_of(face->vertex_indices().begin(), face->vertex_indices().end(),
-                           [&](unsigned int v) {
-                             return std::abs(dot(to_vec3(face->vertex(v)) - side.point,
-                                                 side.inward)) < tolerance;
-                           });
-      };
-      if (std::none_of(sides.begin(), sides.end(), same))
-        sides.push_back({face->boundary_id(), point, normal});
+      const auto own = cell->bounding_box().get_boundary_points();
+      bool meets = true;
+      for (unsigned int d = 0; d < 3; ++d)
+        meets = meets && own.second[d] > box.first[d] + tolerance &&
+                own.first[d] < box.second[d] - tolerance;
+      if (meets)
+        cell->set_refine_flag();
     }
-  return sides;
+    triangulation.execute_coarsening_and_refinement();
+    if (static_cast<double>(triangulation.n_global_active_cells()) > most_cells)
+      throw UserError(describe(region.mesh.path, "") + ": the mesh has more than " +
+                      format(most_cells) +
+                      " cells. Refine less; 8 to 10 particles a cell are best.");
+  }
 }
 
 } // namespace
 
-Domain::Domain(const MeshParameters &parameters, const BoundaryParameters &boundaries,
-               const int wall_material, MPI_Comm comm)
+Domain::Domain(const MeshParameters &parameters, const RefinementParameters &refinement,
+               const BoundaryParameters &boundaries, const int wall_material, MPI_Comm comm)
     : comm(comm), mesh_data(std::make_unique<Mesh>(comm))
 {
   Triangulation &triangulation = mesh_data->triangulation;
-  create(triangulation, parameters);
-
+  create_mesh(triangulation, parameters);
   const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
   lower_corner = to_vec3(bounding_box.get_boundary_points().first);
   upper_corner = to_vec3(bounding_box.get_boundary_points().second);
-  find_boundaries(boundaries, wall_material);
+  MeshBoundary boundary(triangulation);
+  const std::set<unsigned int> periodic = join_periodic_ends(boundaries, boundary.sides());
   triangulation.refine_global(parameters.refinement);
+  for (const RefinementParameters::Region &region : refinement.regions)
+    refine(triangulation, region);
+  measure_cells();
+  boundary.refine(triangulation, periodic, box);
+  make_boundaries(boundaries, wall_material, boundary, periodic);
+}
 
+void Domain::measure_cells()
+{
+  const Triangulation &triangulation = mesh_data->triangulation;
   const double tolerance = 1e-10 * norm(upper_corner - lower_corner);
   bool boxes = true;
-  cell_width = std::numeric_limits<double>::max();
+  double width = std::numeric_limits<double>::max();
+  Vec3 lower = lower_corner, upper = upper_corner;
   for (const auto &cell : triangulation.active_cell_iterators())
     if (cell->is_locally_owned()) {
       for (unsigned int d = 0; d < 3; ++d)
-        cell_width = std::min(cell_width, cell->extent_in_direction(d));
+        width = std::min(width, cell->extent_in_direction(d));
       const auto cell_box = cell->bounding_box().get_boundary_points();
       for (const unsigned int v : cell->vertex_indices())
-        for (unsigned int d = 0; d < 3; ++d)
-          boxes = boxes && (std::abs(cell->vertex(v)[d] - cell_box.first[d]) < tolerance ||
-                            std::abs(cell->vertex(v)[d] - cell_box.second[d]) < tolerance);
+        for (unsigned int d = 0; d < 3; ++d) {
+          const double x = cell->vertex(v)[d];
+          lower[d] = std::min(lower[d], x);
+          upper[d] = std::max(upper[d], x);
+          boxes = boxes && (std::abs(x - cell_box.first[d]) < tolerance ||
+                            std::abs(x - cell_box.second[d]) < tolerance);
+        }
     }
-  cell_width = dealii::Utilities::MPI::min(cell_width, comm);
   mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;
+  mesh_data->is_plain = mesh_data->has_boxes && !triangulation.has_hanging_nodes();
+  if (!mesh_data->has_boxes)
+    width = std::min(width, smallest_distance_of_cells_apart(*mesh_data, box));
+  cell_width = dealii::Utilities::MPI::min(width, comm);
+  // On a manifold the refined mesh reaches further than the coarse one.
+  for (unsigned int d = 0; d < 3; ++d) {
+    lower_corner[d] = dealii::Utilities::MPI::min(lower[d], comm);
+    upper_corner[d] = dealii::Utilities::MPI::max(upper[d], comm);
+  }
   if (mesh_data->has_boxes)
     mesh_data->mapping = std::make_unique<dealii::MappingCartesian<3>>();
   else
@@ -166,8 +109,20 @@ Domain::~Domain() = default;
 
 bool Domain::contains(const Vec3 &x) const
 {
+  if (enclosure)
+    return enclosure->contains(x);
   return std::all_of(sides.begin(), sides.end(),
                      [&](const auto &side) { return dot(x - side.first, side.second) >= 0.; });
+}
+
+int Domain::passed_outlet(const Vec3 &from, const Vec3 &x) const
+{
+  if (enclosure)
+    return enclosure->contains(x) ? -1 : enclosure->exit(from, x);
+  for (std::size_t o = 0; o < outlet_list.size(); ++o)
+    if (dot(x - outlet_list[o].point, outlet_list[o].inward) < 0.)
+      return static_cast<int>(o);
+  return -1;
 }
 
 std::uint64_t Domain::n_cells() const
@@ -175,16 +130,15 @@ std::uint64_t Domain::n_cells() const
   return mesh_data->triangulation.n_global_active_cells();
 }
 
-void Domain::find_boundaries(const BoundaryParameters &boundaries, const int wall_material)
+std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
+                                                  const std::vector<Side> &all_sides)
 {
   Triangulation &triangulation = mesh_data->triangulation;
   const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
-  const std::vector<Side> all_sides = find_sides(triangulation, tolerance);
   const std::string section = "subsection 'DEM boundary conditions' / ";
   Problems problems;
 
-  std::map<unsigned int, const BoundaryCondition *> condition_of;
-  std::map<unsigned int, unsigned int> condition_number;
+  std::set<unsigned int> periodic_ids;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
     const bool periodic = c.type == "periodic";
@@ -192,8 +146,8 @@ void Domain::find_boundaries(const BoundaryParameters &boundaries, const int wal
          periodic ? std::vector<unsigned int>{c.periodic_ids[0], c.periodic_ids[1]}
                   : std::vector<unsigned int>{c.id})
     {
-      condition_of[id] = &c;
-      condition_number[id] = static_cast<unsigned int>(k);
+      if (periodic)
+        periodic_ids.insert(id);
       if (std::none_of(all_sides.begin(), all_sides.end(),
                        [&](const Side &s) { return s.id == id; }))
         problems.add(section + "subsection 'boundary condition " + std::to_string(k) + "':",
@@ -241,36 +195,111 @@ void Domain::find_boundaries(const BoundaryParameters &boundaries, const int wal
   if (!problems.empty())
     throw UserError(problems);
   triangulation.add_periodicity(pairs);
+  return periodic_ids;
+}
 
-  for (const Side &side : all_sides) {
-    const auto it = condition_of.find(side.id);
-    const BoundaryCondition fixed;
-    const BoundaryCondition &c = it == condition_of.end() ? fixed : *it->second;
-    if (c.type == "periodic")
+namespace {
+
+/// The wall of a boundary, without its shape.
+/// @param is_plane for which a turning surface has the axis as its centre
+Solid wall_of(const unsigned int id, const BoundaryCondition &c, const int material,
+              const bool is_plane)
+{
+  Solid wall;
+  wall.name = "boundary " + std::to_string(id);
+  wall.material = material;
+  wall.output = false;
+  const bool turns = c.type == "rotational";
+  const Vec3 spin = turns ? c.rotational_speed / norm(c.rotation_axis) * c.rotation_axis : Vec3();
+  const Vec3 speed = c.type == "translational" ? c.speed : Vec3();
+  if (turns && is_plane)
+    wall.motion = std::make_shared<AtRest>(c.rotation_point, speed, spin);
+  else
+    wall.motion = std::make_shared<AtRest>(Vec3(), speed + cross(c.rotation_point, spin), spin);
+  return wall;
+}
+
+} // namespace
+
+void Domain::make_boundaries(const BoundaryParameters &boundaries, const int wall_material,
+                             const MeshBoundary &boundary, const std::set<unsigned int> &periodic)
+{
+  const std::vector<Side> &all_sides = boundary.sides();
+  const BoundaryCondition fixed;
+  const auto condition = [&](unsigned int id) -> const BoundaryCondition & {
+    for (const BoundaryCondition &c : boundaries.conditions)
+      if (c.type != "periodic" && c.id == id)
+        return c;
+    return fixed;
+  };
+  std::map<unsigned int, int> outlet_of, part_of;
+  for (std::size_t s = 0; s < all_sides.size(); ++s) {
+    const Side &side = all_sides[s];
+    if (periodic.count(side.id) != 0)
       continue;
-    for (const auto &cell : triangulation.cell_iterators_on_level(0))
-      for (const unsigned int v : cell->vertex_indices())
-        if (dot(to_vec3(cell->vertex(v)) - side.point, side.inward) < -tolerance)
-          throw UserError("subsection 'mesh': boundary " + std::to_string(side.id) +
-                          " is curved or bends inwards. Background meshes must be convex with flat "
-                          "sides; give other shapes as 'solid objects'.");
-    sides.emplace_back(side.point, side.inward);
+    const BoundaryCondition &c = condition(side.id);
+    const int material = c.material < 0 ? wall_material : c.material;
+    if (boundary.is_convex())
+      sides.emplace_back(side.point, side.inward);
     if (c.type == "outlet") {
-      outlet_list.push_back({side.id, side.point, side.inward});
-      continue;
+      if (boundary.is_convex() || outlet_of.count(side.id) == 0) {
+        outlet_of[side.id] = static_cast<int>(outlet_list.size());
+        outlet_list.push_back({side.id, side.point, side.inward});
+      }
+    } else if (boundary.is_convex() || boundary.is_plane(s)) {
+      Solid wall = wall_of(side.id, c, material, true);
+      wall.shape =
+          std::make_shared<HalfSpace>(side.point - wall.motion->at(0.).centre, side.inward);
+      wall_solids.push_back(wall);
+    } else if (part_of.count(side.id) == 0) {
+      part_of[side.id] = static_cast<int>(wall_solids.size());
+      wall_solids.push_back(wall_of(side.id, c, material, false));
     }
-    Solid wall;
-    wall.name = "boundary " + std::to_string(side.id);
-    wall.material = c.material < 0 ? wall_material : c.material;
-    wall.output = false;
-    const bool turns = c.type == "rotational";
-    const Vec3 centre = turns ? c.rotation_point : Vec3();
-    wall.shape = std::make_shared<HalfSpace>(side.point - centre, side.inward);
-    wall.motion = std::make_shared<AtRest>(
-        centre, c.type == "translational" ? c.speed : Vec3(),
-        turns ? c.rotational_speed / norm(c.rotation_axis) * c.rotation_axis : Vec3());
-    wall_solids.push_back(wall);
   }
+  if (!boundary.is_convex())
+    make_surfaces(boundary, outlet_of, part_of);
+}
+
+void Domain::make_surfaces(const MeshBoundary &boundary, const std::map<unsigned int, int> &outlets,
+                           const std::map<unsigned int, int> &walls)
+{
+  std::vector<Enclosure::Triangle> all;
+  TriangleMesh mesh;
+  const auto wall_of_triangle = std::make_shared<std::vector<int>>();
+  // What coincides but for round-off is united later, for which there should be few vertices.
+  std::map<std::array<double, 3>, std::int32_t> vertex_at;
+  const auto vertex = [&](const Vec3 &x) {
+    const auto [place, is_new] =
+        vertex_at.emplace(std::array<double, 3>{{x.x, x.y, x.z}}, mesh.vertices.size());
+    if (is_new)
+      mesh.vertices.push_back(x);
+    return place->second;
+  };
+  for (const BoundaryFace &face : boundary.faces()) {
+    const unsigned int id = boundary.sides()[face.side].id;
+    const auto outlet = outlets.find(id);
+    for (const std::array<Vec3, 3> &triangle : triangles_of(face))
+      with_images(triangle, box, [&](const std::array<Vec3, 3> &image) {
+        all.push_back({image, outlet == outlets.end() ? -1 : outlet->second});
+        if (outlet != outlets.end() || face.is_flat)
+          return;
+        mesh.triangles.push_back({{vertex(image[0]), vertex(image[1]), vertex(image[2])}});
+        wall_of_triangle->push_back(walls.at(id));
+      });
+  }
+  enclosure = std::make_unique<Enclosure>(std::move(all), box);
+  if (walls.empty())
+    return;
+  const std::string defect = mesh.defect();
+  if (!defect.empty())
+    throw UserError("subsection 'mesh': the boundary cannot be a wall: " + defect +
+                    ". Check the cells of the mesh at the boundary.");
+  const auto surface = std::make_shared<const TriangulatedSurface>(std::move(mesh));
+  for (const auto &[id, wall] : walls)
+    if (walls.size() == 1)
+      wall_solids[wall].shape = surface;
+    else
+      wall_solids[wall].shape = std::make_shared<SurfacePart>(surface, wall, wall_of_triangle);
 }
 
 } // namespace eunoe

@@ -7,7 +7,7 @@ namespace eunoe {
 
 namespace {
 
-const std::string mesh_section = "mesh";
+const std::string refinement_section = "box refinement";
 const std::string boundary_section = "DEM boundary conditions";
 
 std::string condition_section(std::size_t k)
@@ -19,7 +19,8 @@ std::string condition_section(std::size_t k)
 
 void MeshParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(mesh_section);
+  for (const std::string &name : path)
+    prm.enter_subsection(name);
   declare::choice(prm, "type", type, "dealii|gmsh",
                   "Origin of the background mesh: a generator of deal.II, or a Gmsh file of "
                   "hexahedra.");
@@ -32,14 +33,48 @@ void MeshParameters::declare(dealii::ParameterHandler &prm)
                     "Number of times that every cell is cut into eight.",
                     declare::Patterns::Integer(0, 12));
   placement.declare(prm);
-  prm.leave_subsection();
+  for (std::size_t k = 0; k < path.size(); ++k)
+    prm.leave_subsection();
 }
 
 void MeshParameters::check(const ParameterCheck &check) const
 {
-  check.require(type != "gmsh" || file != "none", {mesh_section}, "file name",
+  check.require(type != "gmsh" || file != "none", path, "file name",
                 "is missing while the type is 'gmsh'.", "Name the mesh file.");
-  placement.check(check, {mesh_section});
+  placement.check(check, path);
+}
+
+RefinementParameters::RefinementParameters(const unsigned int n)
+{
+  for (unsigned int k = 0; k < n; ++k)
+    regions.push_back(
+        {MeshParameters({refinement_section, "box " + std::to_string(k), "mesh"}), 0});
+}
+
+void RefinementParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(refinement_section);
+  prm.declare_entry("number of refinement boxes", std::to_string(regions.size()),
+                    declare::Patterns::Integer(0, 20),
+                    "Number of the subsections 'box 0', ..., in which the mesh is finer.");
+  prm.leave_subsection();
+  for (Region &region : regions) {
+    region.mesh.declare(prm);
+    prm.enter_subsection(refinement_section);
+    prm.enter_subsection(region.mesh.path[1]);
+    prm.add_parameter("additional refinement", region.additional,
+                      "Number of times that every cell of the background mesh that meets the box "
+                      "around this mesh is cut into eight.",
+                      declare::Patterns::Integer(0, 12));
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+}
+
+void RefinementParameters::check(const ParameterCheck &check) const
+{
+  for (const Region &region : regions)
+    region.mesh.check(check);
 }
 
 void BoundaryParameters::declare(dealii::ParameterHandler &prm)

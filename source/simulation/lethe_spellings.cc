@@ -129,9 +129,9 @@ const std::vector<Ignored> &ignored()
       {{"post-processing", "solid forces"}, {"verbosity"}, of_tables},
       {{"post-processing", "particle wall collision statistics"}, {"verbosity"}, of_tables},
       {{"test"}, {}, "is not needed: --dump writes the complete state at the end."},
-      {{"box refinement"}, {}, "has no effect: cells are refined all alike."},
-      {{"box refinement", "*"}, {}, "has no effect."},
-      {{"box refinement", "*", "mesh"}, {}, "has no effect."},
+      {{"box refinement", "box *", "mesh"},
+       {"simplex", "check diamond cells", "expand particle-wall contact search"},
+       "is not needed."},
       {{"grid motion"}, {}, "has no effect: the background mesh does not move."},
       {{"floating grid"}, {}, "has no effect: such a grid is a solid, in 'solid objects'."},
       {{"floating grid", "*"}, {}, "has no effect."},
@@ -157,16 +157,12 @@ struct Refused
 const std::vector<Refused> &refused()
 {
   static const std::string heat = "Heat between particles is out of scope.";
-  static const std::string one_size =
-      "Cells are refined all alike: give 0 here, and a finer 'mesh' if it must be.";
   static const std::vector<Refused> list = {
       {no_section, "dimension", "3", "Simulations are in three dimensions: give 3."},
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},
       {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
       {insertion, "list temperatures", "", heat + " Remove the entry."},
-      {{"box refinement"}, "number of refinement boxes", "0", one_size},
-      {{"box refinement"}, "initial refinement", "0", one_size},
       {{"grid motion"},
        "motion type",
        "none",
@@ -188,6 +184,7 @@ public:
   {
     for (InputEntry &entry : entries)
       move(entry);
+    number_the_box();
     for (const Components &rule : components())
       join(rule);
     entries.erase(std::remove_if(entries.begin(), entries.end(),
@@ -230,6 +227,35 @@ private:
         problems.warn(place(entry), "is 'adaptive sparse contacts' now.", "");
       path[1] = "adaptive sparse contacts";
     }
+  }
+
+  /// 'box refinement' held one box without a number.
+  void number_the_box()
+  {
+    const Path section = {"box refinement"};
+    const auto is_count = [&](const InputEntry &entry) {
+      return entry.path == section && entry.name == "initial refinement";
+    };
+    const auto count = std::find_if(entries.begin(), entries.end(), is_count);
+    const bool refines = count != entries.end() && count->value != "0";
+    std::vector<InputEntry> numbered;
+    for (const InputEntry &entry : entries) {
+      const bool is_mesh =
+          entry.path.size() > 1 && entry.path[0] == section[0] && entry.path[1] == "mesh";
+      if ((is_count(entry) || is_mesh) && !refines)
+        continue;
+      numbered.push_back(entry);
+      if (is_count(entry)) {
+        problems.warn(place(entry), "is 'additional refinement' of a subsection 'box 0' now.", "");
+        numbered.back().name = "number of refinement boxes";
+        numbered.back().value = "1";
+        numbered.push_back(entry);
+        numbered.back().name = "additional refinement";
+      }
+      if (is_count(entry) || is_mesh)
+        numbered.back().path.insert(numbered.back().path.begin() + 1, "box 0");
+    }
+    entries = numbered;
   }
 
   /// Makes one entry out of those for its components, at the place of the first.

@@ -22,7 +22,18 @@ struct Domain::Mesh
   /// face, and does so twice as fast.
   std::unique_ptr<dealii::Mapping<3>> mapping;
   bool has_boxes = false; ///< whether all cells are boxes along the axes
+  /// Whether they are also of one level, so that deal.II finds the cells of particles well.
+  bool is_plain = false;
 };
+
+/// Most cells of a mesh.
+constexpr double most_cells = 1e9;
+
+/// Makes the mesh before its refinement. Throws a UserError that says why it cannot be made.
+void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh);
+
+/// Smallest distance of a cell of this rank from what lies beyond its neighbours, at least (m).
+double smallest_distance_of_cells_apart(const Domain::Mesh &mesh, const PeriodicBox &periods);
 
 inline dealii::Point<3> to_point(const Vec3 &v)
 {

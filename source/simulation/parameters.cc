@@ -33,6 +33,8 @@ const std::vector<Repeated> &repeated_sections()
        &SectionCounts::boundary_conditions},
       {{{"floating walls"}, "number of floating walls", "wall", 50, 0},
        &SectionCounts::floating_walls},
+      {{{"box refinement"}, "number of refinement boxes", "box", 20, 0},
+       &SectionCounts::refinement_boxes},
       {{{"solid objects", "solid surfaces"}, "number of solids", "solid object", 50, 0},
        &SectionCounts::solids}};
   return list;
@@ -50,8 +52,9 @@ SectionCounts count(const std::vector<InputEntry> &entries)
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
-    : boundaries(counts.boundary_conditions), physics(counts.particle_types, counts.wall_materials),
-      floating_walls(counts.floating_walls), solids(counts.solids)
+    : refinement(counts.refinement_boxes), boundaries(counts.boundary_conditions),
+      physics(counts.particle_types, counts.wall_materials), floating_walls(counts.floating_walls),
+      solids(counts.solids)
 {
   for (const std::string &name : process_kinds().list())
     processes[name] = process_kinds().make(name);
@@ -61,9 +64,9 @@ Parameters::Parameters(const SectionCounts &counts)
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {&control,        &mesh,      &boundaries,
-                                         &physics,        &insertion, &model,
-                                         &floating_walls, &solids,    &restart};
+  std::vector<ParameterSection *> all = {&control, &mesh,      &refinement, &boundaries,
+                                         &physics, &insertion, &model,      &floating_walls,
+                                         &solids,  &restart};
   for (auto &[name, observable] : observables)
     all.push_back(observable.get());
   for (auto &[name, process] : processes)

@@ -32,7 +32,6 @@ Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
                               const double longest_way, const double dt) const
 {
   Faults faults;
-  const auto &outlets = domain.outlets();
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const Vec3 x = p.position[row].vec();
     if (!is_finite(x) || !is_finite(p.velocity[row].vec()) || !is_finite(p.spin[row].vec())) {
@@ -41,8 +40,7 @@ Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
     }
     const double way = norm(x - p.reference[row]) - dt * norm(p.velocity[row].vec());
     if (!domain.contains(x)) {
-      if (std::none_of(outlets.begin(), outlets.end(),
-                       [&](const Outlet &outlet) { return outlet.has_passed(x); }))
+      if (domain.passed_outlet(p.reference[row], x) < 0)
         faults.lost.push_back({row, "has left the mesh, though not through an outlet."});
     } else if (way > longest_way)
       faults.squeezed.push_back({row, "has moved by " + eunoe::format(way) +

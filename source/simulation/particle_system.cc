@@ -89,14 +89,16 @@ std::vector<double> ParticleSystem::work() const
 std::vector<std::size_t> ParticleSystem::find_leaving()
 {
   std::vector<std::size_t> leaving;
-  const auto &outlets = domain.outlets();
-  for (std::size_t row = 0; row < particles.n_owned; ++row)
-    for (std::size_t o = 0; o < outlets.size(); ++o)
-      if (outlets[o].has_passed(particles.position[row].vec())) {
-        ledger.through_outlet[o].count(particles.velocity[row].w);
-        leaving.push_back(row);
-        break;
-      }
+  if (domain.outlets().empty())
+    return leaving;
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    const int outlet =
+        domain.passed_outlet(particles.reference[row], particles.position[row].vec());
+    if (outlet < 0)
+      continue;
+    ledger.through_outlet[outlet].count(particles.velocity[row].w);
+    leaving.push_back(row);
+  }
   return leaving;
 }
 

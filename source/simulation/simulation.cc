@@ -53,7 +53,8 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       largest_diameter(insertion ? insertion->largest_diameter()
                                  : parameters.physics.largest_diameter()),
       skin(parameters.model.skin(largest_diameter)),
-      domain(parameters.mesh, parameters.boundaries, parameters.physics.wall_material(), comm),
+      domain(parameters.mesh, parameters.refinement, parameters.boundaries,
+             parameters.physics.wall_material(), comm),
       model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
       fields(make_fields(parameters)),

@@ -243,13 +243,13 @@ TriangulatedSurface::Touch TriangulatedSurface::closest(const Vec3 &centre,
 }
 
 unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double radius,
-                                                const double reach, const std::int32_t *begin,
-                                                const std::int32_t *end,
-                                                SurfaceContact *contacts) const
+                                                const double reach, const Facets &near,
+                                                SurfaceContact *contacts,
+                                                std::int32_t *owners) const
 {
   thread_local std::vector<Touch> touches;
   touches.clear();
-  for (const std::int32_t *number = begin; number != end; ++number) {
+  for (const std::int32_t *number = near.begin; number != near.end; ++number) {
     const Facet &facet = facets[*number];
     if (std::abs(dot(facet.normal, centre) - facet.offset) >= reach)
       continue;
@@ -264,6 +264,8 @@ unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double
     const Vec3 &normal = facets[touches[0].facet].normal;
     contacts[0].normal = dot(touches[0].offset, normal) > 0. ? normal : -normal;
     contacts[0].distance = touches[0].distance;
+    if (owners != nullptr)
+      owners[0] = touches[0].facet;
     return 1;
   }
 
@@ -345,6 +347,8 @@ unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double
     if (is_new && n < max_contacts) {
       accepted[n] = {plane ? facet.plane : -1,          facet.smooth,   touch.offset,
                      (reach - touch.distance) * normal, touch.distance, false};
+      if (owners != nullptr)
+        owners[n] = touch.facet;
       contacts[n++].normal = normal;
     }
   }

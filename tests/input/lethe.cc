@@ -36,6 +36,15 @@ subsection mesh
   set expand particle-wall contact search = false
 end
 
+subsection box refinement
+  set initial refinement = 1
+  subsection mesh
+    set grid type      = hyper_rectangle
+    set grid arguments = 0, 0, 0 : 0.02, 0.02, 0.02 : false
+    set simplex        = false
+  end
+end
+
 subsection lagrangian physical properties
   set gz                       = -9.81
   set number of particle types = 1
@@ -131,6 +140,17 @@ subsection mesh
   set grid type          = hyper_rectangle
   set grid arguments     = 0, 0, 0 : 0.1, 0.1, 0.1 : true
   set initial refinement = 2
+end
+
+subsection box refinement
+  set number of refinement boxes = 1
+  subsection box 0
+    set additional refinement = 1
+    subsection mesh
+      set grid type      = hyper_rectangle
+      set grid arguments = 0, 0, 0 : 0.02, 0.02, 0.02 : false
+    end
+  end
 end
 
 subsection lagrangian physical properties

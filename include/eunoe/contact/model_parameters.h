@@ -20,6 +20,9 @@ struct LoadBalancingParameters
   double active_factor = 1., inactive_factor = 0.1; ///< on the weight of who is awake or sleeps
   /// Most cells are empty, and an empty one costs next to nothing.
   unsigned int cell_weight = 20;
+  /// The same as an expression in x, y, z of the cell's centre (m); empty: it does not depend on
+  /// the place.
+  std::string cell_weight_expression, cell_weight_constants;
 };
 
 /// Who sleeps, so that contacts at rest cost nothing: `subsection adaptive sparse contacts`.

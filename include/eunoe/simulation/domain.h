@@ -6,19 +6,42 @@
 #include <eunoe/solids/placement.h>
 #include <eunoe/solids/solid.h>
 
+#include <map>
+#include <memory>
 #include <mpi.h>
+#include <set>
 
 namespace eunoe {
 
-/// `subsection mesh`: the background mesh that distributes the particles.
+/// `subsection mesh`: the background mesh that distributes the particles; or the mesh of a box in
+/// which that one is refined.
 struct MeshParameters : public ParameterSection
 {
+  ParameterCheck::Path path; ///< of the subsection
   std::string type = "dealii";
   std::string file = "none";
   std::string grid_type = "hyper_cube";
   std::string grid_arguments = "-1 : 1 : false";
   unsigned int refinement = 0;
   Placement placement;
+
+  explicit MeshParameters(const ParameterCheck::Path &path = {"mesh"}) : path(path) {}
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+/// `subsection box refinement`: where the cells of the background mesh are cut further.
+struct RefinementParameters : public ParameterSection
+{
+  struct Region
+  {
+    MeshParameters mesh;         ///< cells that meet the box around it are refined
+    unsigned int additional = 0; ///< times that each is cut into eight
+  };
+  std::vector<Region> regions;
+
+  explicit RefinementParameters(unsigned int n = 0);
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
@@ -48,13 +71,15 @@ struct BoundaryParameters : public ParameterSection
   void check(const ParameterCheck &check) const override;
 };
 
-/// A flat part of the boundary at which particles leave.
+class Enclosure;
+class MeshBoundary;
+struct Side;
+
+/// A part of the boundary at which particles leave.
 struct Outlet
 {
   unsigned int boundary_id;
-  Vec3 point, inward;
-
-  bool has_passed(const Vec3 &x) const { return dot(x - point, inward) < 0.; }
+  Vec3 point, inward; ///< of the plane that it is where the mesh is convex
 };
 
 /// The space in which particles live: the distributed background mesh, its periods, its walls and
@@ -63,8 +88,8 @@ class Domain
 {
 public:
   /// Throws a UserError that says what is wrong with the mesh or its boundaries.
-  Domain(const MeshParameters &mesh, const BoundaryParameters &boundaries, int wall_material,
-         MPI_Comm comm);
+  Domain(const MeshParameters &mesh, const RefinementParameters &refinement,
+         const BoundaryParameters &boundaries, int wall_material, MPI_Comm comm);
   ~Domain();
 
   MPI_Comm communicator() const { return comm; }
@@ -74,7 +99,10 @@ public:
   const Vec3 &upper() const { return upper_corner; }
   /// Whether a position lies in the mesh; in periodic directions every one does.
   bool contains(const Vec3 &x) const;
-  /// Smallest distance of two opposite faces of a cell (m).
+  /// The outlet through which a particle has left on its straight way from one place to another,
+  /// -1 if it has left through none.
+  int passed_outlet(const Vec3 &from, const Vec3 &x) const;
+  /// Smallest distance of two cells that do not touch (m); of boxes, their smallest width.
   double smallest_cell_width() const { return cell_width; }
   std::uint64_t n_cells() const;
 
@@ -88,15 +116,25 @@ public:
   const Mesh &mesh() const { return *mesh_data; }
 
 private:
-  void find_boundaries(const BoundaryParameters &boundaries, int wall_material);
+  std::set<unsigned int> join_periodic_ends(const BoundaryParameters &boundaries,
+                                            const std::vector<Side> &sides);
+  void measure_cells();
+  void make_boundaries(const BoundaryParameters &boundaries, int wall_material,
+                       const MeshBoundary &boundary, const std::set<unsigned int> &periodic);
+  /// Makes the surfaces of a mesh that is not convex.
+  /// @param outlets their places in the list, by boundary id
+  /// @param walls places in the list of those without a shape yet, by boundary id
+  void make_surfaces(const MeshBoundary &boundary, const std::map<unsigned int, int> &outlets,
+                     const std::map<unsigned int, int> &walls);
 
   MPI_Comm comm;
   std::unique_ptr<Mesh> mesh_data;
   PeriodicBox box;
   Vec3 lower_corner, upper_corner;
   double cell_width = 0.;
-  /// A point and the inward normal of every flat part of the boundary that is not periodic.
+  /// A point and the inward normal of every side of a convex mesh that is not periodic.
   std::vector<std::pair<Vec3, Vec3>> sides;
+  std::unique_ptr<Enclosure> enclosure; ///< of any other mesh
   std::vector<Solid> wall_solids;
   std::vector<Outlet> outlet_list;
 };

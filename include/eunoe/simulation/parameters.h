@@ -21,7 +21,7 @@ namespace eunoe {
 struct SectionCounts
 {
   unsigned int particle_types = 1, wall_materials = 0;
-  unsigned int boundary_conditions = 0, floating_walls = 0, solids = 0;
+  unsigned int boundary_conditions = 0, floating_walls = 0, solids = 0, refinement_boxes = 0;
 };
 
 /// Everything that an input file says, as plain structs that belong to the parts of the code that
@@ -53,6 +53,7 @@ public:
 
   ControlParameters control;
   MeshParameters mesh;
+  RefinementParameters refinement;
   BoundaryParameters boundaries;
   PhysicalProperties physics;
   InsertionParameters insertion;

@@ -25,6 +25,13 @@ struct Placement
            translation;
   }
 
+  /// The place before, of a place after.
+  Vec3 undo(const Vec3 &x) const
+  {
+    const Vec3 shifted = x - translation;
+    return (angle == 0. ? shifted : Rotation::by(angle / norm(axis) * axis).undo(shifted)) / scale;
+  }
+
   /// Declares the entries in the present subsection.
   void declare(dealii::ParameterHandler &prm);
   void check(const ParameterCheck &check, const ParameterCheck::Path &path) const;

@@ -25,7 +25,19 @@ public:
                      std::vector<std::int32_t> &facets) const override;
   unsigned int find_contacts(const Vec3 &centre, double radius, double reach,
                              const std::int32_t *begin, const std::int32_t *end,
-                             SurfaceContact *contacts) const override;
+                             SurfaceContact *contacts) const override
+  {
+    return find_contacts(centre, radius, reach, {begin, end}, contacts, nullptr);
+  }
+  /// Numbers of facets, as `find_facets` gives them.
+  struct Facets
+  {
+    const std::int32_t *begin, *end;
+  };
+  /// The same, and tells which facet each contact is on, the nearest one.
+  /// @param owners as many as there may be contacts, or null
+  unsigned int find_contacts(const Vec3 &centre, double radius, double reach, const Facets &near,
+                             SurfaceContact *contacts, std::int32_t *owners) const;
   bool is_plane(const Vec3 &centre, double reach, const std::int32_t *begin,
                 const std::int32_t *end, Plane &plane) const override;
   Box bounding_box() const override { return box; }

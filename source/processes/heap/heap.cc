@@ -29,7 +29,8 @@ void Heap::check_with(const Parameters &parameters, const ParameterCheck &check)
   check.advise(p.gap < largest, {"heap"}, "gap below the tube",
                "is " + format(p.gap) + " m, so that powder flows out while the tube is filled.",
                "Give less than the largest diameter.");
-  for (const char *const other : {"mesh", "DEM boundary conditions", "insertion info"})
+  for (const char *const other :
+       {"mesh", "box refinement", "DEM boundary conditions", "insertion info"})
     check.require(!check.has_changes(other), {other}, "", "is set, but the process makes its own.",
                   "Remove the subsection.");
   for (const char *const end : {"end control", "time end", "iteration end"})

@@ -50,7 +50,8 @@ void PowderSpreading::check_with(const Parameters &parameters, const ParameterCh
                     "transfer plate, as the bed is only " +
                     format(bed) + " m deep, and " + format(first_bed) + " m for the first layer.",
                 "Give a smaller error or a larger 'feedstock margin'.");
-  for (const char *const other : {"mesh", "DEM boundary conditions", "insertion info"})
+  for (const char *const other :
+       {"mesh", "box refinement", "DEM boundary conditions", "insertion info"})
     check.require(!check.has_changes(other), {other}, "", "is set, but the process makes its own.",
                   "Remove the subsection.");
   for (const char *const end : {"end control", "time end", "iteration end"})

@@ -1,0 +1,106 @@
+// A mesh that is finer in boxes changes no result: a cohesive powder in a box with two periodic
+// directions, one of whose ends is finer in places than the other, against the plain mesh and, to
+// the last bit, on any number of ranks, with and without load balancing.
+
+#include "meshes.h"
+
+using namespace test;
+
+namespace {
+
+using Table = std::vector<std::vector<double>>;
+
+const char *const boxes = R"(
+    subsection box refinement
+      set number of refinement boxes = 2
+      subsection box 0
+        set additional refinement = 1
+        subsection mesh
+          set grid type = hyper_rectangle
+          set grid arguments = 0, 0, 0 : 4e-3, 5e-3, 5e-3
+        end
+      end
+      subsection box 1
+        set additional refinement = 1
+        subsection mesh
+          set grid type = hyper_rectangle
+          set grid arguments = 9e-3, 0, 3e-3 : 11e-3, 2e-3, 9e-3
+        end
+      end
+    end
+)";
+
+Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullptr)
+{
+  Case test_case(
+      control(5e-6, 0.03) +
+          generated_mesh("subdivided_hyper_rectangle",
+                         "4, 4, 4 : 0, 0, 0 : 12e-3, 12e-3, 12e-3 : true", 0) +
+          powder(0.8e-3, 0.5, 0.4, "2, -9.81, 1",
+                 "  set number of particles = 400\n  set surface energy particles = 0.01\n") +
+          R"(
+    subsection lagrangian physical properties
+      set surface energy wall = 0.01
+    end
+    subsection insertion info
+      set insertion box points coordinates = 0, 2e-3, 0 : 12e-3, 12e-3, 12e-3
+      set insertion distance threshold = 1.2
+      set insertion maximum offset = 0.2
+      set initial velocity = 0.3, -0.5, 0.4
+    end
+    subsection model parameters
+      set particle particle contact force method = DMT
+      set particle wall contact force method = DMT
+      subsection contact detection
+        set neighborhood threshold = 1.2
+      end
+    end
+    subsection DEM boundary conditions
+      set number of boundary conditions = 2
+      subsection boundary condition 0
+        set type = periodic
+        set periodic id 0 = 0
+        set periodic id 1 = 1
+        set periodic direction = 0
+      end
+      subsection boundary condition 1
+        set type = periodic
+        set periodic id 0 = 4
+        set periodic id 1 = 5
+        set periodic direction = 2
+      end
+    end
+)" + more,
+      comm);
+  test_case.run();
+  if (n_cells != nullptr)
+    *n_cells = test_case->get_domain().n_cells();
+  return particle_table(*test_case);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Table plain;
+  if (is_first_rank())
+    plain = run("", MPI_COMM_SELF);
+  for (const std::string &balancing :
+       {std::string("set load balance method = none"),
+        std::string("set load balance method = frequent\n set frequency = 200\n"
+                    " subsection cell weight function\n"
+                    "  set Function expression = 100 + 1e5 * x\n end")})
+  {
+    std::uint64_t n_cells = 0;
+    const Table refined =
+        run(std::string(boxes) + "subsection model parameters\n subsection load balancing\n" +
+                balancing + "\n end\nend\n",
+            MPI_COMM_WORLD, &n_cells);
+    // 2 x 2 x 2 cells, and 1 x 1 x 2 elsewhere.
+    check("10 of 64 cells are cut into eight", n_cells == 64 + 7 * 10,
+          std::to_string(n_cells) + " cells");
+    check("all particles are there", refined.size() == 400);
+    check("the same bits as with a plain mesh on one rank", refined == plain || !is_first_rank());
+  }
+}
