@@ -64,7 +64,8 @@ void ParticleStore::Implementation::take_best_fitting(const std::vector<double> 
   std::vector<double> outside(n, std::numeric_limits<double>::max());
   std::vector<unsigned int> found(n);
   for (std::size_t k = 0; has_cells && k < n; ++k) {
-    const Vec3 x = load(&rows[k * n_values + property::extra + n_extra], 0.).vec();
+    const Vec3 x =
+        domain.to_own_frame(load(&rows[k * n_values + property::extra + n_extra], 0.).vec());
     found[k] = locator->find(x);
     outside[k] = locator->outside(found[k], x);
   }

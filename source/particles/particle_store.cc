@@ -55,7 +55,8 @@ void ParticleStore::Implementation::measure_gaps(const ParticleArrays &arrays)
 {
   largest_gap = 0.;
   for (std::size_t row = 0; row < arrays.n_owned; ++row)
-    largest_gap = std::max(largest_gap, locator->gap(cells[row], arrays.position[row].vec()));
+    largest_gap = std::max(
+        largest_gap, locator->gap(cells[row], domain.to_own_frame(arrays.position[row].vec())));
   largest_gap = dealii::Utilities::MPI::max(largest_gap, domain.communicator());
   if (largest_gap > 0.5 * domain.smallest_cell_width())
     throw UserError("A particle is " + format(largest_gap) +
@@ -84,7 +85,8 @@ void ParticleStore::write(const ParticleArrays &particles, const std::vector<dou
     const auto values = particle.get_properties();
     const Vec3 x = box.wrap(particles.position[row].vec());
     if (impl.locator) {
-      particle.set_location(impl.locator->cell(impl.locator->walk(impl.cells[row], x))->center());
+      const Vec3 own = impl.domain.to_own_frame(x);
+      particle.set_location(impl.locator->cell(impl.locator->walk(impl.cells[row], own))->center());
       store(x, &values[property::extra + impl.n_extra]);
     } else
       particle.set_location(to_point(x));
@@ -219,11 +221,12 @@ void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, cons
                                std::vector<int> &ranks) const
 {
   const PeriodicBox &box = implementation->domain.periods();
+  const Vec3 x = implementation->domain.to_own_frame(position);
   ranks.clear();
   for (const auto &cell : implementation->near_cell[implementation->cells[row]]) {
     if (!ranks.empty() && ranks.back() == cell.rank)
       continue;
-    const Vec3 away = box.shortest(position - cell.centre);
+    const Vec3 away = box.shortest(x - cell.centre);
     double distance2 = 0.;
     for (unsigned int d = 0; d < 3; ++d) {
       const double outside = std::max(0., std::abs(away[d]) - cell.half[d]);

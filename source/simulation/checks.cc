@@ -65,6 +65,16 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
                        "sides.",
                    "Make the domain longer in that direction.");
   const InsertionParameters &insertion = parameters.insertion;
+  const std::vector<BoundaryCondition> &conditions = parameters.boundaries.conditions;
+  if (domain.moves() &&
+      (parameters.process_name != "none" || insertion.method == "plane" ||
+       std::any_of(conditions.begin(), conditions.end(), [](const BoundaryCondition &c) {
+         return c.type != "fixed_wall" && c.type != "outlet";
+       })))
+    problems.add("subsection 'grid motion' / entry 'motion type':",
+                 "a mesh that moves has walls and outlets only, no surfaces that move in place nor "
+                 "periodic ones, and neither a process nor insertion by 'plane'.",
+                 "Give 'none', or take these out.");
   const bool inserts = std::any_of(parameters.physics.types.begin(), parameters.physics.types.end(),
                                    [](const ParticleType &type) { return type.number > 0; });
   if (parameters.process_name == "none" && insertion.method == "volume" && inserts)

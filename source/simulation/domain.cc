@@ -49,23 +49,51 @@ void refine(Triangulation &triangulation, const RefinementParameters::Region &re
 
 } // namespace
 
-Domain::Domain(const MeshParameters &parameters, const RefinementParameters &refinement,
-               const BoundaryParameters &boundaries, const int wall_material, MPI_Comm comm)
-    : comm(comm), mesh_data(std::make_unique<Mesh>(comm))
+Domain::Domain(const Background &background, const BoundaryParameters &boundaries,
+               const int wall_material, MPI_Comm comm)
+    : comm(comm), mesh_data(std::make_unique<Mesh>(comm)), motion(background.motion)
 {
   Triangulation &triangulation = mesh_data->triangulation;
-  create_mesh(triangulation, parameters);
+  create_mesh(triangulation, background.mesh);
   const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
   lower_corner = to_vec3(bounding_box.get_boundary_points().first);
   upper_corner = to_vec3(bounding_box.get_boundary_points().second);
   MeshBoundary boundary(triangulation);
   const std::set<unsigned int> periodic = join_periodic_ends(boundaries, boundary.sides());
-  triangulation.refine_global(parameters.refinement);
-  for (const RefinementParameters::Region &region : refinement.regions)
+  triangulation.refine_global(background.mesh.refinement);
+  for (const RefinementParameters::Region &region : background.refinement.regions)
     refine(triangulation, region);
   measure_cells();
-  boundary.refine(triangulation, periodic, box);
+  find_swept_box(background.duration);
+  boundary.refine(triangulation, periodic, box, moves());
   make_boundaries(boundaries, wall_material, boundary, periodic);
+}
+
+void Domain::move_to(const double time)
+{
+  if (motion)
+    pose = motion->at(time);
+}
+
+void Domain::find_swept_box(const double duration)
+{
+  swept = {lower_corner, upper_corner};
+  if (!motion)
+    return;
+  const RigidState end = motion->at(duration);
+  if (motion->rotates()) {
+    // Whatever the axis, nothing is further from the centre than the furthest corner.
+    Vec3 most;
+    for (unsigned int d = 0; d < 3; ++d)
+      most[d] = std::max(std::abs(lower_corner[d]), std::abs(upper_corner[d]));
+    const double radius = norm(most);
+    swept = {{-radius, -radius, -radius}, {radius, radius, radius}};
+  }
+  const Box start = swept;
+  for (unsigned int d = 0; d < 3; ++d) {
+    swept.lower[d] = std::min(swept.lower[d], start.lower[d] + end.centre[d]);
+    swept.upper[d] = std::max(swept.upper[d], start.upper[d] + end.centre[d]);
+  }
 }
 
 void Domain::measure_cells()
@@ -90,7 +118,7 @@ void Domain::measure_cells()
         }
     }
   mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;
-  mesh_data->is_plain = mesh_data->has_boxes && !triangulation.has_hanging_nodes();
+  mesh_data->is_plain = mesh_data->has_boxes && !triangulation.has_hanging_nodes() && !moves();
   if (!mesh_data->has_boxes)
     width = std::min(width, smallest_distance_of_cells_apart(*mesh_data, box));
   cell_width = dealii::Utilities::MPI::min(width, comm);
@@ -110,7 +138,7 @@ Domain::~Domain() = default;
 bool Domain::contains(const Vec3 &x) const
 {
   if (enclosure)
-    return enclosure->contains(x);
+    return enclosure->contains(to_own_frame(x));
   return std::all_of(sides.begin(), sides.end(),
                      [&](const auto &side) { return dot(x - side.first, side.second) >= 0.; });
 }
@@ -118,7 +146,7 @@ bool Domain::contains(const Vec3 &x) const
 int Domain::passed_outlet(const Vec3 &from, const Vec3 &x) const
 {
   if (enclosure)
-    return enclosure->contains(x) ? -1 : enclosure->exit(from, x);
+    return contains(x) ? -1 : enclosure->exit(in_frame(earlier, from), to_own_frame(x));
   for (std::size_t o = 0; o < outlet_list.size(); ++o)
     if (dot(x - outlet_list[o].point, outlet_list[o].inward) < 0.)
       return static_cast<int>(o);
@@ -254,6 +282,8 @@ void Domain::make_boundaries(const BoundaryParameters &boundaries, const int wal
     } else if (part_of.count(side.id) == 0) {
       part_of[side.id] = static_cast<int>(wall_solids.size());
       wall_solids.push_back(wall_of(side.id, c, material, false));
+      if (motion)
+        wall_solids.back().motion = motion;
     }
   }
   if (!boundary.is_convex())

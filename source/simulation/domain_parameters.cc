@@ -1,6 +1,7 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/simulation/domain.h>
 
+#include <cmath>
 #include <set>
 
 namespace eunoe {
@@ -8,6 +9,7 @@ namespace eunoe {
 namespace {
 
 const std::string refinement_section = "box refinement";
+const std::string motion_section = "grid motion";
 const std::string boundary_section = "DEM boundary conditions";
 
 std::string condition_section(std::size_t k)
@@ -75,6 +77,38 @@ void RefinementParameters::check(const ParameterCheck &check) const
 {
   for (const Region &region : regions)
     region.mesh.check(check);
+}
+
+void GridMotionParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(motion_section);
+  declare::choice(prm, "motion type", type, "none|translational|rotational",
+                  "How the background mesh moves, with all its walls and outlets.");
+  for (unsigned int d = 0; d < 3; ++d)
+    prm.add_parameter(std::string("grid translational velocity ") + "xyz"[d], velocity[d],
+                      "translational: velocity (m/s).");
+  prm.add_parameter("grid rotational speed", speed, "rotational: angular velocity (rad/s).");
+  prm.add_parameter("grid rotational axis", axis,
+                    "rotational: the coordinate axis about which it turns, 0, 1 or 2.",
+                    declare::Patterns::Integer(0, 2));
+  prm.leave_subsection();
+}
+
+void GridMotionParameters::check(const ParameterCheck &check) const
+{
+  check.require(std::isfinite(speed) && std::isfinite(norm(velocity)), {motion_section},
+                type == "rotational" ? "grid rotational speed" : "grid translational velocity x",
+                "is no finite number.", "Give one.");
+}
+
+std::shared_ptr<const Motion> GridMotionParameters::make() const
+{
+  if (type == "none")
+    return nullptr;
+  Vec3 turning;
+  turning[axis] = speed;
+  const bool turns = type == "rotational";
+  return std::make_shared<SteadyMotion>(turns ? Vec3() : velocity, turns ? turning : Vec3());
 }
 
 void BoundaryParameters::declare(dealii::ParameterHandler &prm)

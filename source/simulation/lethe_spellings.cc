@@ -132,7 +132,6 @@ const std::vector<Ignored> &ignored()
       {{"box refinement", "box *", "mesh"},
        {"simplex", "check diamond cells", "expand particle-wall contact search"},
        "is not needed."},
-      {{"grid motion"}, {}, "has no effect: the background mesh does not move."},
       {{"floating grid"}, {}, "has no effect: such a grid is a solid, in 'solid objects'."},
       {{"floating grid", "*"}, {}, "has no effect."},
       {mesh,
@@ -163,11 +162,6 @@ const std::vector<Refused> &refused()
       {model, "disable position integration", "false", heat + " Give false."},
       {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
       {insertion, "list temperatures", "", heat + " Remove the entry."},
-      {{"grid motion"},
-       "motion type",
-       "none",
-       "The background mesh does not move: give a wall that slides or turns in place in 'DEM "
-       "boundary conditions', and a vessel that moves in 'solid objects'."},
       {{"floating grid"}, "end time", "0", "Give the grid as a solid, in 'solid objects'."}};
   return list;
 }

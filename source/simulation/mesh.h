@@ -22,7 +22,8 @@ struct Domain::Mesh
   /// face, and does so twice as fast.
   std::unique_ptr<dealii::Mapping<3>> mapping;
   bool has_boxes = false; ///< whether all cells are boxes along the axes
-  /// Whether they are also of one level, so that deal.II finds the cells of particles well.
+  /// Whether they are also of one level and at rest, so that deal.II finds the cells of particles
+  /// well.
   bool is_plain = false;
 };
 

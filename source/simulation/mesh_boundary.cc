@@ -193,14 +193,18 @@ bool MeshBoundary::has_strayed(const Triangulation &triangulation) const
 }
 
 void MeshBoundary::refine(const Triangulation &triangulation,
-                          const std::set<unsigned int> &periodic, const PeriodicBox &periods)
+                          const std::set<unsigned int> &periodic, const PeriodicBox &periods,
+                          const bool moves)
 {
   periodic_ids = periodic;
-  convex = !has_strayed(triangulation) && is_convex_before_refinement(triangulation);
+  convex = !moves && !has_strayed(triangulation) && is_convex_before_refinement(triangulation);
   if (convex)
     return;
   gather(triangulation);
-  find_planes(periods);
+  if (moves)
+    planes.assign(all_sides.size(), false);
+  else
+    find_planes(periods);
 }
 
 void MeshBoundary::gather(const Triangulation &triangulation)

@@ -45,10 +45,12 @@ public:
 
   /// Looks at the refined mesh; collective.
   /// @param periodic ids that count as no boundary
+  /// @param moves whether the mesh moves, so that no infinite plane can stand for a side
   void refine(const Triangulation &triangulation, const std::set<unsigned int> &periodic,
-              const PeriodicBox &periods);
+              const PeriodicBox &periods, bool moves);
 
-  /// Whether all sides are flat and the mesh lies on one side of each, so that planes bound it.
+  /// Whether all sides are flat and the mesh, at rest, lies on one side of each, so that planes
+  /// bound it.
   bool is_convex() const { return convex; }
   /// Of a mesh that is not convex, whether a side is a plane nevertheless, like the end of a
   /// cylinder.

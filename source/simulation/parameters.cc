@@ -64,9 +64,9 @@ Parameters::Parameters(const SectionCounts &counts)
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {&control, &mesh,      &refinement, &boundaries,
-                                         &physics, &insertion, &model,      &floating_walls,
-                                         &solids,  &restart};
+  std::vector<ParameterSection *> all = {&control,        &mesh,    &refinement, &grid_motion,
+                                         &boundaries,     &physics, &insertion,  &model,
+                                         &floating_walls, &solids,  &restart};
   for (auto &[name, observable] : observables)
     all.push_back(observable.get());
   for (auto &[name, process] : processes)

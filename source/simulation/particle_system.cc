@@ -12,7 +12,7 @@ ParticleSystem::ParticleSystem(Domain &domain, const ContactModel &model,
                                const double largest_diameter, Ledger &ledger, Timers &timers)
     : domain(domain), model(model), skin(skin), ledger(ledger), timers(timers),
       store(domain, n_extra, asleep), halo(domain.communicator()),
-      grid(domain.lower(), domain.upper(), domain.periods(),
+      grid(domain.swept_box().lower, domain.swept_box().upper, domain.periods(),
            largest_diameter + skin + model.range()),
       pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
       extra_defaults(n_extra, 0.)

@@ -108,6 +108,8 @@ void Simulation::save(CheckpointWriter &writer)
   head["solids_at_search"] = Json::array();
   for (const RigidState &state : solids_at_search)
     head["solids_at_search"].push_back(to_json(state));
+  if (domain.moves())
+    head["mesh_at_search"] = to_json(domain.earlier_pose());
   if (sparse.is_enabled()) {
     Json &look = head["last_look"];
     look["time"] = last_look.time;
@@ -129,6 +131,7 @@ void Simulation::resume()
   checkpoints.go_on();
   understand(*checkpoint, [&](const Json &head) {
     take_over(head);
+    domain.move_to(present_time);
     system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
     n_particles = system.n_global();
     if (Process *const process = parameters.process())
@@ -168,6 +171,8 @@ void Simulation::take_over(const Json &head)
     // Ids are given one after another from 1.
     insertion->skip(n_insertions, next_id - 1);
 
+  if (domain.moves())
+    domain.set_earlier_pose(to_state(head.at("mesh_at_search")));
   solids_at_search.clear();
   for (std::size_t s = 0; s < solids.size(); ++s) {
     solids_at_search.push_back(to_state(head.at("solids_at_search").at(s)));

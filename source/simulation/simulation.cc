@@ -53,8 +53,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       largest_diameter(insertion ? insertion->largest_diameter()
                                  : parameters.physics.largest_diameter()),
       skin(parameters.model.skin(largest_diameter)),
-      domain(parameters.mesh, parameters.refinement, parameters.boundaries,
-             parameters.physics.wall_material(), comm),
+      domain({parameters.mesh, parameters.refinement, parameters.grid_motion.make(),
+              parameters.control.time_step * static_cast<double>(parameters.control.n_steps())},
+             parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
       fields(make_fields(parameters)),
@@ -223,6 +224,7 @@ void Simulation::advance()
     system.search(solids, balance_if_due(), lost);
     for (std::size_t s = 0; s < solids.size(); ++s)
       solids_at_search[s] = solids[s].state;
+    domain.keep_pose();
     n_particles = system.n_global();
   }
   if (looks)
@@ -238,6 +240,7 @@ void Simulation::advance()
 
 void Simulation::move_solids()
 {
+  domain.move_to(present_time);
   for (Solid &solid : solids)
     solid.state = solid.motion->at(present_time);
 }
@@ -331,6 +334,7 @@ void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_
     if (step == 0 && system.imbalance(balancing) > balancing.threshold_at_start)
       system.search(solids, &balancing);
   }
+  domain.keep_pose();
   solids_at_search.clear();
   for (const Solid &solid : solids)
     solids_at_search.push_back(solid.state);

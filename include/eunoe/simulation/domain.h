@@ -47,6 +47,20 @@ struct RefinementParameters : public ParameterSection
   void check(const ParameterCheck &check) const override;
 };
 
+/// `subsection grid motion`: the background mesh moves as a rigid body with all its walls.
+struct GridMotionParameters : public ParameterSection
+{
+  std::string type = "none";
+  Vec3 velocity;         ///< translational (m/s)
+  double speed = 0.;     ///< rotational, about an axis through the origin (rad/s)
+  unsigned int axis = 0; ///< rotational: 0, 1 or 2
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+  /// Null for a mesh that does not move.
+  std::shared_ptr<const Motion> make() const;
+};
+
 /// `boundary condition i` of the input.
 struct BoundaryCondition
 {
@@ -82,31 +96,55 @@ struct Outlet
   Vec3 point, inward; ///< of the plane that it is where the mesh is convex
 };
 
+/// What the background mesh is made of.
+struct Background
+{
+  const MeshParameters &mesh;
+  const RefinementParameters &refinement;
+  std::shared_ptr<const Motion> motion; ///< null: at rest
+  double duration;                      ///< of the motion (s)
+};
+
 /// The space in which particles live: the distributed background mesh, its periods, its walls and
 /// outlets.
 class Domain
 {
 public:
   /// Throws a UserError that says what is wrong with the mesh or its boundaries.
-  Domain(const MeshParameters &mesh, const RefinementParameters &refinement,
-         const BoundaryParameters &boundaries, int wall_material, MPI_Comm comm);
+  Domain(const Background &background, const BoundaryParameters &boundaries, int wall_material,
+         MPI_Comm comm);
   ~Domain();
 
   MPI_Comm communicator() const { return comm; }
   const PeriodicBox &periods() const { return box; }
-  /// Corners of the box around the mesh (m).
+  /// Corners of the box around the mesh, at the beginning if it moves (m).
   const Vec3 &lower() const { return lower_corner; }
   const Vec3 &upper() const { return upper_corner; }
+  /// The box around all places to which the mesh comes.
+  const Box &swept_box() const { return swept; }
+
+  /// Takes the mesh to where it is at a time (s).
+  void move_to(double time);
+  bool moves() const { return motion != nullptr; }
+  /// A place in the frame of the mesh, in which its cells are at rest.
+  Vec3 to_own_frame(const Vec3 &x) const { return in_frame(pose, x); }
+  /// Where the mesh was when `passed_outlet` begins to look.
+  ///@{
+  const RigidState &earlier_pose() const { return earlier; }
+  void set_earlier_pose(const RigidState &state) { earlier = state; }
+  void keep_pose() { earlier = pose; }
+  ///@}
+
   /// Whether a position lies in the mesh; in periodic directions every one does.
   bool contains(const Vec3 &x) const;
-  /// The outlet through which a particle has left on its straight way from one place to another,
-  /// -1 if it has left through none.
+  /// The outlet through which a particle has left on its straight way from one place, at the
+  /// earlier pose of the mesh, to another, -1 if it has left through none.
   int passed_outlet(const Vec3 &from, const Vec3 &x) const;
   /// Smallest distance of two cells that do not touch (m); of boxes, their smallest width.
   double smallest_cell_width() const { return cell_width; }
   std::uint64_t n_cells() const;
 
-  /// Walls of the domain, as solids that never move.
+  /// Walls of the domain, as solids that move only with the mesh.
   const std::vector<Solid> &walls() const { return wall_solids; }
   const std::vector<Outlet> &outlets() const { return outlet_list; }
 
@@ -118,7 +156,12 @@ public:
 private:
   std::set<unsigned int> join_periodic_ends(const BoundaryParameters &boundaries,
                                             const std::vector<Side> &sides);
+  Vec3 in_frame(const RigidState &frame, const Vec3 &x) const
+  {
+    return motion ? frame.rotation.undo(x - frame.centre) : x;
+  }
   void measure_cells();
+  void find_swept_box(double duration);
   void make_boundaries(const BoundaryParameters &boundaries, int wall_material,
                        const MeshBoundary &boundary, const std::set<unsigned int> &periodic);
   /// Makes the surfaces of a mesh that is not convex.
@@ -130,7 +173,10 @@ private:
   MPI_Comm comm;
   std::unique_ptr<Mesh> mesh_data;
   PeriodicBox box;
+  std::shared_ptr<const Motion> motion;
+  RigidState pose, earlier;
   Vec3 lower_corner, upper_corner;
+  Box swept;
   double cell_width = 0.;
   /// A point and the inward normal of every side of a convex mesh that is not periodic.
   std::vector<std::pair<Vec3, Vec3>> sides;

@@ -54,6 +54,7 @@ public:
   ControlParameters control;
   MeshParameters mesh;
   RefinementParameters refinement;
+  GridMotionParameters grid_motion;
   BoundaryParameters boundaries;
   PhysicalProperties physics;
   InsertionParameters insertion;

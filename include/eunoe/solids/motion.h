@@ -65,6 +65,26 @@ private:
   const RigidState state;
 };
 
+/// A solid that moves at a constant velocity, or turns about its centre at a constant speed; both
+/// begin at the origin and with its own axes.
+class SteadyMotion : public Motion
+{
+public:
+  SteadyMotion(const Vec3 &velocity, const Vec3 &angular_velocity)
+      : velocity(velocity), angular_velocity(angular_velocity)
+  {
+  }
+
+  RigidState at(double time) const override
+  {
+    return {time * velocity, Rotation::by(time * angular_velocity), velocity, angular_velocity};
+  }
+  bool rotates() const override { return norm_square(angular_velocity) > 0.; }
+
+private:
+  const Vec3 velocity, angular_velocity;
+};
+
 } // namespace eunoe
 
 #endif
