@@ -57,6 +57,7 @@ SUBJECTS = {
                     program="eunoe-particles"),
         {"lagrangian physical properties/number of wall materials": "1",
          "DEM boundary conditions/number of boundary conditions": "1",
+         "box refinement/number of refinement boxes": "1",
          "floating walls/number of floating walls": "1",
          "solid objects/solid surfaces/number of solids": "1"},
         {"lagrangian physical properties/wall material 0/surfaces": "floating wall",

@@ -113,8 +113,8 @@ void Domain::measure_cells()
           const double x = cell->vertex(v)[d];
           lower[d] = std::min(lower[d], x);
           upper[d] = std::max(upper[d], x);
-          boxes = boxes && (std::abs(x - cell_box.first[d]) < tolerance ||
-                            std::abs(x - cell_box.second[d]) < tolerance);
+          const double end = (v >> d & 1) == 0 ? cell_box.first[d] : cell_box.second[d];
+          boxes = boxes && std::abs(x - end) < tolerance;
         }
     }
   mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;

@@ -21,7 +21,8 @@ struct Domain::Mesh
   /// Cartesian where all cells are boxes: it finds the cell of a particle that lies exactly on a
   /// face, and does so twice as fast.
   std::unique_ptr<dealii::Mapping<3>> mapping;
-  bool has_boxes = false; ///< whether all cells are boxes along the axes
+  /// Whether all cells are boxes along the axes, with their corners in the order of these.
+  bool has_boxes = false;
   /// Whether they are also of one level and at rest, so that deal.II finds the cells of particles
   /// well.
   bool is_plain = false;

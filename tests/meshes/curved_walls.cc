@@ -51,13 +51,15 @@ void bounces(const std::string &name, unsigned int refinement, const Vec3 &shift
   const Vec3 along = (to - from) / norm(to - from);
   Case test_case(control(5e-6, 0.25) + cylinder(refinement, placement) +
                  powder(2. * r, 1., 0., "0, 0, 0") +
+                 "subsection model parameters\n subsection contact detection\n"
+                 "  set neighborhood threshold = 1.05\n end\nend\n" +
                  places({shift + 0.5 * (from + to)}, {speed * along + Vec3{0.01, 0., 0.}}));
 
   unsigned int bounces = 0;
   double closest = R, furthest = 0., slowest = 2. * speed, fastest = 0.;
   bool touched = false;
   test_case.run([&](Simulation &simulation) {
-    const auto &row = particle_table(simulation)[0];
+    const std::vector<double> row = particle_table(simulation)[0];
     const Vec3 x = {0., row[c_y] - shift.y, row[c_z] - shift.z}, v = {0., row[c_vy], row[c_vz]};
     const bool touches = norm(x) > inner;
     if (touches && !touched)
@@ -128,7 +130,7 @@ void drum()
       "end\n" +
       places({(apothem(refinement) - r + overlap) * out}, {Vec3()}));
   test_case.run();
-  const auto &row = particle_table(*test_case)[0];
+  const std::vector<double> row = particle_table(*test_case)[0];
   const double time = 4e-3, slope = 0.02;
   check_relative("sliding: speed", dot({row[c_vx], row[c_vy], row[c_vz]}, along),
                  friction * g * time, slope);

@@ -17,14 +17,14 @@ const char *const boxes = R"(
         set additional refinement = 1
         subsection mesh
           set grid type = hyper_rectangle
-          set grid arguments = 0, 0, 0 : 4e-3, 5e-3, 5e-3
+          set grid arguments = 0, 0, 0 : 4e-3, 5e-3, 5e-3 : false
         end
       end
       subsection box 1
         set additional refinement = 1
         subsection mesh
           set grid type = hyper_rectangle
-          set grid arguments = 9e-3, 0, 3e-3 : 11e-3, 2e-3, 9e-3
+          set grid arguments = 9e-3, 0, 3e-3 : 11e-3, 2e-3, 9e-3 : false
         end
       end
     end
