@@ -153,4 +153,13 @@ Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit)
   return changes.transpose() * fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
 }
 
+Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const Fit &fit)
+{
+  const Eigen::MatrixXd changes =
+      bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
+  const Eigen::VectorXd weight = bench.misfit.variance(fit.leverage).cwiseInverse();
+  return Eigen::MatrixXd::Identity(changes.cols(), changes.cols()) -
+         changes.transpose() * weight.asDiagonal() * changes;
+}
+
 } // namespace eunoe::discovery

@@ -21,10 +21,11 @@ struct Decision
   /// The joint p-value is multiplied by this: on 150 synthetic laboratories without anything
   /// missing the plain one gave 7 % alarms at a level of 5 %.
   double safety_of_p = 2.;
-  double credible = 0.95;        ///< probability that a tie set covers
-  double off_catalogue = 0.5;    ///< least probability for this verdict
-  double p_of_bad_fit = 0.01;    ///< below: the best model does not describe the data
-  double least_inclusion = 0.02; ///< an effect less likely than this is not confirmed
+  double credible = 0.95;          ///< probability that a tie set covers
+  double off_catalogue = 0.5;      ///< least probability for this verdict
+  double p_of_bad_fit = 0.01;      ///< below: the best model does not describe the data
+  double p_of_bad_held_out = 0.01; ///< the same on held-out data
+  double least_inclusion = 0.02;   ///< an effect less likely than this is not confirmed
 };
 
 /// A set of effects and how likely it is.
