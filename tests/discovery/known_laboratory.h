@@ -67,6 +67,43 @@ public:
     return std::sqrt(square);
   }
 
+  /// The same in standard errors of a measurement, after what nuisances could explain is taken off:
+  /// how clear a truth is to someone who knows covariance, nuisances and fingerprints.
+  double clearness(const Amplitudes &amplitudes, const std::vector<std::string> &experiments,
+                   double repeats) const
+  {
+    Eigen::Index n = 0;
+    for (const std::string &e : experiments)
+      n += half.at(e).rows();
+    Eigen::VectorXd change(n);
+    Eigen::MatrixXd nuisances(n, 0);
+    Eigen::Index row = 0;
+    for (const std::string &e : experiments) {
+      const auto &lower = half.at(e).triangularView<Eigen::Lower>();
+      const auto in_units = [&](const Amplitudes &a) -> Eigen::VectorXd {
+        return std::sqrt(repeats) * lower.solve(mean(e, a) - mean(e, {}));
+      };
+      Eigen::Index column = 0;
+      Amplitudes effects = amplitudes;
+      for (const Factor &f : all_factors) {
+        if (f.kind != Factor::Kind::nuisance)
+          continue;
+        effects.erase(f.name);
+        if (row == 0)
+          nuisances.conservativeResize(n, column + 1);
+        nuisances.col(column++).segment(row, half.at(e).rows()) =
+            in_units({{f.name, f.null_value + f.prior_deviation}});
+      }
+      change.segment(row, half.at(e).rows()) = in_units(effects);
+      row += half.at(e).rows();
+    }
+    // (1 + G G')^-1 by the matrix inversion lemma.
+    const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(nuisances.cols(), nuisances.cols()) +
+                                  nuisances.transpose() * nuisances;
+    const Eigen::VectorXd along = nuisances.transpose() * change;
+    return std::sqrt(change.squaredNorm() - along.dot(inner.ldlt().solve(along)));
+  }
+
   /// Amplitude of an effect that has this strength.
   double amplitude_of(const std::string &name, double wanted,
                       const std::vector<std::string> &experiments, double side = 1.) const

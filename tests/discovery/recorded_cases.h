@@ -21,8 +21,9 @@ inline RecordedStudy interpolated_study(const RecordedTable &table, const StudyK
 {
   RandomStream random(seed, 98);
   RecordedLaboratory laboratory(table, seed);
-  const SuiteCase one = draw_case(laboratory, kind, table.fit, seed, random);
+  SuiteCase one = draw_case(laboratory, kind, table.fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
+  one.clearness = laboratory.clearness(one.truth, table.fit, repeats);
   const MeasuredData data = laboratory.measure(table.fit, table.held_out, one.truth, repeats,
                                                0.4 * random.uniform(), seed);
   return {one, study_of(one, laboratory, data, options)};
@@ -54,8 +55,7 @@ inline std::vector<MeasuredCell> as_data(const RecordedTable &table, const std::
 
 /// A study whose data are simulations: runs of the base model with some seeds, or of one factor at
 /// one amplitude, which the laboratory interpolates from the others.
-inline RecordedStudy simulated_study(const RecordedTable &table,
-                                     const LeftOut &left_out,
+inline RecordedStudy simulated_study(const RecordedTable &table, const LeftOut &left_out,
                                      std::uint32_t seed, const StudyOptions &options)
 {
   RecordedLaboratory laboratory(table, seed, left_out);

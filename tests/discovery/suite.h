@@ -37,6 +37,7 @@ struct SuiteCase
   std::map<std::string, double> strengths; ///< of the effects, below zero for those below null
   Amplitudes truth;                        ///< with the nuisances
   std::vector<std::string> excluded;       ///< deleted from the catalogue
+  double clearness = 0.;                   ///< of the truth, in standard errors of the measurement
 };
 
 /// What the command line of a suite asks for.
@@ -107,6 +108,18 @@ inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &k
   return one;
 }
 
+/// Sets of effects that the last stage that compared any found likeliest.
+inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &stages)
+{
+  constexpr std::size_t most = 6;
+  nlohmann::ordered_json models = nlohmann::ordered_json::array();
+  if (stages.contains("iterate"))
+    for (const auto &row : stages["iterate"]["models"])
+      if (models.size() < most)
+        models.push_back(row);
+  return models;
+}
+
 /// What a study answered beside the truth: a line that eunoe_suite/score.py reads.
 inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 {
@@ -136,6 +149,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"amplitudes", amplitudes}}},
       {"answer",
        {{"verdict", c["verdict"]},
+        {"clearness of the truth", one.clearness},
         {"p of nothing missing", c["p of nothing missing"]},
         {"p of distance", detect["p of distance"]},
         {"p of largest deviation", detect["p of largest deviation"]},
@@ -145,6 +159,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"amplitudes", c["amplitudes"]},
         {"p of the fit", c["p of the fit"]},
         {"tie", c["tie"]},
+        {"models", likeliest_models(c["stages"])},
         {"gaps", {{"fit", c["gaps"]["fit"]}, {"held-out", held_out}}},
         {"runs", c["runs"]}}}};
   std::printf("%s\n", line.dump().c_str());

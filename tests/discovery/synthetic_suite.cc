@@ -49,8 +49,9 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
     for (std::size_t k = at; k < at + nature.n_effects; k += 2)
       laboratory.make_alike(name(k), name(k + 1), 0.1, fit);
   }
-  const SuiteCase one = draw_case(laboratory, kind, fit, seed, random);
+  SuiteCase one = draw_case(laboratory, kind, fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
+  one.clearness = laboratory.clearness(one.truth, fit, repeats);
   const MeasuredData data =
       laboratory.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
   options.further_experiments = {"shear"};

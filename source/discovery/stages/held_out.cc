@@ -122,12 +122,15 @@ struct Estimates
   DataNoise noise;
 };
 
-Estimates estimate(const Modes &modes, const Eigen::MatrixXd &before, const Eigen::MatrixXd &runs,
+/// @param others runs of another model, which tell of the chaos too; or none
+Estimates estimate(const Modes &modes, const Eigen::MatrixXd &runs, const Eigen::MatrixXd &others,
                    const Repeats &repeats, const Eigen::MatrixXd &doubt)
 {
-  Eigen::MatrixXd cells(before.rows() + runs.rows(), before.cols());
-  cells << centred(before), centred(runs);
-  const auto dof = static_cast<double>(cells.rows() - 2);
+  Eigen::MatrixXd cells(runs.rows() + others.rows(), runs.cols());
+  cells.topRows(runs.rows()) = centred(runs);
+  if (others.rows() > 0)
+    cells.bottomRows(others.rows()) = centred(others);
+  const auto dof = static_cast<double>(cells.rows() - (others.rows() > 0 ? 2 : 1));
   Estimates result;
   result.chaos =
       shrunk_covariance(cells * modes.basis().transpose(), dof, modes.experiment_of_mode());
@@ -141,10 +144,10 @@ Estimates estimate(const Modes &modes, const Eigen::MatrixXd &before, const Eige
 }
 
 double distance(const Estimates &estimates, const Modes &modes, const Eigen::VectorXd &deviation,
-                const Eigen::Index n_runs)
+                const double leverage)
 {
   return estimates.misfit.distance(estimates.misfit.coordinates(modes.basis() * deviation),
-                                   1. / static_cast<double>(n_runs));
+                                   leverage);
 }
 
 } // namespace
@@ -166,6 +169,8 @@ HeldOut make_held_out(Workbench &bench, const Amplitudes &chosen)
   if (before.rows() < 3)
     return result;
   const Eigen::MatrixXd changes = nuisance_changes(bench);
+  result.nuisance_variance =
+      2. / static_cast<double>(nuisance_runs(bench.options)) / std::pow(2. * nuisance_step, 2);
   const Eigen::VectorXd unit = units(cells, before);
   std::vector<Eigen::Index> used;
   for (Eigen::Index c = 0; c < unit.size(); ++c)
@@ -200,13 +205,20 @@ Prediction predict(const Workbench &bench, const HeldOut &held_out, const Eigen:
 {
   Prediction result;
   result.runs = runs;
+  result.is_of_base = fit.effects.empty();
   const Eigen::VectorXd mean = runs.colwise().mean().transpose();
-  result.mean = mean + held_out.nuisances * nuisance_estimates(bench, fit);
+  const Eigen::VectorXd estimates = nuisance_estimates(bench, fit);
+  const Eigen::MatrixXd covariance = nuisance_covariance(bench, fit);
+  result.mean = mean + held_out.nuisances * estimates;
+  result.leverage = 1. / static_cast<double>(runs.rows()) +
+                    held_out.nuisance_variance * (estimates.squaredNorm() + covariance.trace());
   const Eigen::Index n = held_out.nuisances.cols();
   result.doubt = Eigen::MatrixXd::Zero(mean.size(), n + 1);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(nuisance_covariance(bench, fit));
-  result.doubt.leftCols(n) = held_out.nuisances * eigen.eigenvectors() *
-                             eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+  if (n > 0) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    result.doubt.leftCols(n) = held_out.nuisances * eigen.eigenvectors() *
+                               eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
+  }
   result.doubt.col(n) =
       amplitude_error * (mean - held_out.before.colwise().mean().transpose().eval());
   return result;
@@ -218,7 +230,7 @@ Eigen::VectorXd noise_variance(const HeldOut &held_out, const Prediction &predic
   const Eigen::VectorXd chaos =
       centred(runs).colwise().squaredNorm().transpose() / static_cast<double>(runs.rows() - 1);
   return held_out.deviation.cwiseAbs2().cwiseQuotient(held_out.repeats) +
-         chaos / static_cast<double>(runs.rows()) + prediction.doubt.rowwise().squaredNorm();
+         chaos * prediction.leverage + prediction.doubt.rowwise().squaredNorm();
 }
 
 double p_of_held_out(const HeldOut &held_out, const Prediction &prediction,
@@ -230,10 +242,11 @@ double p_of_held_out(const HeldOut &held_out, const Prediction &prediction,
     cells.push_back(cell.cell);
   const Eigen::Index n = held_out.data.size();
   const Modes modes(cells, Eigen::VectorXd::Ones(n));
-  const Estimates real = estimate(modes, held_out.before, prediction.runs,
+  const Eigen::MatrixXd &others = prediction.is_of_base ? held_out.after : held_out.before;
+  const Estimates real = estimate(modes, prediction.runs, others,
                                   {held_out.deviation, held_out.repeats}, prediction.doubt);
   const double observed =
-      distance(real, modes, held_out.data - prediction.mean, prediction.runs.rows());
+      distance(real, modes, held_out.data - prediction.mean, prediction.leverage);
 
   RandomStream random(seed, 3);
   const Eigen::MatrixXd lower = Eigen::LLT<Eigen::MatrixXd>(real.chaos.unshrunk).matrixL();
@@ -242,10 +255,12 @@ double p_of_held_out(const HeldOut &held_out, const Prediction &prediction,
   };
   const auto most_repeats = static_cast<Eigen::Index>(held_out.repeats.maxCoeff());
   const Eigen::ArrayXd ratio = real.noise.ratio.array();
+  // Noise of the nuisances' changes, beside that of the model's own runs.
+  const double further =
+      std::max(0., prediction.leverage - 1. / static_cast<double>(prediction.runs.rows()));
   double beyond = 1.;
   for (int draw = 0; draw < n_draws; ++draw) {
-    const Eigen::MatrixXd before = runs(held_out.before.rows());
-    const Eigen::MatrixXd after = runs(prediction.runs.rows());
+    const Eigen::MatrixXd of_model = runs(prediction.runs.rows()), of_other = runs(others.rows());
     Eigen::MatrixXd rows = runs(most_repeats) * ratio.cwiseMin(1.).sqrt().matrix().asDiagonal();
     rows += random.normals(most_repeats, n) * (ratio - 1.).max(0.).sqrt().matrix().asDiagonal();
     Repeats repeats{held_out.deviation, held_out.repeats};
@@ -260,8 +275,9 @@ double p_of_held_out(const HeldOut &held_out, const Prediction &prediction,
                                          static_cast<double>(number - 1));
     }
     const Estimates drawn = estimate(modes, before, after, repeats, prediction.doubt);
-    const Eigen::VectorXd deviation = data - after.colwise().mean().transpose();
-    beyond += distance(drawn, modes, deviation, after.rows()) >= observed ? 1. : 0.;
+    const Eigen::VectorXd deviation =
+        data - after.colwise().mean().transpose() + std::sqrt(further) * runs(1).row(0).transpose();
+    beyond += distance(drawn, modes, deviation, prediction.leverage) >= observed ? 1. : 0.;
   }
   return beyond / (n_draws + 1.);
 }

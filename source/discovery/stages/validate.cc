@@ -206,8 +206,10 @@ Table stage_validate(Workbench &bench, Findings &findings)
   const Progress between = progress(held_out, base, chosen);
   const bool informative = between.error < 0.5;
   const bool does_not_shrink = informative && between.value < 0.5 - between.error;
+  // Of a tie another member may describe them.
   const bool is_bad_fit =
-      table["p of the chosen model"].get<double>() < findings.decision.p_of_bad_held_out;
+      findings.verdict == Verdict::named &&
+      table["p of the chosen model"].get<double>() <= findings.decision.p_of_bad_held_out;
   findings.withdrawn = does_not_shrink || is_bad_fit;
   table["position between the models"] = informative ? Table(between.value) : Table(nullptr);
   table["standard error of the position"] = informative ? Table(between.error) : Table(nullptr);

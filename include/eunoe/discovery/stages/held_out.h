@@ -12,6 +12,7 @@ struct HeldOut
   Eigen::VectorXd data, deviation, repeats, scale;
   Eigen::MatrixXd before, after; ///< runs x cells; `after` has no rows without a chosen model
   Eigen::MatrixXd nuisances;     ///< cells x nuisances: change by one prior deviation
+  double nuisance_variance = 0.; ///< of each such change, in units of one run's chaos
 };
 
 /// Makes the runs of the held-out experiments: of the base model, of the model with these
@@ -28,9 +29,11 @@ std::uint64_t held_out_runs(const MeasuredData &data, const StudyOptions &option
 /// columns whose outer products add up to its covariance.
 struct Prediction
 {
+  bool is_of_base = true;
   Eigen::MatrixXd runs;
   Eigen::VectorXd mean;
   Eigen::MatrixXd doubt; ///< cells x (nuisances + 1): of nuisances, and of the amplitudes
+  double leverage = 0.;  ///< variance by noise of runs, in units of one run's chaos
 };
 
 /// @param runs of this fit
