@@ -274,9 +274,9 @@ double p_of_held_out(const HeldOut &held_out, const Prediction &prediction,
         repeats.deviation(c) = std::sqrt((column.array() - column.mean()).square().sum() /
                                          static_cast<double>(number - 1));
     }
-    const Estimates drawn = estimate(modes, before, after, repeats, prediction.doubt);
-    const Eigen::VectorXd deviation =
-        data - after.colwise().mean().transpose() + std::sqrt(further) * runs(1).row(0).transpose();
+    const Estimates drawn = estimate(modes, of_model, of_other, repeats, prediction.doubt);
+    const Eigen::VectorXd deviation = data - of_model.colwise().mean().transpose() +
+                                      std::sqrt(further) * runs(1).row(0).transpose();
     beyond += distance(drawn, modes, deviation, prediction.leverage) >= observed ? 1. : 0.;
   }
   return beyond / (n_draws + 1.);
