@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
-"""Scores a suite that suite.py has made.
+"""Scores a suite.
 
 Usage: contrib/discovery/score.py folder [--label NAME ...]
+       contrib/discovery/score.py answers.jsonl
 
-Opens the sealed truths and compares them with the studies' answers. Writes scores_<label>.md and
-scores_<label>.csv (one row a case) into the folder.
+Of a folder that suite.py has made it opens the sealed truths and compares them with the studies'
+answers, and writes scores_<label>.md and scores_<label>.csv (one row a case) into it. The suites on
+synthetic laboratories and on recorded simulations (tests/discovery) print truths and answers as lines
+of JSON instead; their scores go beside that file.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ import csv
 import sys
 from pathlib import Path
 
-from eunoe_suite.score import Outcome, Scores, read, score
+from eunoe_suite.score import Outcome, Scores, read, read_lines, score
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -50,21 +53,29 @@ def write_cases(path: Path, outcomes: list[Outcome]) -> None:
                              o.covers, "" if o.shrink is None else o.shrink, o.runs])
 
 
+def write(outcomes: list[Outcome], label: str, folder: Path) -> None:
+    text = page(score(outcomes), label, len(outcomes))
+    (folder / f"scores_{label}.md").write_text(text, encoding="utf-8")
+    write_cases(folder / f"scores_{label}.csv", outcomes)
+    print(text)
+
+
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
-    parser.add_argument("folder", type=Path)
+    parser.add_argument("suite", type=Path)
     parser.add_argument("--label", action="append", default=[])
     options = parser.parse_args(arguments)
+    suite = options.suite
+    if suite.is_file():
+        write(read_lines(suite), suite.stem, suite.parent)
+        return 0
     for label in options.label or ["study"]:
-        outcomes = [o for o in (read(path, label) for path in sorted(options.folder.iterdir())
+        outcomes = [o for o in (read(path, label) for path in sorted(suite.iterdir())
                                 if path.is_dir() and path.name != "pilot") if o is not None]
         if not outcomes:
-            print(f"There are no finished studies '{label}' in {options.folder}.", file=sys.stderr)
+            print(f"There are no finished studies '{label}' in {suite}.", file=sys.stderr)
             return 1
-        text = page(score(outcomes), label, len(outcomes))
-        (options.folder / f"scores_{label}.md").write_text(text, encoding="utf-8")
-        write_cases(options.folder / f"scores_{label}.csv", outcomes)
-        print(text)
+        write(outcomes, label, suite)
     return 0
 
 

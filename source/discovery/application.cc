@@ -68,9 +68,8 @@ void refuse_if_any(const Problems &problems)
 std::unique_ptr<DemLaboratory> open_laboratory(const StudyInput &study, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
-  auto laboratory = std::make_unique<DemLaboratory>(
-      study.experiments, study.factors,
-      p.cache_path.empty() ? p.output_file("cache") : p.cache_path, p.ranks_per_run, comm, log);
+  auto laboratory = std::make_unique<DemLaboratory>(study.experiments, study.factors,
+                                                    p.cache_folder(), p.ranks_per_run, comm, log);
   // A seed that the stages use as well.
   laboratory->explore(100000 * p.options.seed + 1);
   std::map<std::string, std::vector<Cell>> cells;

@@ -54,10 +54,11 @@ bool StudyFolder::open(const std::map<std::string, std::string> &identity)
       if (!mine.contains(name))
         differ.push_back(name);
     if (!differ.empty())
-      throw UserError("The folder " + path +
-                      " holds another study; what differs: " + boost::join(differ, ", ") +
-                      ". Choose another 'output path', or remove the folder. (With 'cache path = " +
-                      path + "/cache' no run is made twice.)");
+      throw UserError(
+          "The folder " + path +
+          " holds another study; what differs: " + boost::join(differ, ", ") +
+          ". Choose another 'output path', or remove the folder. (With the same 'cache path' "
+          "no run is made twice.)");
     return true;
   }
   create_folder(path + "/stages", comm);

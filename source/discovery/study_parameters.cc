@@ -188,7 +188,8 @@ void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twi
                     "same study.");
   prm.add_parameter("cache path", cache_path,
                     "Folder in which simulations are kept; several studies may share it. Empty: "
-                    "'cache' in the output folder.");
+                    "the output path with '_cache' behind it, so that deleting the results loses "
+                    "no simulation.");
   declare_list(prm, "effects", effects, ',',
                "Effects that may be missing: 'all' of the catalogue, or names.");
   declare_list(prm, "excluded effects", excluded_effects, ',', "Effects that are left out.");
@@ -220,6 +221,19 @@ void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twi
   prm.leave_subsection();
   if (with_twin)
     declare_twin(prm, twin);
+}
+
+std::string StudyParameters::cache_folder() const
+{
+  if (!cache_path.empty())
+    return cache_path;
+  std::filesystem::path path = std::filesystem::path(output_path).lexically_normal();
+  if (!path.has_filename())
+    path = path.parent_path(); // a slash at the end
+  // "." and ".." have no name to put something behind.
+  const std::string name = path.filename().string();
+  return name.empty() || name == "." || name == ".." ? (path / "cache").string()
+                                                     : path.string() + "_cache";
 }
 
 void StudyParameters::check(const ParameterCheck &check) const

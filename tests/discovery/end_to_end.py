@@ -124,7 +124,7 @@ def check_answer(folder: Path) -> None:
 def check_resume(program: Program, reference: Path) -> None:
     """Killed as soon as some runs are made, then started again, on two ranks."""
     arguments = ["study.prm", *settings(output_path="killed")]
-    cache = program.folder / "killed" / "cache"
+    cache = program.folder / "killed_cache"
     with subprocess.Popen(program.command(*arguments), cwd=program.folder,
                           stdout=subprocess.DEVNULL) as process:
         while process.poll() is None and len(list(cache.glob("*/*.json"))) < 5:
@@ -151,6 +151,11 @@ def main() -> None:
            "holds another study; what differs: study file")
     first = answer(reference)
     expect(program.run("study.prm"), NAMED, "Going on with the study")
+    assert answer(reference) == first
+    assert json.loads((reference / "discovery.json").read_text())["simulations"]["made_now"] == 0
+    # Results can be thrown away without losing a simulation.
+    shutil.rmtree(reference)
+    expect(program.run("study.prm"), NAMED)
     assert answer(reference) == first
     assert json.loads((reference / "discovery.json").read_text())["simulations"]["made_now"] == 0
     check_resume(program, reference)

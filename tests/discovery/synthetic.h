@@ -5,22 +5,10 @@
 // correlated within and between them, effects whose fingerprints resemble each other and bend with
 // amplitude, runs that fail. It costs nothing, so that a discovery can be made hundreds of times.
 
-#include <eunoe/core/random.h>
-#include <eunoe/discovery/statistics/random_stream.h>
-#include <eunoe/discovery/study.h>
-
 #include "../tests.h"
-
-#include <Eigen/Dense>
-#include <cstring>
-#include <map>
-#include <string>
-#include <vector>
+#include "known_laboratory.h"
 
 namespace test {
-
-using namespace eunoe;
-using namespace eunoe::discovery;
 
 struct ObservableShape
 {
@@ -55,10 +43,10 @@ struct Nature
                                               {"shear", "stress", 4}};
 };
 
-class SyntheticLaboratory : public Laboratory
+class SyntheticLaboratory : public KnownLaboratory
 {
 public:
-  explicit SyntheticLaboratory(const Nature &nature) : nature(nature)
+  explicit SyntheticLaboratory(const Nature &of) : nature(of)
   {
     for (const ObservableShape &shape : nature.observables) {
       if (all_cells.count(shape.experiment) == 0)
@@ -90,34 +78,6 @@ public:
     }
   }
 
-  const std::vector<Cell> &cells(const std::string &experiment) const override
-  {
-    return all_cells.at(experiment);
-  }
-
-  std::vector<RunResult> run(const std::vector<RunRequest> &requests) override
-  {
-    std::vector<RunResult> results;
-    for (const RunRequest &request : requests) {
-      ++made;
-      results.push_back(outcome(request));
-    }
-    return results;
-  }
-
-  std::uint64_t n_runs() const override { return made; }
-  std::uint64_t n_cached() const override { return 0; }
-
-  const std::vector<Factor> &factors() const { return all_factors; }
-  std::vector<Factor> factors_without(const std::string &name) const
-  {
-    std::vector<Factor> result;
-    for (const Factor &f : all_factors)
-      if (f.name != name)
-        result.push_back(f);
-    return result;
-  }
-
   /// Makes the fingerprint of one effect that of another, but for a share.
   void make_alike(const std::string &name, const std::string &other, double share,
                   const std::vector<std::string> &experiments)
@@ -137,7 +97,7 @@ public:
     patterns[name][experiment].second.setZero();
   }
 
-  Eigen::VectorXd mean(const std::string &experiment, const Amplitudes &amplitudes) const
+  Eigen::VectorXd mean(const std::string &experiment, const Amplitudes &amplitudes) const override
   {
     Eigen::VectorXd result = level.at(experiment);
     double crossed = 1.;
@@ -154,91 +114,11 @@ public:
     return result;
   }
 
-  /// Mahalanobis distance from the base model in the chaos of one run of each experiment.
-  double strength(const Amplitudes &amplitudes, const std::vector<std::string> &experiments) const
-  {
-    double square = 0.;
-    for (const std::string &e : experiments) {
-      const Eigen::VectorXd change = mean(e, amplitudes) - mean(e, {});
-      square += half.at(e).triangularView<Eigen::Lower>().solve(change).squaredNorm();
-    }
-    return std::sqrt(square);
-  }
-
-  /// Amplitude of an effect that has this strength.
-  double amplitude_of(const std::string &name, double wanted,
-                      const std::vector<std::string> &experiments, double side = 1.) const
-  {
-    const Factor &f = factor(name);
-    double low = 0., high = 50.;
-    for (int k = 0; k < 60; ++k) {
-      const double middle = 0.5 * (low + high);
-      (strength({{name, f.null_value + side * middle * f.scale}}, experiments) < wanted ? low
-                                                                                        : high) =
-          middle;
-    }
-    return f.null_value + side * low * f.scale;
-  }
-
-  const Factor &factor(const std::string &name) const
-  {
-    for (const Factor &f : all_factors)
-      if (f.name == name)
-        return f;
-    throw std::runtime_error("no factor " + name);
-  }
-
-  /// Means and deviations of repeated measurements of an experiment, with other seeds than any
-  /// study's, and noise of the instrument in shares of each cell's chaos.
-  std::vector<MeasuredCell> measure(const std::string &experiment, const Amplitudes &truth,
-                                    unsigned int repeats, double instrument,
-                                    std::uint32_t seed) const
-  {
-    RandomStream random(seed, 7);
-    const auto n = static_cast<Eigen::Index>(all_cells.at(experiment).size());
-    Eigen::MatrixXd rows(repeats, n);
-    const Eigen::VectorXd chaos = half.at(experiment).rowwise().norm();
-    for (unsigned int r = 0; r < repeats; ++r)
-      rows.row(r) = (value(experiment, truth, 0x80000000u + 100u * seed + r) +
-                     instrument * chaos.cwiseProduct(random.normals(1, n).row(0).transpose()))
-                        .transpose();
-    std::vector<MeasuredCell> result;
-    for (Eigen::Index c = 0; c < n; ++c) {
-      const double m = rows.col(c).mean();
-      const double s =
-          std::sqrt((rows.col(c).array() - m).square().sum() / std::max(1u, repeats - 1));
-      result.push_back({all_cells.at(experiment)[static_cast<std::size_t>(c)], m, s, repeats});
-    }
-    return result;
-  }
-
-  MeasuredData measure(const std::vector<std::string> &fit,
-                       const std::vector<std::string> &held_out, const Amplitudes &truth,
-                       unsigned int repeats, double instrument, std::uint32_t seed) const
-  {
-    MeasuredData data;
-    for (const std::string &e : fit)
-      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed))
-        data.fit.push_back(cell);
-    for (const std::string &e : held_out)
-      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed + 50000))
-        data.held_out.push_back(cell);
-    return data;
-  }
-
 private:
   struct Pattern
   {
     Eigen::VectorXd first, second;
   };
-
-  static std::uint32_t hash(const std::string &text)
-  {
-    std::uint32_t h = 2166136261u;
-    for (const char c : text)
-      h = (h ^ static_cast<unsigned char>(c)) * 16777619u;
-    return h;
-  }
 
   /// Smooth along each observable.
   Eigen::VectorXd smooth_pattern(const std::string &experiment, RandomStream &random) const
@@ -309,7 +189,7 @@ private:
   }
 
   Eigen::VectorXd value(const std::string &experiment, const Amplitudes &amplitudes,
-                        std::uint32_t seed) const
+                        std::uint32_t seed) const override
   {
     std::string text;
     double growth = 1.;
@@ -334,25 +214,18 @@ private:
     return mean(experiment, amplitudes) + std::max(0.5, growth) * (half.at(experiment) * z);
   }
 
-  RunResult outcome(const RunRequest &request) const
+  bool fails(const RunRequest &request) const override
   {
     std::string text = request.experiment;
     for (const auto &[name, amplitude] : request.amplitudes)
       text += name + std::to_string(amplitude);
-    if (RandomStream(request.seed, hash(text) + 5u).uniform() < nature.failures)
-      return std::nullopt;
-    const Eigen::VectorXd v = value(request.experiment, request.amplitudes, request.seed);
-    return std::vector<double>(v.data(), v.data() + v.size());
+    return RandomStream(request.seed, hash(text) + 5u).uniform() < nature.failures;
   }
 
   const Nature nature;
   std::vector<std::string> names;
-  std::map<std::string, std::vector<Cell>> all_cells;
-  std::map<std::string, Eigen::MatrixXd> half;
   std::map<std::string, Eigen::VectorXd> level;
-  std::vector<Factor> all_factors;
   std::map<std::string, std::map<std::string, Pattern>> patterns;
-  std::uint64_t made = 0;
 };
 
 } // namespace test

@@ -22,10 +22,11 @@ sys.path[:0] = [str(CONTRIB / "postprocessing"), str(CONTRIB / "discovery"), str
 
 import discovery_report
 import score as score_script
+from eunoe_report.discovery_charts import envelope_figure, gap_figure
 from eunoe_report.discovery_results import Study
-from eunoe_report.discovery_text import TITLES, verdict_text
+from eunoe_report.discovery_text import TITLES, gap_text, held_out_text, verdict_text
 from eunoe_suite.case import TIERS, Case, make_cases
-from eunoe_suite.score import read, score, wilson
+from eunoe_suite.score import read, read_lines, score, wilson
 from eunoe_suite.strength import Strengths
 from sample_study import CHANGES, make_study
 
@@ -60,6 +61,25 @@ class PageOfAStudy(InFolder):
             folder = self.folder / verdict
             make_study(folder, verdict)
             self.assertIn(words, " ".join(verdict_text(Study(folder))))
+
+    def test_without_held_out_data(self) -> None:
+        make_study(self.folder / "study", "none")
+        study = Study(self.folder / "study")
+        study.content["gaps"]["held-out"] = {"result": "no held-out data"}
+        self.assertIn("No data were held out", held_out_text(study))
+        figure = envelope_figure(study, True)
+        self.assertEqual([t.get_text() for t in figure.axes[0].texts], ["No data were held out."])
+
+    def test_a_gap_that_grows_is_explained(self) -> None:
+        make_study(self.folder / "study", "off catalogue")
+        study = Study(self.folder / "study")
+        self.assertEqual(gap_text(study), "")
+        study.content["gaps"]["fit"]["gap after"] = 3.5
+        study.content["gaps"]["held-out"]["shrink"] = -0.25
+        self.assertIn("larger than before", gap_text(study))
+        self.assertIn("the gap grows by 25", held_out_text(study))
+        labels = [t.get_text() for t in gap_figure(study).axes[0].get_yticklabels()]
+        self.assertIn("data of the fit, with the closest model", labels)
 
     def test_fingerprints_are_the_changes_in_standard_deviations(self) -> None:
         make_study(self.folder / "study", "named")
@@ -141,6 +161,35 @@ class Scores(InFolder):
         self.assertEqual(rates["confident and wrong"], (1, 4))
         self.assertEqual(rates["amplitude within its interval"], (1, 1))
         self.assertIn("1 of 2", (self.folder / "scores_study.md").read_text())
+
+    def test_lines_of_answers(self) -> None:
+        lines = []
+        for number, (kind, verdict, truth, named) in enumerate(
+                [("two", "named", ["a", "b"], ["a"]), ("two", "named", ["a", "b"], ["a", "c"]),
+                 ("two", "off catalogue", ["a", "b"], []), ("deleted", "named", ["a"], ["b"]),
+                 ("single", "off catalogue", ["a"], [])]):
+            lines.append(json.dumps({
+                "case": {"name": str(number), "kind": kind, "seed": number, "study_seed": number,
+                         "strengths": {effect: 4. for effect in truth},
+                         "excluded": truth if kind == "deleted" else [],
+                         "amplitudes": {effect: 1. for effect in truth}},
+                "answer": {"verdict": verdict, "tie": [], "gaps": {"held-out": {}},
+                           "candidates": [{"effect": "a", "confidence": 0.9}],
+                           "amplitudes": [{"effect": effect, "amplitude": 1., "lower": 0.5,
+                                           "upper": 1.5} for effect in named],
+                           "runs": {"asked for": 100}}}))
+        path = self.folder / "answers.jsonl"
+        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        rates = {r.name: (r.hits, r.number) for r in score(read_lines(path)).rates}
+        # A name that is right and not all is incomplete, not wrong; one that is no part of it is wrong.
+        self.assertEqual(rates["confident and wrong"], (2, 5))
+        self.assertEqual(rates["confident and wrong, effect deleted"], (1, 1))
+        self.assertEqual(rates["two effects: both named"], (0, 3))
+        self.assertEqual(rates["two effects: off the catalogue"], (1, 3))
+        self.assertEqual(rates["off the catalogue although it is in it, strength 4 and more"], (1, 1))
+        with contextlib.redirect_stdout(io.StringIO()):
+            self.assertEqual(score_script.main([str(path)]), 0)
+        self.assertTrue((self.folder / "scores_answers.md").exists())
 
     def test_a_truth_that_was_changed_is_not_scored(self) -> None:
         self.add("a", "single", "named", {"cohesion": 1e-4})

@@ -12,7 +12,6 @@ from statistics import median
 from .case import Case
 
 SOMETHING = ("named", "tie", "off catalogue")
-CONFIDENT = 0.8
 
 
 @dataclass
@@ -45,7 +44,12 @@ class Outcome:
 
     @property
     def confidently_wrong(self) -> bool:
-        return self.verdict == "named" and self.named != self.truth
+        """A name is stated, without a tie, that is no part of the truth."""
+        return self.verdict == "named" and bool(self.named - self.truth_in_catalogue)
+
+    @property
+    def truth_in_catalogue(self) -> set[str]:
+        return self.truth - set(self.case.excluded)
 
 
 def read(folder: Path, label: str) -> Outcome | None:
@@ -56,6 +60,17 @@ def read(folder: Path, label: str) -> Outcome | None:
     sealed = json.loads((folder / "sealed" / "truth.json").read_text(encoding="utf-8"))
     case = Case.load(folder)
     assert sealed["effects"] == case.amplitudes, f"{folder}: the sealed truth is another one"
+    return outcome(case, content)
+
+
+def read_lines(path: Path) -> list[Outcome]:
+    """Of a suite that writes cases and answers as lines of JSON."""
+    lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
+    return [outcome(Case(**line["case"]), line["answer"]) for line in lines]
+
+
+def outcome(case: Case, content: dict) -> Outcome:
+    """@param content: of discovery.json, or the parts of it that are scored"""
     candidates = content["candidates"]
     rows = {row["effect"]: row for row in content["amplitudes"]}
     named = set(rows) if content["verdict"] == "named" else set()
@@ -117,13 +132,20 @@ def score(outcomes: list[Outcome]) -> Scores:
                           [o for o in single if o.strength == strength], lambda o: o.detected))
     rates += [
         rate("detection at strength 4 and more", strong, lambda o: o.detected, "at least 95 %"),
-        rate("first name correct at strength 4 and more", strong, lambda o: o.first in o.truth,
+        rate("first name correct at strength 4 and more", strong,
+             lambda o: o.detected and o.first in o.truth,
              "at least 90 %"),
         rate("set covers the truth", answered, lambda o: o.covers, "at least 95 %"),
+        rate("two effects: detected", two, lambda o: o.detected),
+        rate("two effects: first name correct", two, lambda o: o.detected and o.first in o.truth),
+        rate("two effects: off the catalogue", two, lambda o: o.verdict == "off catalogue"),
         rate("two effects: both named", two, lambda o: o.named == o.truth),
         rate("two effects: covered", [o for o in two if o.covering], lambda o: o.covers),
         rate("deleted effect recognised as off the catalogue", deleted,
              lambda o: o.verdict == "off catalogue", "at least 70 %"),
+        rate("off the catalogue although it is in it, strength 4 and more", strong,
+             lambda o: o.verdict == "off catalogue"),
+        rate("confident and wrong, effect deleted", deleted, lambda o: o.confidently_wrong),
         rate("confident and wrong", single + two + deleted, lambda o: o.confidently_wrong, "at most 3 %"),
         rate("amplitude within its interval",
              [o for o in right for _ in o.truth], _covers_amplitudes, "95 %")]

@@ -29,6 +29,15 @@ def _panels(n: int, height: float) -> tuple[Figure, list[Axes]]:
     return figure, list(axes[:n])
 
 
+def _sentence(text: str) -> Figure:
+    """Stands for a picture that has nothing to show."""
+    figure = Figure(figsize=(style.WIDTH, 0.6), layout="constrained")
+    axes = figure.subplots()
+    axes.set_axis_off()
+    axes.text(0.5, 0.5, text, ha="center", va="center")
+    return figure
+
+
 def _draw_band(axes: Axes, x: np.ndarray, rows: list[dict], name: str, colour: str,
                shift: float) -> None:
     """Two standard deviations of single runs about their mean."""
@@ -47,6 +56,8 @@ def _draw_band(axes: Axes, x: np.ndarray, rows: list[dict], name: str, colour: s
 def envelope_figure(study: Study, held_out: bool) -> Figure:
     """Measured cells and the scatter of the model's runs, before and after."""
     groups = study.envelopes(held_out)
+    if not groups:
+        return _sentence("No data were held out." if held_out else "No cells were compared.")
     flagged = set() if held_out else study.flagged()
     figure, panels = _panels(len(groups), 1.55)
     for axes, ((experiment, observable), rows) in zip(panels, groups.items()):
@@ -162,10 +173,10 @@ def gap_figure(study: Study) -> Figure:
     figure = Figure(figsize=(style.WIDTH, 2.), layout="constrained")
     axes = figure.subplots()
     labels = []
+    last = "with the closest model" if study.verdict == "off catalogue" else "after"
     for name in ("fit", "held-out"):
         table = gaps.get(name, {})
-        for key, colour, when in (("gap before", style.BLUE, "before"),
-                                  ("gap after", style.GREEN, "after")):
+        for key, colour, when in (("gap before", style.BLUE, "before"), ("gap after", style.GREEN, last)):
             if key not in table:
                 continue
             axes.barh(len(labels), table[key], color=colour, height=0.66)

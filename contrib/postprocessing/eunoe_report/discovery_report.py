@@ -10,7 +10,8 @@ import numpy as np
 from .discovery_charts import (cosine_figure, envelope_figure, fingerprint_figure, gap_figure,
                                ranking_figure)
 from .discovery_results import Study
-from .discovery_text import (TITLES, detectability_rows, held_out_text, plain, verdict_text)
+from .discovery_text import (TITLES, detectability_rows, gap_text, held_out_text, plain,
+                             verdict_text)
 from .page import Page, preformatted, table
 from .quantities import SPACE, duration, number
 
@@ -102,6 +103,8 @@ def discovery_report(study: Study) -> Page:
         page.figure(gap_figure(study),
                     "Distance between model and measurement, with the part that noise explains taken "
                     f"off; lines: 95{SPACE}% intervals.")
+        if gap_text(study):
+            page.paragraph(gap_text(study))
     if study.envelopes(True):
         page.figure(envelope_figure(study, True),
                     "Held-out experiments, which the study did not look at before the answer stood.")

@@ -106,14 +106,29 @@ def verdict_text(study: Study) -> list[str]:
 
 def held_out_text(study: Study) -> str:
     table = study.content["gaps"].get("held-out", {})
+    if table.get("result", "no held-out data") == "no held-out data":
+        return ("No data were held out, so nothing tests the answer but the data that it was found "
+                "with.")
     if "shrink" not in table or table["shrink"] is None:
-        return f"Held-out data: {table.get('result', 'none')}."
+        return f"Held-out data: {table['result']}."
     low, high = table["shrink interval"]
     chosen = "" if study.verdict != "tie" else (
         f" with {plain(study.content['tie'][0]['effects'])}, the likeliest by a little, added")
-    return (f"On data that were held out, the gap shrinks by {percent(table['shrink'], 0)}{chosen} "
-            f"(95{SPACE}% interval {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
+    change = "shrinks" if table["shrink"] >= 0. else "grows"
+    return (f"On data that were held out, the gap {change} by {percent(abs(table['shrink']), 0)}{chosen} "
+            f"(95{SPACE}% interval of the shrink {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
             f"{table['result']}.")
+
+
+def gap_text(study: Study) -> str:
+    """Why a gap may be larger with an effect than without, if it is; else nothing."""
+    table = study.content["gaps"].get("fit", {})
+    if table.get("gap after", 0.) <= table["gap before"]:
+        return ""
+    return ("With the closest model the gap on the data of the fit is larger than before. That is no "
+            "mistake: the fit weighs patterns by how they scatter together, so that a small deviation "
+            "that runs hardly ever show counts more than a large one that they often show, while the "
+            "gap counts every cell alike. It is one more sign that the catalogue lacks the effect.")
 
 
 def detectability_rows(study: Study) -> list[list[str]]:

@@ -53,8 +53,11 @@ public:
   /// Where the results go.
   std::string output_file(const std::string &name) const { return output_path + "/" + name; }
 
+  /// Where simulations are kept.
+  std::string cache_folder() const;
+
   std::string measured_data = "measured.csv", output_path = "./output";
-  std::string cache_path; ///< as written; empty: in the output folder
+  std::string cache_path; ///< as written; empty: beside the output folder
   std::vector<std::string> effects = {"all"}, excluded_effects, effect_folders;
   StudyOptions options;
   unsigned int ranks_per_run = 1;

@@ -2,59 +2,188 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace eunoe::discovery {
 
 namespace {
 
-/// Modes of all sets of runs of one kind less their mean, a row each.
-Eigen::MatrixXd deviations_of(const std::vector<RunSet> &sets)
+/// Deviations of sets of runs of one model from their mean, in modes, a row each.
+struct Group
+{
+  Eigen::MatrixXd deviations;
+  std::vector<std::uint32_t> seeds;
+};
+
+Group group_of(const std::vector<RunSet> &sets)
 {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(sets.size()), sets.front().modes.size());
-  for (std::size_t r = 0; r < sets.size(); ++r)
+  Group group;
+  for (std::size_t r = 0; r < sets.size(); ++r) {
     rows.row(static_cast<Eigen::Index>(r)) = sets[r].modes.transpose();
-  return centred(rows);
+    group.seeds.push_back(sets[r].seed);
+  }
+  group.deviations = centred(rows);
+  return group;
 }
+
+/// Runs of models other than the base model, and what they are worth beside it. They use its seeds,
+/// and each other's, so that as far as seeds decide what chaos does they say the same many times
+/// over: as much as n / (1 + n rho^2) runs of the base model, for n runs of one seed whose values
+/// have the correlation rho. That is another number in each experiment; where an effect leaves no
+/// trace in one, its runs are those of the base model and say nothing.
+class Others
+{
+public:
+  Others(const Workbench &bench, const Group &base, const Eigen::VectorXd &variance)
+      : block(bench.modes.experiment_of_mode()),
+        n_blocks(1 + *std::max_element(block.begin(), block.end()))
+  {
+    for (std::size_t r = 0; r < base.seeds.size(); ++r)
+      row_of_seed[base.seeds[r]] = static_cast<Eigen::Index>(r);
+    for (const auto &[amplitudes, sets] : bench.runs) {
+      if (amplitudes.empty() || sets.size() < 2)
+        continue;
+      Group group = group_of(sets);
+      // Once their own size of chaos is taken off.
+      const double ratio =
+          (group.deviations.colwise().squaredNorm().transpose().array() / variance.array()).mean() /
+          static_cast<double>(sets.size() - 1);
+      if (!(ratio > 0.))
+        continue;
+      traces.push_back(find_trace(bench, sets));
+      for (const std::uint32_t seed : group.seeds)
+        runs_of_seed[seed] += 1.;
+      group.deviations /= std::sqrt(ratio);
+      groups.push_back(std::move(group));
+    }
+    const Eigen::ArrayXd unit = variance.cwiseSqrt().cwiseInverse();
+    find_correlations(base.deviations * unit.matrix().asDiagonal(), unit);
+  }
+
+  /// All rows, each as large as its share.
+  Eigen::MatrixXd rows() const
+  {
+    Eigen::Index n = 0;
+    for (const Group &group : groups)
+      n += group.deviations.rows();
+    Eigen::MatrixXd result(n, static_cast<Eigen::Index>(block.size()));
+    Eigen::Index row = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (Eigen::Index r = 0; r < groups[g].deviations.rows(); ++r, ++row)
+        for (std::size_t m = 0; m < block.size(); ++m) {
+          const auto k = static_cast<Eigen::Index>(m);
+          result(row, k) =
+              groups[g].deviations(r, k) *
+              std::sqrt(weight(g, groups[g].seeds[static_cast<std::size_t>(r)], block[m]));
+        }
+    return result;
+  }
+
+  /// Degrees of freedom that they are worth in each experiment.
+  Eigen::VectorXd degrees_of_freedom() const
+  {
+    Eigen::VectorXd result = Eigen::VectorXd::Zero(n_blocks);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      const auto n = static_cast<double>(groups[g].seeds.size());
+      for (const std::uint32_t seed : groups[g].seeds)
+        for (int b = 0; b < n_blocks; ++b)
+          result(b) += weight(g, seed, b) * (n - 1.) / n;
+    }
+    return result;
+  }
+
+private:
+  /// Whether the runs differ at all from those of the base model with their seeds.
+  std::vector<bool> find_trace(const Workbench &bench, const std::vector<RunSet> &sets) const
+  {
+    std::vector<bool> trace(static_cast<std::size_t>(n_blocks), false);
+    for (const RunSet &set : sets) {
+      const auto same = row_of_seed.find(set.seed);
+      for (std::size_t m = 0; m < block.size(); ++m) {
+        const auto k = static_cast<Eigen::Index>(m);
+        if (same == row_of_seed.end() ||
+            set.modes(k) != bench.base()[static_cast<std::size_t>(same->second)].modes(k))
+          trace[static_cast<std::size_t>(block[m])] = true;
+      }
+    }
+    return trace;
+  }
+
+  /// @param base deviations in standard deviations
+  /// @param unit that makes deviations such
+  void find_correlations(const Eigen::MatrixXd &base, const Eigen::ArrayXd &unit)
+  {
+    correlation = products = squares = base_squares = Eigen::VectorXd::Zero(n_blocks);
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      std::vector<Eigen::Index> here, there;
+      for (std::size_t r = 0; r < groups[g].seeds.size(); ++r)
+        if (const auto same = row_of_seed.find(groups[g].seeds[r]); same != row_of_seed.end()) {
+          here.push_back(static_cast<Eigen::Index>(r));
+          there.push_back(same->second);
+        }
+      if (here.size() < 2)
+        continue;
+      const Eigen::MatrixXd mine =
+          centred(groups[g].deviations(here, Eigen::all)) * unit.matrix().asDiagonal();
+      const Eigen::MatrixXd theirs = centred(base(there, Eigen::all));
+      for (std::size_t m = 0; m < block.size(); ++m) {
+        const auto k = static_cast<Eigen::Index>(m);
+        if (!traces[g][static_cast<std::size_t>(block[m])])
+          continue;
+        products(block[m]) += mine.col(k).dot(theirs.col(k));
+        squares(block[m]) += mine.col(k).squaredNorm();
+        base_squares(block[m]) += theirs.col(k).squaredNorm();
+      }
+    }
+    for (int b = 0; b < n_blocks; ++b)
+      if (squares(b) > 0. && base_squares(b) > 0.)
+        correlation(b) = std::clamp(products(b) / std::sqrt(squares(b) * base_squares(b)), 0., 1.);
+  }
+
+  double weight(std::size_t group, std::uint32_t seed, int experiment) const
+  {
+    if (!traces[group][static_cast<std::size_t>(experiment)])
+      return 0.;
+    // The base model's own run of the seed is one more.
+    const double n = runs_of_seed.at(seed) - (row_of_seed.count(seed) > 0 ? 0. : 1.);
+    return 1. / (1. + n * correlation(experiment) * correlation(experiment));
+  }
+
+  const std::vector<int> &block; ///< experiment of each mode
+  const int n_blocks;
+  std::vector<Group> groups;
+  std::vector<std::vector<bool>> traces; ///< of each group in each experiment
+  std::map<std::uint32_t, Eigen::Index> row_of_seed;
+  std::map<std::uint32_t, double> runs_of_seed;
+  Eigen::VectorXd correlation, products, squares, base_squares;
+};
 
 } // namespace
 
 void settle_chaos(Workbench &bench)
 {
-  const Eigen::MatrixXd base = deviations_of(bench.base());
-  const auto base_dof = static_cast<double>(base.rows() - 1);
+  const Group base = group_of(bench.base());
+  const auto base_dof = static_cast<double>(base.deviations.rows() - 1);
   const Eigen::VectorXd variance =
-      (base.colwise().squaredNorm().transpose() / base_dof).cwiseMax(1e-6);
+      (base.deviations.colwise().squaredNorm().transpose() / base_dof).cwiseMax(1e-6);
 
-  // Repeated runs of other models say as much of the chaos, once their own size of it is taken off:
-  // there are many more of them than runs of the base model.
-  std::vector<Eigen::MatrixXd> groups = {base};
-  double dof = base_dof;
-  Eigen::Index n_rows = base.rows();
-  for (const auto &[amplitudes, sets] : bench.runs) {
-    if (amplitudes.empty() || sets.size() < 2)
-      continue;
-    const Eigen::MatrixXd rows = deviations_of(sets);
-    const auto own = static_cast<double>(rows.rows() - 1);
-    const double ratio =
-        (rows.colwise().squaredNorm().transpose().array() / variance.array()).mean() / own;
-    if (!(ratio > 0.))
-      continue;
-    groups.push_back(rows / std::sqrt(ratio));
-    dof += own;
-    n_rows += rows.rows();
-  }
-  Eigen::MatrixXd all(n_rows, base.cols());
-  Eigen::Index row = 0;
-  for (const Eigen::MatrixXd &group : groups) {
-    all.middleRows(row, group.rows()) = group;
-    row += group.rows();
-  }
-  bench.chaos = shrunk_covariance(all, dof, bench.modes.experiment_of_mode());
-  bench.chaos_degrees_of_freedom = dof;
+  // Repeated runs of other models tell of the chaos too, and there are many more of them.
+  const Others others(bench, base, variance);
+  const Eigen::VectorXd dof = others.degrees_of_freedom().array() + base_dof;
+  const Eigen::MatrixXd more = others.rows();
+  Eigen::MatrixXd all(base.deviations.rows() + more.rows(), base.deviations.cols());
+  all << base.deviations, more;
+  bench.chaos_degrees_of_freedom = dof.minCoeff();
+  for (Eigen::Index m = 0; m < all.cols(); ++m)
+    all.col(m) *= std::sqrt(bench.chaos_degrees_of_freedom /
+                            dof(bench.modes.experiment_of_mode()[static_cast<std::size_t>(m)]));
+  bench.chaos =
+      shrunk_covariance(all, bench.chaos_degrees_of_freedom, bench.modes.experiment_of_mode());
   // Modes that hardly vary are no better known than the cells that they are made of.
   bench.chaos.matrix.diagonal().array() += 1e-3;
 
-  Eigen::MatrixXd cells(base.rows(), bench.modes.n_cells());
+  Eigen::MatrixXd cells(base.deviations.rows(), bench.modes.n_cells());
   for (Eigen::Index r = 0; r < cells.rows(); ++r)
     cells.row(r) = bench.measured(bench.base()[static_cast<std::size_t>(r)].values)
                        .cwiseQuotient(bench.modes.deviations())

@@ -58,22 +58,46 @@ struct Leader
   Amplitudes amplitudes;
 };
 
-/// The likeliest effects, each at its amplitude in the likeliest set that holds it.
+/// What could be the likeliest sets once their fingerprints are known well, the first first. A
+/// set's evidence suffers from what few runs leave unknown of its fingerprints, which is what
+/// confirming mends: without that share of it, sets of which little is known are not passed over
+/// for "something else". Probabilities are among the sets alone.
+std::vector<Scored> promising(const Workbench &bench, const Posterior &posterior,
+                              const Decision &decision)
+{
+  std::vector<Scored> models = posterior.models;
+  for (Scored &model : models)
+    model.score -= bench.misfit.log_determinant(model.fit.leverage) / decision.temperature;
+  std::stable_sort(models.begin(), models.end(),
+                   [](const Scored &a, const Scored &b) { return a.score < b.score; });
+  double sum = 0.;
+  for (Scored &model : models)
+    sum += model.probability = std::exp(-0.5 * (model.score - models.front().score));
+  for (Scored &model : models)
+    model.probability /= sum;
+  return models;
+}
+
+/// The most promising effects, each at its amplitude in the most promising set that holds it.
 std::vector<Leader> leaders(const Workbench &bench, const Posterior &posterior,
                             const Decision &decision)
 {
+  const std::vector<Scored> models = promising(bench, posterior, decision);
+  std::vector<double> inclusion(bench.effects.size(), 0.);
+  for (const Scored &model : models)
+    for (const std::size_t k : model.fit.effects)
+      inclusion[k] += model.probability;
   std::vector<std::size_t> order(bench.effects.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     order[k] = k;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return posterior.inclusion[a] > posterior.inclusion[b];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return inclusion[a] > inclusion[b]; });
   std::vector<Leader> result;
   for (const std::size_t k : order) {
-    const bool likely = posterior.inclusion[k] >= decision.least_inclusion;
+    const bool likely = inclusion[k] >= decision.least_inclusion;
     if (result.size() >= bench.options.n_leaders || (!likely && result.size() >= 2))
       break;
-    for (const Scored &model : posterior.models) {
+    for (const Scored &model : models) {
       const EffectSet &set = model.fit.effects;
       const auto place = std::find(set.begin(), set.end(), k);
       if (place == set.end())

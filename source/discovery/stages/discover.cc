@@ -1,3 +1,4 @@
+#include <eunoe/discovery/stages/held_out.h>
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>
@@ -76,16 +77,6 @@ private:
   StageStore &store;
   const std::string key;
 };
-
-std::uint64_t held_out_runs(const MeasuredData &data, const StudyOptions &options)
-{
-  std::vector<std::string> experiments;
-  for (const MeasuredCell &cell : data.held_out)
-    if (std::find(experiments.begin(), experiments.end(), cell.cell.experiment) ==
-        experiments.end())
-      experiments.push_back(cell.cell.experiment);
-  return 2ull * options.validate_runs * experiments.size();
-}
 
 /// Without anything detected: whether most effects would have been.
 void decide_without_detection(const Table &screen, Findings &findings)
@@ -191,7 +182,7 @@ Discovery discover(const StudyOptions &options, const MeasuredData &data,
   Workbench bench(options, data, factors, laboratory, log);
   Findings findings;
   findings.confidence.assign(bench.effects.size(), 0.);
-  bench.archive.set_aside(held_out_runs(data, options));
+  bench.archive.set_aside(held_out_runs(data, options, bench.nuisances.size()));
   Course course(bench, store, study_key(options, data, factors));
   course.run("null", [&] { return stage_null(bench); });
   course.run("detect", [&] { return stage_detect(bench, findings); });

@@ -78,6 +78,43 @@ Scored prune(const Workbench &bench, const Findings &findings, const Scored &mod
   return result;
 }
 
+/// Probability that data are as far from a model as these, were it true.
+double p_of_fit(const Findings &findings, const Fit &fit)
+{
+  const double modes = findings.reference.n_modes;
+  return findings.reference.p_distance(
+      fit.distance, std::max(1., modes - static_cast<double>(fit.effects.size())) / modes);
+}
+
+/// Adds an effect to a model that does not describe the data, if the best larger set that holds it
+/// describes them better by more than chance does. A model that is refuted is no alternative,
+/// however simple it is.
+Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &model, Table &steps)
+{
+  const EffectSet &set = model.fit.effects;
+  if (set.empty() || set.size() >= bench.options.max_effects ||
+      p_of_fit(findings, model.fit) > bench.options.level)
+    return model;
+  const auto holds = [&](const Scored &other) {
+    return other.fit.effects.size() == set.size() + 1 &&
+           std::includes(other.fit.effects.begin(), other.fit.effects.end(), set.begin(),
+                         set.end());
+  };
+  const auto &models = findings.posterior.models;
+  const auto larger = std::find_if(models.begin(), models.end(), holds);
+  if (larger == models.end())
+    return model;
+  const double gain = model.fit.deviance - larger->fit.deviance;
+  const double limit = findings.reference.gain_limit(bench.options.level);
+  steps.push_back({{"added to", name_of(bench, set)},
+                   {"makes", name_of(bench, larger->fit.effects)},
+                   {"gain", gain},
+                   {"gain needed", limit},
+                   {"p of the fit before", p_of_fit(findings, model.fit)},
+                   {"p of the fit", p_of_fit(findings, larger->fit)}});
+  return gain > limit ? *larger : model;
+}
+
 } // namespace
 
 Table stage_fit(Workbench &bench, Findings &findings)
@@ -102,10 +139,13 @@ Table stage_iterate(Workbench &bench, Findings &findings)
   for (int round = 0; round < most; ++round) {
     Table steps = Table::array();
     const EffectSet before = findings.chosen.fit.effects;
-    findings.chosen = prune(bench, findings, findings.posterior.best(), steps);
+    Table additions = Table::array();
+    findings.chosen = enlarge(bench, findings,
+                              prune(bench, findings, findings.posterior.best(), steps), additions);
     Table row = {{"effects", name_of(bench, findings.chosen.fit.effects)},
                  {"likeliest", name_of(bench, findings.posterior.best().fit.effects)},
-                 {"deletions tried", steps}};
+                 {"deletions tried", steps},
+                 {"additions tried", additions}};
     const bool settled = findings.chosen.fit.effects == before;
     if (!settled) {
       row["verification"] = verify(bench, findings.chosen.fit, bench.options.fit_runs);
@@ -117,10 +157,7 @@ Table stage_iterate(Workbench &bench, Findings &findings)
       break;
   }
   findings.chosen = find_scored(findings.posterior, findings.chosen.fit.effects);
-  const double modes = findings.reference.n_modes;
-  const auto size = static_cast<double>(findings.chosen.fit.effects.size());
-  findings.p_fit = findings.reference.p_distance(findings.chosen.fit.distance,
-                                                 std::max(1., modes - size) / modes);
+  findings.p_fit = p_of_fit(findings, findings.chosen.fit);
   return {{"rounds", rounds},
           {"p of the fit", findings.p_fit},
           {"models", describe_models(bench, findings.posterior.models)}};
@@ -151,6 +188,15 @@ Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit)
   const Eigen::MatrixXd changes =
       bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
   return changes.transpose() * fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
+}
+
+Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const Fit &fit)
+{
+  const Eigen::MatrixXd changes =
+      bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
+  const Eigen::VectorXd weight = bench.misfit.variance(fit.leverage).cwiseInverse();
+  return Eigen::MatrixXd::Identity(changes.cols(), changes.cols()) -
+         changes.transpose() * weight.asDiagonal() * changes;
 }
 
 } // namespace eunoe::discovery

@@ -99,26 +99,30 @@ std::array<double, 2> nuisance_values(const Factor &nuisance)
 }
 
 /// Changes of the cells by one prior deviation of a nuisance: a row for each seed with runs on both
-/// sides, or, where one side fails, for each run on the other.
+/// sides; where the sides have no seeds in common, for each pair of their runs; and where one side
+/// fails, for each run on the other with a seed of the base model.
 Eigen::MatrixXd changes_by(Workbench &bench, const Factor &nuisance)
 {
   const auto [low, high] = nuisance_values(nuisance);
   const auto &up = bench.runs[{{nuisance.name, high}}], &down = bench.runs[{{nuisance.name, low}}];
   std::vector<Eigen::VectorXd> rows;
-  const auto add = [&](const RunSet &a, const RunSet &b, double step) {
-    if (a.seed == b.seed && step > 0.)
+  const auto add = [&](const RunSet &a, const RunSet &b, double step, bool is_pair) {
+    if (is_pair && step > 0.)
       rows.push_back((bench.measured(a.values) - bench.measured(b.values)) *
                      (nuisance.prior_deviation / step));
   };
   for (const RunSet &a : up)
     for (const RunSet &b : down)
-      add(a, b, high - low);
+      add(a, b, high - low, a.seed == b.seed);
+  if (rows.size() < 2)
+    for (std::size_t k = 0; k < std::min(up.size(), down.size()); ++k)
+      add(up[k], down[k], high - low, up[k].seed != down[k].seed);
   if (rows.size() < 2)
     for (const RunSet &base : bench.base()) {
       for (const RunSet &run : up)
-        add(run, base, high - nuisance.null_value);
+        add(run, base, high - nuisance.null_value, run.seed == base.seed);
       for (const RunSet &run : down)
-        add(base, run, nuisance.null_value - low);
+        add(base, run, nuisance.null_value - low, run.seed == base.seed);
     }
   Eigen::MatrixXd result(static_cast<Eigen::Index>(rows.size()), bench.modes.n_cells());
   for (std::size_t r = 0; r < rows.size(); ++r)

@@ -47,8 +47,10 @@ void decide(const Workbench &, Findings &findings)
   for (const Scored &model : findings.posterior.models)
     if (model.fit.effects.size() == size)
       alike += model.probability;
-  const double off = findings.posterior.off_catalogue, all = alike + off;
-  findings.off_catalogue = off / all;
+  // Other sizes were ruled out by the stages fit and iterate, which says nothing of "something
+  // else".
+  const double off = findings.posterior.off_catalogue, share = alike > 0. ? (1. - off) / alike : 0.;
+  findings.off_catalogue = off;
   findings.confidence.assign(findings.posterior.inclusion.size(), 0.);
   findings.tie.clear();
   double sum = 0.;
@@ -56,7 +58,7 @@ void decide(const Workbench &, Findings &findings)
     if (model.fit.effects.size() != size)
       continue;
     for (const std::size_t k : model.fit.effects)
-      findings.confidence[k] += model.probability / all;
+      findings.confidence[k] += model.probability * share;
     if (sum < decision.credible * alike)
       findings.tie.push_back(model);
     sum += model.probability;

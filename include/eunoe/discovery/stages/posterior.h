@@ -12,7 +12,9 @@ struct Decision
   /// Probability of one, two or three effects of the catalogue, and of something else, given that
   /// something is missing; only their ratios count.
   double prior_of_size[3] = {1., 0.3, 0.1};
-  double prior_off_catalogue = 0.25;
+  /// Small, as a model that fits well needs no unknown effect; one that does not is refuted by its
+  /// fit, not by this.
+  double prior_off_catalogue = 0.06;
   /// What a further amplitude costs in deviance: the width of what is expected over that which the
   /// data leave, -2 log.
   double cost_of_effect = 5.2;
@@ -21,10 +23,11 @@ struct Decision
   /// The joint p-value is multiplied by this: on 150 synthetic laboratories without anything
   /// missing the plain one gave 7 % alarms at a level of 5 %.
   double safety_of_p = 2.;
-  double credible = 0.95;        ///< probability that a tie set covers
-  double off_catalogue = 0.5;    ///< least probability for this verdict
-  double p_of_bad_fit = 0.01;    ///< below: the best model does not describe the data
-  double least_inclusion = 0.02; ///< an effect less likely than this is not confirmed
+  double credible = 0.95;          ///< probability that a tie set covers
+  double off_catalogue = 0.5;      ///< least probability for this verdict
+  double p_of_bad_fit = 0.01;      ///< below: the best model does not describe the data
+  double p_of_bad_held_out = 0.02; ///< the same on held-out data
+  double least_inclusion = 0.02;   ///< an effect less likely than this is not confirmed
 };
 
 /// A set of effects and how likely it is.

@@ -70,6 +70,8 @@ Table describe_amplitudes(const Workbench &bench, const Findings &findings);
 
 /// Best values of the nuisances beside a fit, in prior deviations from their null values.
 Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit);
+/// Their covariance, which is the unit matrix where the data say nothing of them.
+Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const Fit &fit);
 
 /// Means and spreads of base model, chosen model and data per cell.
 Table describe_envelopes(const Workbench &bench, const Findings &findings);

@@ -1,0 +1,85 @@
+// The blind suite on recorded DEM simulations: many studies in which the truth is hidden, a line of
+// JSON each.
+//   recorded-suite [first seed] [seeds] [options] > answers.jsonl
+//   contrib/discovery/score.py answers.jsonl
+// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square (ablations); simulated
+// (studies whose data are recorded simulations, instead of truths at any amplitude); describe (what
+// the table holds, and no study); table=FILE.
+
+#include "recorded_cases.h"
+
+#include <mpi.h>
+
+namespace {
+
+using namespace test;
+
+void describe(const RecordedTable &table)
+{
+  const RecordedLaboratory laboratory(table, 1);
+  for (const auto &[experiment, cells] : table.cells)
+    std::printf("%s: %zu cells, %zu runs of the base model\n", experiment.c_str(), cells.size(),
+                table.of(experiment, "base").size());
+  std::printf("%zu runs, %u failed\n", table.runs.size(), table.n_failed);
+  for (const Factor &factor : table.factors) {
+    std::map<double, int> amplitudes;
+    for (const RecordedTable::Run *run : table.of(table.fit.front(), factor.name))
+      amplitudes[run->amplitude]++;
+    for (const auto &[amplitude, count] : amplitudes)
+      std::printf("%s %g (%d runs): strength %.1f, share of noise %.3f, held out %.1f\n",
+                  factor.name.c_str(), amplitude, count,
+                  laboratory.strength({{factor.name, amplitude}}, table.fit),
+                  laboratory.share_of_noise(factor.name, amplitude, table.fit),
+                  laboratory.strength({{factor.name, amplitude}}, table.held_out));
+  }
+}
+
+void run(const SuiteOptions &options)
+{
+  std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt";
+  bool simulated = false, only_describe = false;
+  for (const std::string &option : options.others) {
+    if (option == "simulated")
+      simulated = true;
+    else if (option == "describe")
+      only_describe = true;
+    else if (option.rfind("table=", 0) == 0)
+      path = option.substr(6);
+    else
+      throw std::runtime_error("unknown option " + option);
+  }
+  const RecordedTable table(path);
+  if (only_describe)
+    return describe(table);
+  for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
+    const std::uint32_t seed = options.first_seed + k;
+    if (simulated) {
+      for (const auto &left_out : simulated_data(table)) {
+        const RecordedStudy study = simulated_study(table, left_out, seed, options.study);
+        print_outcome(study.one, study.discovery);
+      }
+      continue;
+    }
+    for (const StudyKind &kind : standard_kinds())
+      if (options.wants(kind) && kind.kind != "confounded") {
+        const RecordedStudy study = interpolated_study(table, kind, seed, options.study);
+        print_outcome(study.one, study.discovery);
+      }
+  }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  MPI_Init(&argc, &argv);
+  int code = 0;
+  try {
+    run(SuiteOptions(argc, argv));
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    code = 1;
+  }
+  MPI_Finalize();
+  return code;
+}

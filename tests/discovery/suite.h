@@ -1,0 +1,183 @@
+#ifndef eunoe_tests_discovery_suite_h
+#define eunoe_tests_discovery_suite_h
+
+// Blind suites on laboratories that cost nothing: hidden truths, their data, a study of each, and
+// what it answered, one line of JSON a study. contrib/discovery/score.py makes the tables.
+
+#include "known_laboratory.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+
+namespace test {
+
+/// Studies of one sort.
+struct StudyKind
+{
+  std::string kind; ///< none, single, two, deleted, confounded
+  double strength = 0.;
+  unsigned int n_truths = 0;
+};
+
+inline const std::vector<StudyKind> &standard_kinds()
+{
+  static const std::vector<StudyKind> kinds = {
+      {"none"},       {"single", 2., 1},  {"single", 4., 1},    {"single", 8., 1},
+      {"two", 6., 2}, {"deleted", 8., 1}, {"confounded", 8., 1}};
+  return kinds;
+}
+
+/// One hidden truth.
+struct SuiteCase
+{
+  std::string kind;
+  std::uint32_t seed = 1;
+  std::map<std::string, double> strengths; ///< of the effects, below zero for those below null
+  Amplitudes truth;                        ///< with the nuisances
+  std::vector<std::string> excluded;       ///< deleted from the catalogue
+  double clearness = 0.;                   ///< of the truth, in standard errors of the measurement
+};
+
+/// What the command line of a suite asks for.
+struct SuiteOptions
+{
+  std::uint32_t first_seed = 1, n_seeds = 10;
+  StudyOptions study;
+  std::string only; ///< beginning of the kinds, "single 4"
+  std::vector<std::string> others;
+
+  SuiteOptions(int argc, char **argv)
+  {
+    if (argc > 1)
+      first_seed = static_cast<std::uint32_t>(std::atoi(argv[1]));
+    if (argc > 2)
+      n_seeds = static_cast<std::uint32_t>(std::atoi(argv[2]));
+    for (int k = 3; k < argc; ++k) {
+      const std::string option = argv[k];
+      if (option == "no-common-random-numbers")
+        study.common_random_numbers = false;
+      else if (option == "no-confirmation")
+        study.confirm = false;
+      else if (option == "chi-square")
+        study.bootstrap = false;
+      else if (option.rfind("only=", 0) == 0)
+        only = option.substr(5);
+      else
+        others.push_back(option);
+    }
+  }
+
+  bool wants(const StudyKind &kind) const
+  {
+    char text[40];
+    std::snprintf(text, sizeof text, "%s %g", kind.kind.c_str(), kind.strength);
+    return std::string(text).rfind(only, 0) == 0;
+  }
+};
+
+/// Draws which effects are missing and how much of each; their amplitudes have the kind's strength.
+/// Nuisances are drawn from their distributions.
+inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &kind,
+                           const std::vector<std::string> &fit, std::uint32_t seed,
+                           RandomStream &random)
+{
+  SuiteCase one;
+  one.kind = kind.kind;
+  one.seed = seed;
+  std::vector<std::string> effects;
+  for (const Factor &f : laboratory.factors())
+    if (f.kind == Factor::Kind::effect)
+      effects.push_back(f.name);
+  for (unsigned int tries = 0; one.strengths.size() < kind.n_truths && tries < 100; ++tries) {
+    const Factor &f = laboratory.factor(effects[random.index(effects.size())]);
+    const bool below =
+        f.sign == Factor::Sign::below || (f.sign == Factor::Sign::both && random.uniform() < 0.5);
+    const double amplitude = laboratory.amplitude_of(f.name, kind.strength, fit, below ? -1. : 1.);
+    if (one.strengths.count(f.name) > 0 || amplitude < f.lower || amplitude > f.upper)
+      continue; // too weak in its range
+    one.strengths[f.name] = below ? -kind.strength : kind.strength;
+    one.truth[f.name] = amplitude;
+  }
+  if (kind.kind == "deleted" && !one.strengths.empty())
+    one.excluded = {one.strengths.begin()->first};
+  for (const Factor &f : laboratory.factors())
+    if (f.kind == Factor::Kind::nuisance)
+      one.truth[f.name] = f.null_value + f.prior_deviation * random.normal();
+  return one;
+}
+
+/// Sets of effects that the last stage that compared any found likeliest.
+inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &stages)
+{
+  constexpr std::size_t most = 6;
+  nlohmann::ordered_json models = nlohmann::ordered_json::array();
+  if (stages.contains("iterate"))
+    for (const auto &row : stages["iterate"]["models"])
+      if (models.size() < most)
+        models.push_back(row);
+  return models;
+}
+
+/// What a study answered beside the truth: a line that eunoe_suite/score.py reads.
+inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
+{
+  const auto &c = discovery.content;
+  nlohmann::ordered_json amplitudes = nlohmann::ordered_json::object();
+  for (const auto &[name, strength] : one.strengths)
+    amplitudes[name] = one.truth.at(name);
+  char name[80];
+  std::snprintf(name, sizeof name, "%s_%g_%u", one.kind.c_str(),
+                one.strengths.empty() ? 0. : std::abs(one.strengths.begin()->second), one.seed);
+  nlohmann::ordered_json held_out = nlohmann::ordered_json::object();
+  for (const auto &[key, value] : c["gaps"]["held-out"].items())
+    if (key != "envelopes")
+      held_out[key] = value;
+  nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
+  for (const auto &row : c["candidates"])
+    candidates.push_back({{"effect", row["effect"]}, {"confidence", row["confidence"]}});
+  const auto &screen = c["stages"]["screen"], &detect = c["stages"]["detect"];
+  const nlohmann::ordered_json line = {
+      {"case",
+       {{"name", name},
+        {"kind", one.kind},
+        {"seed", one.seed},
+        {"study_seed", one.seed},
+        {"strengths", one.strengths},
+        {"excluded", one.excluded},
+        {"amplitudes", amplitudes}}},
+      {"answer",
+       {{"verdict", c["verdict"]},
+        {"clearness of the truth", one.clearness},
+        {"p of nothing missing", c["p of nothing missing"]},
+        {"p of distance", detect["p of distance"]},
+        {"p of largest deviation", detect["p of largest deviation"]},
+        {"p of largest gain", screen["p of largest gain"]},
+        {"confidence off catalogue", c["confidence off catalogue"]},
+        {"candidates", candidates},
+        {"amplitudes", c["amplitudes"]},
+        {"p of the fit", c["p of the fit"]},
+        {"tie", c["tie"]},
+        {"models", likeliest_models(c["stages"])},
+        {"gaps", {{"fit", c["gaps"]["fit"]}, {"held-out", held_out}}},
+        {"runs", c["runs"]}}}};
+  std::printf("%s\n", line.dump().c_str());
+  std::fflush(stdout);
+}
+
+/// The study of a case; its seed is that of the case, so that no two share a run.
+inline Discovery study_of(const SuiteCase &one, KnownLaboratory &laboratory,
+                          const MeasuredData &data, const StudyOptions &options)
+{
+  Log log(MPI_COMM_SELF, true);
+  TransientStore store;
+  const std::vector<Factor> factors = one.excluded.empty()
+                                          ? laboratory.factors()
+                                          : laboratory.factors_without(one.excluded.front());
+  return discover(options, data, factors, laboratory, store, log);
+}
+
+} // namespace test
+
+#endif
