@@ -20,6 +20,27 @@ namespace {
 
 using Triangulation = dealii::parallel::distributed::Triangulation<3>;
 
+/// deal.II asks for the particles of every cell at each search, and its mapping prepares for those
+/// of cells that have none, too: in a mesh of 40,000 cells that took a tenth of a second.
+class ParticleMapping : public dealii::MappingQ1<3>
+{
+public:
+  using Points = dealii::ArrayView<const dealii::Point<3>>;
+
+  std::unique_ptr<dealii::Mapping<3>> clone() const override
+  {
+    return std::make_unique<ParticleMapping>(*this);
+  }
+
+  void transform_points_real_to_unit_cell(
+      const Triangulation::cell_iterator &cell, const Points &points,
+      const dealii::ArrayView<dealii::Point<3>> &unit) const override
+  {
+    if (points.size() > 0)
+      dealii::MappingQ1<3>::transform_points_real_to_unit_cell(cell, points, unit);
+  }
+};
+
 /// Refines the cells that meet the box around a region's mesh by more than a face; collective.
 void refine(Triangulation &triangulation, const RefinementParameters::Region &region)
 {
@@ -130,7 +151,7 @@ void Domain::measure_cells()
   if (mesh_data->has_boxes)
     mesh_data->mapping = std::make_unique<dealii::MappingCartesian<3>>();
   else
-    mesh_data->mapping = std::make_unique<dealii::MappingQ1<3>>();
+    mesh_data->mapping = std::make_unique<ParticleMapping>();
 }
 
 Domain::~Domain() = default;

@@ -149,7 +149,6 @@ int main(int argc, char **argv)
   shapes();
   bounces("16 facets", 2, Vec3(), "");
   bounces("32 facets", 3, Vec3(), "");
-  bounces("64 facets", 4, Vec3(), "");
   bounces("shifted", 3, {0.02, -0.03, 0.04}, " set initial translation = 0.02, -0.03, 0.04\n");
   drum();
 }

@@ -14,7 +14,7 @@ namespace {
 constexpr unsigned int cells = 6;
 constexpr double radius = 0.3, skin = 0.1;
 
-/// A plate of triangles, 0 <= x, y <= 6, folded upwards at x = 4.
+/// A plate of triangles, 0 <= x, y <= 6, folded upright at x = 4.
 TriangleMesh folded_plate()
 {
   TriangleMesh mesh;
@@ -38,12 +38,10 @@ double distance_to_border(const Vec3 &x)
                   norm({beyond_x, std::min(std::abs(x.y), std::abs(x.y - 6.)), x.z}));
 }
 
-/// Distance to the half beyond the fold, which rises by 45 degrees.
+/// Distance to the half beyond the fold, which stands upright.
 double distance_to_upper_half(const Vec3 &x)
 {
-  const double beyond_y = std::max({0., -x.y, x.y - 6.});
-  const double along = std::max(0., 0.5 * (x.x - 4. + x.z));
-  return norm({x.x - 4. - along, beyond_y, x.z - along});
+  return norm({x.x - 4., std::max({0., -x.y, x.y - 6.}), std::min(0., x.z)});
 }
 
 /// Uniform numbers between two bounds.
