@@ -20,8 +20,9 @@ namespace {
 
 using Triangulation = dealii::parallel::distributed::Triangulation<3>;
 
-/// deal.II asks for the particles of every cell at each search, and its mapping prepares for those of
-/// cells that have none, too: most of the time of a search in a mesh of many more cells than particles.
+/// deal.II asks for the particles of every cell at each search, and its mapping prepares for those
+/// of cells that have none, too: most of the time of a search in a mesh of many more cells than
+/// particles.
 class ParticleMapping : public dealii::MappingQ1<3>
 {
 public:
