@@ -82,7 +82,7 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
   upper_corner = to_vec3(bounding_box.get_boundary_points().second);
   MeshBoundary boundary(triangulation);
   const std::set<unsigned int> periodic = join_periodic_ends(boundaries, boundary.sides());
-  triangulation.refine_global(background.mesh.refinement);
+  triangulation.refine_global(global_refinement(triangulation, background.mesh));
   for (const RefinementParameters::Region &region : background.refinement.regions)
     refine(triangulation, region);
   measure_cells();

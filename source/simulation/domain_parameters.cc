@@ -23,17 +23,25 @@ void MeshParameters::declare(dealii::ParameterHandler &prm)
 {
   for (const std::string &name : path)
     prm.enter_subsection(name);
-  declare::choice(prm, "type", type, "dealii|gmsh",
-                  "Origin of the background mesh: a generator of deal.II, or a Gmsh file of "
-                  "hexahedra.");
+  declare::choice(prm, "type", type, "dealii|gmsh|lethe",
+                  "Origin of the background mesh: a generator of deal.II, a Gmsh file of "
+                  "hexahedra, or one of Lethe's own cylinders.");
   prm.add_parameter("file name", file, "gmsh: the file.");
   prm.add_parameter("grid type", grid_type,
-                    "dealii: name of the generator, for example subdivided_hyper_rectangle.");
+                    "dealii: name of the generator, for example subdivided_hyper_rectangle; lethe: "
+                    "cylinder_classic, cylinder_balanced, cylinder_squared or "
+                    "cylinder_regularized.");
   prm.add_parameter("grid arguments", grid_arguments,
-                    "dealii: arguments of the generator, separated by ':'.");
+                    "dealii: arguments of the generator, separated by ':'; lethe: layers of cells "
+                    "along x : radius : half the length (m).");
   prm.add_parameter("initial refinement", refinement,
                     "Number of times that every cell is cut into eight.",
                     declare::Patterns::Integer(0, 12));
+  prm.add_parameter("enable target size", has_target,
+                    "Whether the mesh is refined by 'target size' instead.");
+  prm.add_parameter("target size", target_size,
+                    "Cells are cut until one more cut would make the diagonal of the smallest less "
+                    "than this (m).");
   placement.declare(prm);
   for (std::size_t k = 0; k < path.size(); ++k)
     prm.leave_subsection();
@@ -43,6 +51,8 @@ void MeshParameters::check(const ParameterCheck &check) const
 {
   check.require(type != "gmsh" || file != "none", path, "file name",
                 "is missing while the type is 'gmsh'.", "Name the mesh file.");
+  check.require(!has_target || (target_size > 0. && std::isfinite(target_size)), path,
+                "target size", "is " + format(target_size) + ".", "Give a positive length.");
   placement.check(check, path);
 }
 

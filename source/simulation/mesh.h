@@ -34,6 +34,16 @@ constexpr double most_cells = 1e9;
 /// Makes the mesh before its refinement. Throws a UserError that says why it cannot be made.
 void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh);
 
+/// Makes one of Lethe's cylinders along x around the origin; the side has the boundary id 0, the
+/// ends at the lower and the upper x have 1 and 2.
+/// @param kind "cylinder_classic", ...: how a section is cut into cells
+void create_cylinder(dealii::Triangulation<3> &triangulation, const std::string &kind,
+                     unsigned int n_layers, double radius, double half_length);
+
+/// How often all cells of a mesh are to be cut into eight. Throws a UserError if it gets too large.
+unsigned int global_refinement(const dealii::Triangulation<3> &triangulation,
+                               const MeshParameters &mesh);
+
 /// Smallest distance of a cell of this rank from what lies beyond its neighbours, at least (m).
 double smallest_distance_of_cells_apart(const Domain::Mesh &mesh, const PeriodicBox &periods);
 

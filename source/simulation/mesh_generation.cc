@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace eunoe {
@@ -36,6 +37,10 @@ std::string first_line_of_message(const std::exception &error)
 /// Number of cells of a mesh before its refinement as far as it can be known beforehand, else 1.
 double count_coarse_cells(const MeshParameters &mesh)
 {
+  if (mesh.type == "lethe") {
+    constexpr double most_of_a_layer = 16.;
+    return most_of_a_layer * std::strtod(mesh.grid_arguments.c_str(), nullptr);
+  }
   if (mesh.type == "gmsh" || mesh.grid_type.compare(0, 17, "subdivided_hyper_") != 0)
     return 1.;
   std::istringstream stream(mesh.grid_arguments.substr(0, mesh.grid_arguments.find(':')));
@@ -47,12 +52,11 @@ double count_coarse_cells(const MeshParameters &mesh)
 }
 
 /// Refuses what would fill the memory before anything else could be said of it.
-void check_size(const MeshParameters &mesh)
+void check_size(const MeshParameters &mesh, const double coarse, const unsigned int refinement)
 {
   // Every rank holds the coarse cells, about a kilobyte each.
   constexpr double most_coarse = 1e7;
-  const double coarse = count_coarse_cells(mesh);
-  const double cells = coarse * std::pow(8., mesh.refinement);
+  const double cells = coarse * std::pow(8., refinement);
   if (coarse > most_coarse || cells > most_cells)
     throw UserError(describe(mesh.path, "") + ": the mesh would have " + format(cells) +
                     " cells, " + format(coarse) + " of them before the refinement. Give at most " +
@@ -90,6 +94,29 @@ private:
   const Placement placement;
 };
 
+void create_lethe_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh)
+{
+  const std::set<std::string> kinds = {"cylinder_classic", "cylinder_balanced", "cylinder_squared",
+                                       "cylinder_regularized"};
+  if (kinds.count(mesh.grid_type) == 0)
+    throw UserError(describe(mesh.path, "grid type") + ": '" + mesh.grid_type +
+                    "' is none of Lethe's own meshes that are known here. Give cylinder_classic, "
+                    "cylinder_balanced, cylinder_squared or cylinder_regularized.");
+  std::vector<double> numbers;
+  try {
+    numbers = dealii::Utilities::string_to_double(
+        dealii::Utilities::split_string_list(mesh.grid_arguments, ':'));
+  } catch (const std::exception &) {
+    numbers.clear();
+  }
+  if (numbers.size() != 3 || !(numbers[0] >= 1.) || numbers[0] != std::floor(numbers[0]) ||
+      !(numbers[1] > 0.) || !(numbers[2] > 0.))
+    throw UserError(describe(mesh.path, "grid arguments") + ": is '" + mesh.grid_arguments +
+                    "'. Give layers of cells along x : radius : half the length, all positive.");
+  create_cylinder(triangulation, mesh.grid_type, static_cast<unsigned int>(numbers[0]), numbers[1],
+                  numbers[2]);
+}
+
 void place(dealii::Triangulation<3> &triangulation, const Placement &placement)
 {
   if (placement.is_identity())
@@ -114,7 +141,7 @@ void place(dealii::Triangulation<3> &triangulation, const Placement &placement)
 
 void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh)
 {
-  check_size(mesh);
+  check_size(mesh, count_coarse_cells(mesh), mesh.has_target ? 0 : mesh.refinement);
   try {
     if (mesh.type == "gmsh") {
       std::ifstream stream(mesh.file);
@@ -124,7 +151,9 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
       dealii::GridIn<3> reader;
       reader.attach_triangulation(triangulation);
       reader.read_msh(stream);
-    } else
+    } else if (mesh.type == "lethe")
+      create_lethe_mesh(triangulation, mesh);
+    else
       dealii::GridGenerator::generate_from_name_and_arguments(triangulation, mesh.grid_type,
                                                               mesh.grid_arguments);
   } catch (const UserError &) {
@@ -137,6 +166,18 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
                          : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));
   }
   place(triangulation, mesh.placement);
+}
+
+unsigned int global_refinement(const dealii::Triangulation<3> &triangulation,
+                               const MeshParameters &mesh)
+{
+  if (!mesh.has_target)
+    return mesh.refinement;
+  const double ratio = dealii::GridTools::minimal_cell_diameter(triangulation) / mesh.target_size;
+  const double times = std::max(0., std::floor(std::log2(ratio)));
+  const auto refinement = static_cast<unsigned int>(std::min(times, 60.));
+  check_size(mesh, static_cast<double>(triangulation.n_global_active_cells()), refinement);
+  return refinement;
 }
 
 } // namespace eunoe

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace eunoe {
 
@@ -114,9 +115,12 @@ void Simulation::write_summary()
   balance -= lost.mass;
   balance -= taken.mass;
   std::uint64_t left = 0;
-  for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o) {
-    const Tally out = ledger.through_outlet[o].global(comm);
-    const std::string name = "outlet_" + std::to_string(domain.outlets()[o].boundary_id);
+  std::map<unsigned int, Tally> through_boundary;
+  for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o)
+    through_boundary[domain.outlets()[o].boundary_id] += ledger.through_outlet[o];
+  for (const auto &[id, tally] : through_boundary) {
+    const Tally out = tally.global(comm);
+    const std::string name = "outlet_" + std::to_string(id);
     summary[name + "_particles"] = out.number;
     summary[name + "_mass"] = out.mass.value();
     balance -= out.mass;

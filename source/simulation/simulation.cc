@@ -361,7 +361,7 @@ void Simulation::insert_if_due()
         if (row < system.particles.n_owned)
           removed.push_back(row);
       }
-  insertion->survey({domain, system.particles, leaving});
+  insertion->survey({domain, system.particles, leaving, solids, present_time});
   Delivery delivery;
   delivery.particles = insertion->next(next_id);
   exchange(delivery, removed);

@@ -33,6 +33,8 @@ subsection mesh
   set grid type                           = hyper_rectangle
   set grid arguments                      = 0, 0, 0 : 0.1, 0.1, 0.1 : true
   set initial refinement                  = 2
+  set initial boundary refinement         = 1
+  set boundaries refined                  = 0, 1
   set expand particle-wall contact search = false
 end
 
@@ -232,6 +234,8 @@ void print_problems(const std::string &text)
   Parameters::read(text, "case.prm", {}, problems);
   for (const Problem &problem : problems.all())
     test::print("refused: " + problem.text());
+  for (const Problem &warning : problems.warnings())
+    test::print("taken: " + warning.text());
 }
 
 } // namespace
@@ -253,5 +257,7 @@ int main(int argc, char **argv)
   print_problems("subsection model parameters\n set solver type = dem_mp\nend\n");
   print_problems("subsection mesh\n set simplex = true\nend\n");
   print_problems("subsection insertion info\n set list temperatures = 300\nend\n");
+  print_problems("subsection mesh\n set type = cylinder\n set grid type = balanced\n"
+                 " set grid arguments = 4 : 0.01 : 0.02\nend\n");
   return 0;
 }

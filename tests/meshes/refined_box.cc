@@ -78,6 +78,18 @@ Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullp
   return particle_table(*test_case);
 }
 
+/// Number of cells of a box of 3 x 4 x 12 m, whose diagonal is 13 m, refined by a target size.
+std::uint64_t cells_for(double target_size)
+{
+  std::ostringstream entries;
+  entries << " set enable target size = true\n set target size = " << target_size << "\n";
+  Case test_case(control(1e-5, 1e-5) + generated_mesh("hyper_rectangle",
+                                                      "0, 0, 0 : 3, 4, 12 : true", 5,
+                                                      entries.str()),
+                 MPI_COMM_WORLD);
+  return test_case->get_domain().n_cells();
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -103,4 +115,7 @@ int main(int argc, char **argv)
     check("all particles are there", refined.size() == 400);
     check("the same bits as with a plain mesh on one rank", refined == plain || !is_first_rank());
   }
+  check("target size: not coarser than the mesh is", cells_for(20.) == 1);
+  check("target size: cut until the next cut would pass it",
+        cells_for(6.4) == 8 && cells_for(3.3) == 8 && cells_for(3.2) == 64);
 }

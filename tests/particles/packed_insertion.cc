@@ -136,6 +136,64 @@ void test_too_many()
         message.find("could not be packed into the box without overlap") != std::string::npos);
 }
 
+/// The walls of a mesh that is no box, and a solid within it.
+void test_walls_and_solids()
+{
+  const double half_length = 5e-3, wide = 6e-3;
+  const Box block = {{-1e-3, -2e-3, -2e-3}, {1e-3, 2e-3, 2e-3}};
+  Case drum(case_of_packing(1000,
+                            " set insertion box points coordinates = -5e-3,-6e-3,-6e-3 : "
+                            "5e-3,6e-3,6e-3\n",
+                            R"(
+    subsection mesh
+      set grid type = subdivided_cylinder
+      set grid arguments = 2 : 6e-3 : 5e-3
+      set initial refinement = 1
+    end
+    subsection model parameters
+      subsection contact detection
+        set neighborhood threshold = 1.2
+      end
+    end
+    subsection solid objects
+      subsection solid surfaces
+        set number of solids = 1
+        subsection solid object 0
+          subsection mesh
+            set type = shape
+            set grid type = box
+            set grid arguments = -1e-3, -2e-3, -2e-3 : 1e-3, 2e-3, 2e-3
+          end
+        end
+      end
+    end
+)"));
+  drum.run([&](Simulation &simulation) {
+    if (simulation.step_number() != 0)
+      return;
+    const Result r = look_at(simulation);
+    check("drum: none overlaps another", r.number == 1000 && r.largest_overlap <= 0.);
+    bool on_axis = true, in_radius = true, beside = true;
+    for (const auto &p : particle_table(simulation)) {
+      const Vec3 x = {p[c_x], p[c_y], p[c_z]};
+      on_axis = on_axis && std::abs(x.x) + p[c_radius] <= half_length + 1e-15;
+      in_radius = in_radius && std::hypot(x.y, x.z) + p[c_radius] <= wide;
+      // Some are in the block, which is hollow.
+      Vec3 nearest;
+      double to_face = wide;
+      for (unsigned int d = 0; d < 3; ++d) {
+        nearest[d] = std::min(std::max(x[d], block.lower[d]), block.upper[d]);
+        to_face = std::min({to_face, x[d] - block.lower[d], block.upper[d] - x[d]});
+      }
+      beside = beside && (to_face > 0. ? to_face : norm(x - nearest)) >= p[c_radius];
+    }
+    check("drum: between its ends", on_axis);
+    check("drum: within its side", in_radius);
+    check("drum: none overlaps the block", beside);
+    print_fingerprint(r);
+  });
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -144,5 +202,6 @@ int main(int argc, char **argv)
   test_box();
   test_periods();
   test_acceptance();
+  test_walls_and_solids();
   test_too_many();
 }

@@ -12,6 +12,7 @@
 namespace eunoe {
 
 class Domain;
+struct Solid;
 
 /// What an insertion finds where its particles are to come.
 struct Surroundings
@@ -19,6 +20,8 @@ struct Surroundings
   const Domain &domain;
   const ParticleArrays &particles;  ///< with ghosts
   const std::vector<bool> &leaving; ///< those that are taken out before, by their rows
+  const std::vector<Solid> &solids; ///< and walls, where they are
+  double time;                      ///< (s)
 };
 
 /// `subsection insertion info`.

@@ -23,6 +23,8 @@ struct MeshParameters : public ParameterSection
   std::string grid_type = "hyper_cube";
   std::string grid_arguments = "-1 : 1 : false";
   unsigned int refinement = 0;
+  bool has_target = false; ///< refined as often as the target size asks for instead
+  double target_size = 1.; ///< of the cells (m)
   Placement placement;
 
   explicit MeshParameters(const ParameterCheck::Path &path = {"mesh"}) : path(path) {}

@@ -21,6 +21,13 @@ struct Tally
     mass += m;
   }
 
+  Tally &operator+=(const Tally &other)
+  {
+    number += other.number;
+    mass += other.mass;
+    return *this;
+  }
+
   /// Sum over all ranks; collective.
   Tally global(MPI_Comm comm) const
   {

@@ -5,6 +5,8 @@
 #include <eunoe/particles/insertion.h>
 #include <eunoe/simulation/domain.h>
 
+#include "obstacles.h"
+
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -12,7 +14,7 @@
 namespace eunoe {
 namespace {
 
-/// Spheres that overlap in a box, pushed apart until none does.
+/// Spheres that overlap in a box, pushed apart and out of solids until none does.
 ///
 /// Their overlaps are springs, whose energy falls to zero by FIRE (Bitzek, Koskinen, Gaehler,
 /// Moseler, Gumbsch 2006), in steps of a pseudo-time. Every rank knows all spheres and computes the
@@ -22,9 +24,12 @@ class Packing
 {
 public:
   /// @param acceptance positive at places where a centre may be
+  /// @param holds whether a place is in the mesh
   Packing(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
-          std::function<double(const Vec3 &)> acceptance, MPI_Comm comm)
-      : lower(lower), upper(upper), box(box), acceptance(std::move(acceptance)), comm(comm)
+          std::function<double(const Vec3 &)> acceptance, std::function<bool(const Vec3 &)> holds,
+          const std::vector<Solid> &solids, MPI_Comm comm)
+      : lower(lower), upper(upper), box(box), acceptance(std::move(acceptance)),
+        holds(std::move(holds)), obstacles(solids), comm(comm)
   {
   }
 
@@ -52,6 +57,8 @@ private:
   const Vec3 lower, upper;
   const PeriodicBox box;
   const std::function<double(const Vec3 &)> acceptance;
+  const std::function<bool(const Vec3 &)> holds;
+  Obstacles obstacles;
   MPI_Comm comm;
   double largest = 0.; ///< radius (m)
   std::vector<double> radius;
@@ -76,7 +83,7 @@ Vec3 Packing::accepted(const Vec3 &from, Vec3 to, const double r) const
   for (unsigned int tries = 0; tries < 5; ++tries) {
     const double value = acceptance(to);
     if (value > 0.)
-      return to;
+      return holds(to) ? to : from;
     Vec3 gradient;
     for (unsigned int d = 0; d < 3; ++d) {
       Vec3 shift;
@@ -98,14 +105,14 @@ void Packing::scatter(const unsigned int seed, const ParticleId first_id)
     for (std::uint32_t t = 0;; ++t) {
       if (t == most_tries)
         throw UserError("subsection 'insertion info' / subsection 'insertion acceptance function': "
-                        "it is positive hardly anywhere in the insertion box. Correct the "
-                        "expression, or move the box.");
+                        "hardly any place of the insertion box is in the mesh and has a positive "
+                        "value. Correct the expression, or move the box.");
       Vec3 x;
       for (unsigned int d = 0; d < 3; ++d)
         x[d] = lower[d] +
                (upper[d] - lower[d]) * uniform(seed, Draw::packing, first_id + k, 3 * t + d);
       position[k] = inside(x, radius[k]);
-      if (acceptance(position[k]) > 0.)
+      if (acceptance(position[k]) > 0. && holds(position[k]))
         break;
     }
   }
@@ -142,6 +149,7 @@ void Packing::find_neighbours()
     if (j >= begin && j < end)
       neighbours[j - begin].push_back(static_cast<std::int32_t>(i));
   }
+  obstacles.search(position, radius, begin, end, margin * largest + skin);
   searched = position;
 }
 
@@ -160,6 +168,9 @@ double Packing::compute_forces()
       sum += distance > 0. ? (touch / distance - 1.) * away
                            : Vec3{0., 0., (static_cast<std::int32_t>(k) < n ? -1. : 1.) * touch};
     }
+    double depth = 0.;
+    sum += obstacles.push(k - begin, position[k], (1. + margin) * radius[k], depth);
+    worst = std::max(worst, depth / radius[k]);
     force[k] = sum;
   }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, comm);
@@ -289,6 +300,10 @@ public:
 
   void survey(const Surroundings &surroundings) override
   {
+    solids.clear();
+    std::copy_if(surroundings.solids.begin(), surroundings.solids.end(), std::back_inserter(solids),
+                 [&](const Solid &solid) { return solid.is_active(surroundings.time); });
+    domain = &surroundings.domain;
     const PeriodicBox &box = surroundings.domain.periods();
     for (unsigned int d = 0; d < 3; ++d) {
       const double tolerance = 1e-9 * box.length[d];
@@ -311,7 +326,8 @@ public:
     const bool takes_all = parameters.acceptance == "1";
     Packing packing(
         parameters.box_lower, parameters.box_upper, periods,
-        [&](const Vec3 &x) { return takes_all ? 1. : acceptance.value(0, x, 0.); }, comm);
+        [&](const Vec3 &x) { return takes_all ? 1. : acceptance.value(0, x, 0.); },
+        [this](const Vec3 &x) { return domain->contains(x); }, solids, comm);
     const std::vector<Vec3> places = packing.pack(radii(next_id), parameters.seed, next_id);
     const auto [begin, end] = share_of(n, comm);
     for (std::size_t k = begin; k < end; ++k) {
@@ -340,6 +356,8 @@ private:
   ParticleSupply particles;
   MPI_Comm comm;
   PeriodicBox periods;
+  std::vector<Solid> solids; ///< those that act
+  const Domain *domain = nullptr;
 };
 
 const InsertionRegistry::Registration registration(

@@ -86,7 +86,7 @@ private:
   {
     std::array<double, 4> key; ///< the same on any number of ranks, by which cells are ordered
     Vec3 centre, half;         ///< half the widths of a box, or of the largest one in the cell (m)
-    Vec3 slack;                ///< largest shift from the centre in each direction (m)
+    Vec3 slack;                ///< largest shift from a box's centre in each direction (m)
     Vec3 place;                ///< of the particle (m)
     bool is_free = false;
   };
@@ -114,7 +114,9 @@ private:
       cut.centre = cut.place = to_vec3(cell->center());
       for (unsigned int d = 0; d < 3; ++d) {
         cut.half[d] = 0.5 * cell->extent_in_direction(d);
-        cut.slack[d] = std::max(0., cut.half[d] - 0.5 * largest_diameter());
+        // In a cell that is no box a particle stays where it surely fits.
+        cut.slack[d] =
+            domain.mesh().has_boxes ? std::max(0., cut.half[d] - 0.5 * largest_diameter()) : 0.;
       }
       found.push_back(cut);
     }
