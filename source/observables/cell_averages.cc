@@ -111,7 +111,7 @@ using Ranges =
 class CellPatches : public dealii::DataOutInterface<3, 3>
 {
 public:
-  void add(const Cell &cell, const Averages &a)
+  void add(const Cell &cell, const Averages &a, const Domain &domain)
   {
     Patch<3, 3> patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
@@ -120,7 +120,7 @@ public:
                                           a.fraction,   a.number,     a.awake};
     patch.data.reinit(static_cast<unsigned int>(values.size()), cell->n_vertices());
     for (const unsigned int v : cell->vertex_indices()) {
-      patch.vertices[v] = cell->vertex(v);
+      patch.vertices[v] = to_point(domain.to_space(to_vec3(cell->vertex(v))));
       for (unsigned int c = 0; c < values.size(); ++c)
         patch.data(c, v) = static_cast<float>(values[c]);
     }
@@ -154,12 +154,12 @@ public:
 
   void draw(Simulation &simulation) override
   {
-    const auto &triangulation = simulation.get_domain().mesh().triangulation;
+    const Domain &domain = simulation.get_domain();
     const std::vector<std::vector<Row>> rows = rows_of_cells(simulation);
     CellPatches patches;
-    for (const auto &cell : triangulation.active_cell_iterators())
+    for (const auto &cell : domain.mesh().triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
-        patches.add(cell, Averages(rows[cell->active_cell_index()], cell->measure()));
+        patches.add(cell, Averages(rows[cell->active_cell_index()], cell->measure()), domain);
     pictures->write(simulation.time(), patches);
   }
 

@@ -7,7 +7,7 @@ namespace eunoe {
 
 namespace {
 
-constexpr int tag_build = 311, tag_update = 312, tag_flags = 313;
+constexpr int tag_build = 311, tag_update = 312, tag_flags = 313, tag_paired = 314;
 /// Doubles a ghost when it is made (all that is constant, then the state) and at every step.
 constexpr std::size_t build_size = 14, update_size = 9;
 
@@ -110,10 +110,52 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     particles.type[row] = static_cast<std::int32_t>(v[13]);
     *ghosts[g].row = static_cast<std::int32_t>(row);
   }
-  include_all();
+  include_sleepers();
 }
 
-void Halo::include_all()
+void Halo::leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs)
+{
+  if (neighbours.empty())
+    return;
+  std::vector<std::uint8_t> is_paired(particles.size(), 0);
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    is_paired[pairs.i[k]] = is_paired[pairs.j[k]] = 1;
+  // Those who got the ghosts tell those who sent them.
+  for (Neighbour &neighbour : neighbours) {
+    neighbour.out.clear();
+    for (const std::int32_t row : neighbour.received)
+      neighbour.out.push_back(is_paired[row]);
+    neighbour.in.resize(neighbour.sent.size());
+  }
+  exchange(tag_paired);
+  const auto keep = [](std::vector<std::int32_t> &rows, const std::vector<double> &wanted) {
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      if (wanted[k] != 0.)
+        rows[n++] = rows[k];
+    rows.resize(n);
+  };
+  for (Neighbour &neighbour : neighbours) {
+    keep(neighbour.received, neighbour.out);
+    keep(neighbour.sent, neighbour.in);
+  }
+  neighbours.erase(std::remove_if(neighbours.begin(), neighbours.end(),
+                                  [](const Neighbour &neighbour) {
+                                    return neighbour.sent.empty() && neighbour.received.empty();
+                                  }),
+                   neighbours.end());
+  include_sleepers();
+}
+
+std::size_t Halo::n_ghosts() const
+{
+  std::size_t n = 0;
+  for (const Neighbour &neighbour : neighbours)
+    n += neighbour.received.size();
+  return n;
+}
+
+void Halo::include_sleepers()
 {
   for (Neighbour &neighbour : neighbours) {
     neighbour.sent_awake = neighbour.sent;

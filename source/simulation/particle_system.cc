@@ -41,8 +41,8 @@ void ParticleSystem::forget_contacts()
 void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)
 {
   sparse.update(particles, pairs, solid_contacts, halo, stirring);
-  // All ghosts, those too who have just fallen asleep.
-  halo.include_all();
+  // Those ghosts, too, who have just fallen asleep.
+  halo.include_sleepers();
   halo.update(particles);
   leave_out_sleepers();
 }
@@ -246,6 +246,7 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   pairs.clear(model.history_size());
   grid.find_pairs(particles, skin + model.range(), pairs);
   pairs.trim();
+  halo.leave_out_unpaired(particles, pairs);
   make_room_for_contacts();
   solid_contacts.search(particles, solids, skin + model.range());
   return origins;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -88,9 +89,10 @@ void Simulation::write_summary()
   summary["steps"] = step;
   summary["first_step"] = first_step;
   summary["ranks"] = n_ranks;
-  std::uint64_t ghosts = system.particles.n_ghosts;
-  MPI_Allreduce(MPI_IN_PLACE, &ghosts, 1, MPI_UINT64_T, MPI_SUM, comm);
-  summary["ghosts"] = ghosts;
+  std::array<std::uint64_t, 2> ghosts = {system.particles.n_ghosts, system.n_paired_ghosts()};
+  MPI_Allreduce(MPI_IN_PLACE, ghosts.data(), 2, MPI_UINT64_T, MPI_SUM, comm);
+  summary["ghosts"] = ghosts[0];
+  summary["ghosts_in_pairs"] = ghosts[1];
   summary["time_step"] = parameters.control.time_step;
   summary["simulated_time"] = present_time;
   summary["particle_steps"] = particle_steps;

@@ -25,14 +25,15 @@ TOLERANCE = 3e-6
 CELL_FIELDS = ("velocity", "granular_temperature", "solid_fraction", "particles")
 
 
-def run(program: str, folder: Path, ranks: int) -> None:
+def run(program: str, folder: Path, ranks: int, settings: tuple[str, ...] = ()) -> None:
     launch = []
     if ranks > 1:
         launch = ["mpirun", "-np", str(ranks), "--oversubscribe", "--bind-to", "none"]
         if os.geteuid() == 0:
             launch.append("--allow-run-as-root")
-    subprocess.run([*launch, program, str(CASE), "--quiet", "--set",
-                    f"simulation control/output path = {folder}"], check=True)
+    settings = (f"simulation control/output path = {folder}", *settings)
+    options = [word for setting in settings for word in ("--set", setting)]
+    subprocess.run([*launch, program, str(CASE), "--quiet", *options], check=True)
 
 
 def last(folder: Path, name: str, fields: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -116,6 +117,31 @@ def check_contacts(folder: Path) -> None:
             close(force, data["normal_force"][k], "force per contact")
 
 
+def check_moving_mesh(program: str, folder: Path) -> None:
+    """A mesh that turns by a right angle and 0.2 while a particle rests in its middle."""
+    angle = math.pi / 2 + 0.2
+    lists = [f"insertion info/list {axis} = 1e-3" for axis in "xyz"]
+    lists += [f"insertion info/list velocity {axis} = 0" for axis in "xyz"]
+    run(program, folder, 1, ("DEM boundary conditions/boundary condition 0/type = fixed_wall",
+                             "insertion info/list diameters = 1e-3", *lists,
+                             "grid motion/motion type = rotational", "grid motion/grid rotational axis = 2",
+                             f"grid motion/grid rotational speed = {angle / 1e-3}",
+                             "simulation control/iteration end = 1000",
+                             "simulation control/output frequency = 1000"))
+    data = last(folder, "out_cells", ("particles",))
+    corners = 1e-2 * np.array([(x, y) for x in (-1, 1) for y in (-1, 1)])
+    turned = corners @ np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    far = np.linalg.norm(data["points"][:, :2], axis=1) > 1.41e-2
+    for corner in turned:
+        nearest = np.linalg.norm(data["points"][far][:, :2] - corner, axis=1).min()
+        assert nearest < 1e-8, f"no cell at {corner}"
+    # The particle stays where it is, and the cell that comes to it has it.
+    holds = data["particles"] == 1
+    assert np.count_nonzero(holds) == 8
+    centre = data["points"][holds].mean(axis=0)
+    assert np.linalg.norm(centre - 1e-3) < 5e-3, f"the particle's cell is at {centre}"
+
+
 def main(program: str, folder: Path) -> int:
     for ranks in (1, 2):
         run(program, folder / str(ranks), ranks)
@@ -125,6 +151,7 @@ def main(program: str, folder: Path) -> int:
     for place, fields in one.items():
         for name, value in fields.items():
             assert (value == two[place][name]).all(), f"{name} in {place} differs on two ranks"
+    check_moving_mesh(program, folder / "moving")
     print("ok")
     return 0
 

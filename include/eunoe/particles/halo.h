@@ -2,6 +2,7 @@
 #define eunoe_particles_halo_h
 
 #include <eunoe/contact/contact_grid.h>
+#include <eunoe/contact/pair_list.h>
 #include <eunoe/particles/particle_store.h>
 
 #include <mpi.h>
@@ -19,14 +20,20 @@ public:
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double gap);
 
+  /// From now on takes in only ghosts of pairs, about half of them; collective.
+  void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
+
+  /// Number that is taken in unless it sleeps.
+  std::size_t n_ghosts() const;
+
   /// Brings position, velocity and spin of the ghosts up to date; collective.
   void update(ParticleArrays &particles);
 
   /// Gives the ghosts the flags of their originals, one a particle; collective.
   void update(std::vector<std::uint8_t> &flags);
 
-  /// From now on takes in all again.
-  void include_all();
+  /// From now on takes in sleepers again.
+  void include_sleepers();
   /// From now on leaves out those who sleep, whose state does not change.
   void leave_out_sleepers(const ParticleArrays &particles);
 

@@ -130,6 +130,8 @@ public:
   bool moves() const { return motion != nullptr; }
   /// A place in the frame of the mesh, in which its cells are at rest.
   Vec3 to_own_frame(const Vec3 &x) const { return in_frame(pose, x); }
+  /// A place of that frame in space.
+  Vec3 to_space(const Vec3 &x) const { return motion ? pose.rotation.apply(x) + pose.centre : x; }
   /// Where the mesh was when `passed_outlet` begins to look.
   ///@{
   const RigidState &earlier_pose() const { return earlier; }

@@ -66,6 +66,8 @@ public:
 
   /// Brings the ghosts up to date; collective.
   void update_ghosts() { halo.update(particles); }
+  /// Of this rank: those that are brought up to date.
+  std::size_t n_paired_ghosts() const { return halo.n_ghosts(); }
 
   /// Puts to sleep and wakes, then brings the ghosts up to date; collective.
   void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
