@@ -36,16 +36,10 @@ class Case:
         return self.length > bed.LENGTH
 
     def mesh(self) -> tuple[str, int]:
-        """Arguments of Eunoe's background mesh and how often it is refined: cells of about 1/6 mm.
-
-        Large beds need a coarse mesh of few cells, as every rank holds and orders all of these.
-        """
-        corners = f"0, 0, 0 : {self.length}, {bed.HEIGHT}, {self.depth} : true"
-        refinement = 2 if self.copies % 2 == 0 else 0
-        cells = [round(size * 6e3) >> refinement for size in (self.length, bed.HEIGHT, self.depth)]
-        if refinement == 0:
-            cells[1] = 37  # as in settled_bed.prm
-        return f"{cells[0]}, {cells[1]}, {cells[2]} : {corners}", refinement
+        """Arguments of Eunoe's background mesh and how often it is refined: as in settled_bed.prm, cells
+        of 1 mm that are cut twice. Ranks get compact parts, as the curve through these cells is."""
+        cells = ", ".join(str(round(1e3 * size)) for size in (self.length, bed.HEIGHT, self.depth))
+        return f"{cells} : 0, 0, 0 : {self.length}, {bed.HEIGHT}, {self.depth} : true", 2
 
 
 CASES = {case.name: case for case in (
