@@ -4,8 +4,9 @@
 Usage: contrib/utilities/predict_scaling.py output/my_run/spreading_00042.vtu [--ranks 64,128,...]
        contrib/utilities/predict_scaling.py --length-factor 0.5714 --depth 2e-3 --layers 20
            [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
-           [--ranks-per-node 64] [--speeds 2e4:10.5e6,2e5:7.3e6] [--ghost 0.25] [--search 4] [--interval 60]
-           [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--compare] [--json FILE]
+           [--ranks-per-node 64] [--speeds 2e4:17.4e6,2e5:8.6e6] [--ghost 0.22] [--paired 0.6] [--search 8]
+           [--interval 160]
+           [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--skin 0.13] [--compare] [--json FILE]
 
 The particles are those of a picture of a run, or of the paper's apparatus with W1 to W4 times the
 length factor. The mesh is cut as the program cuts it, with the given weights of a cell and a
@@ -13,8 +14,8 @@ particle. doc/performance.md explains the columns and the costs.
 
 --steps    of the whole run: adds core-hours
 --reach    distance (m) of a particle's centre to a cell of another rank within which that rank has it
-           as a ghost; otherwise that of the program, each particle's radius, the largest one, and a
-           skin of a tenth of the largest diameter
+           as a ghost; otherwise that of the program: each particle's radius, the largest one, and
+--skin     a share of the largest diameter, 0.13 in prm/spreading
 --compare  instead shows what each piece (rank) of the picture really holds beside the prediction for
            that number of ranks
 """
@@ -48,13 +49,14 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--layers", type=int, default=20)
     parser.add_argument("--ranks", default="1,2,4,8,16,32,64,128,256,512,1024,2048,4096")
     parser.add_argument("--steps", type=float)
-    for name in ("latency", "bandwidth", "copy", "ghost", "search", "interval"):
+    for name in ("latency", "bandwidth", "copy", "ghost", "paired", "search", "interval"):
         parser.add_argument(f"--{name}", type=float, default=getattr(costs, name))
     parser.add_argument("--ranks-per-node", type=int, default=costs.ranks_per_node)
     parser.add_argument("--speeds", default=",".join(f"{n:g}:{s:g}" for n, s in costs.speeds))
     parser.add_argument("--cell-weight", type=int, default=20)
     parser.add_argument("--particle-weight", type=int, default=2000)
     parser.add_argument("--reach", type=float)
+    parser.add_argument("--skin", type=float, default=0.13)
     parser.add_argument("--compare", action="store_true")
     parser.add_argument("--json", type=Path)
     options = parser.parse_args()
@@ -75,9 +77,9 @@ def costs_of(options: argparse.Namespace) -> Costs:
             raise ValueError
     except ValueError:
         raise Failure(f"--speeds {options.speeds}: give particles:speed pairs, as in "
-                      "2e4:10.5e6,2e5:7.3e6.") from None
-    return replace(Costs(), speeds=speeds, ghost=options.ghost, search=options.search,
-                   interval=options.interval, latency=options.latency,
+                      "2e4:17.4e6,2e5:8.6e6.") from None
+    return replace(Costs(), speeds=speeds, ghost=options.ghost, paired=options.paired,
+                   search=options.search, interval=options.interval, latency=options.latency,
                    bandwidth=options.bandwidth, copy=options.copy, ranks_per_node=options.ranks_per_node)
 
 
@@ -120,7 +122,8 @@ def main() -> int:
         place = apparatus.apparatus(options.length_factor, options.depth)
         mesh, points = apparatus.mesh_of(place), apparatus.powder(place, options.layers)
         diameters = apparatus.sizes(len(points))
-    filling = Filling(mesh, points, reach_of(diameters) if options.reach is None else options.reach)
+    reach = reach_of(diameters, options.skin) if options.reach is None else options.reach
+    filling = Filling(mesh, points, reach)
     occupied = np.count_nonzero(filling.counts)
     print(f"{len(points)} particles; mesh of {' x '.join(map(str, mesh.cells))} cells, refined "
           f"{mesh.refinement} times from {int(np.prod(mesh.trees))}; {occupied} cells with particles,"

@@ -135,7 +135,7 @@ class Ghosts(unittest.TestCase):
 
     def test_the_reach_of_the_program(self):
         # Both radii, a tenth of the largest diameter, and the range; then 0.1 per thousand.
-        np.testing.assert_allclose(reach_of(np.array([1., 2.]), 0.05) / 1.0001,
+        np.testing.assert_allclose(reach_of(np.array([1., 2.]), 0.1, 0.05) / 1.0001,
                                    [0.5 + 1. + 0.25, 1. + 1. + 0.25])
 
     def test_against_the_definition(self):
@@ -188,7 +188,7 @@ class SettledBed(unittest.TestCase):
     def test_ghosts_of_the_benchmark(self):
         table = np.loadtxt(BED, delimiter=",", skiprows=1) * 1e-6
         # DMT is cut off at a tenth of the pull-off force: Hamaker's constant 4e-19 J, 2 x 0.35 mJ/m2.
-        reach = reach_of(table[:, 0], (4e-19 / 6. / (2. * np.pi * 7e-4) / 0.1) ** 0.5)
+        reach = reach_of(table[:, 0], 0.1, (4e-19 / 6. / (2. * np.pi * 7e-4) / 0.1) ** 0.5)
         for trees, refinement, expected in (((24, 37, 6), 0, [3222, 6650]),
                                             ((4, 6, 1), 3, [2698, 7094])):
             mesh = Mesh(trees, (0., 0., 0.), (4e-3, 6e-3, 1e-3), refinement, (False, False, True))
@@ -220,11 +220,12 @@ class Cost(unittest.TestCase):
 
     def test_messages_on_a_node_and_between_nodes(self):
         part = self.part(2)
-        inside = message_seconds(part, Costs(ranks_per_node=2, latency=1., copy=1., bandwidth=1e30))
-        between = message_seconds(part, Costs(ranks_per_node=1, latency=1., copy=1e30,
+        inside = message_seconds(part, Costs(ranks_per_node=2, paired=0.5, latency=1., copy=1.,
+                                            bandwidth=1e30))
+        between = message_seconds(part, Costs(ranks_per_node=1, paired=0.5, latency=1., copy=1e30,
                                               bandwidth=2.))
-        np.testing.assert_allclose(inside, 1. + 100. * GHOST_BYTES)
-        np.testing.assert_allclose(between, 1. + 100. * GHOST_BYTES / 2.)
+        np.testing.assert_allclose(inside, 1. + 50. * GHOST_BYTES)
+        np.testing.assert_allclose(between, 1. + 50. * GHOST_BYTES / 2.)
 
     def test_speed_between_the_measured_sizes(self):
         costs = Costs(speeds=((1e4, 10e6), (1e6, 6e6)))

@@ -9,7 +9,6 @@ import math
 
 import numpy as np
 
-from .ghosts import SKIN_SHARE
 from .mesh import Mesh
 
 SLOPE = math.tan(math.radians(35.))
@@ -42,7 +41,7 @@ def apparatus(length_factor: float, depth: float) -> dict[str, float]:
 
 def mesh_of(a: dict[str, float], largest: float = LARGEST) -> Mesh:
     """The background mesh that the process makes over an apparatus, for the largest diameter (m)."""
-    width = max(1.5 * largest, 1.02 * (1. + SKIN_SHARE) * largest)
+    width = 1.5 * largest  # a skin of less than 0.47 of it does not count
     lengths = (a["x_end"], a["y_top"] - a["y_bottom"], a["depth"])
     cells = [max(1, int(length / width)) for length in lengths]
     refinement = 0

@@ -17,17 +17,19 @@ class Costs:
     """Seconds and bytes; doc/performance.md says how they were measured.
 
     `speeds`: particle-steps/s of a core by the particles that it owns, as fewer fit better into its
-    caches. `ghost`: work for a ghost over that for an own particle. `search`: what a search costs
+    caches. `ghost`: work for a ghost over that for an own particle; `paired`: share of the ghosts
+    that are in listed pairs, which alone are sent at every step. `search`: what a search costs
     in steps of the same particles; `interval`: steps between searches; `collectives`: operations
     among all ranks in a search. `step_allreduces`: those in every step. `bandwidth` is that of a
     node to others, in each direction, shared by its ranks; `copy` that of a rank to another one of
     its node.
     """
 
-    speeds: tuple[tuple[float, float], ...] = ((2e4, 10.5e6), (2e5, 7.3e6))
-    ghost: float = 0.25
-    search: float = 4.
-    interval: float = 60.
+    speeds: tuple[tuple[float, float], ...] = ((2e4, 17.4e6), (2e5, 8.6e6))
+    ghost: float = 0.22
+    paired: float = 0.6
+    search: float = 8.
+    interval: float = 160.
     collectives: int = 40
     step_allreduces: int = 1
     latency: float = 1.5e-6
@@ -68,11 +70,12 @@ def message_seconds(partition: Partition, costs: Costs) -> np.ndarray:
     seconds = costs.latency * partition.neighbours.astype(float)
     for end in (sender, receiver):
         copied = np.bincount(end[inside], number[inside], n_ranks)
-        seconds += 0.5 * GHOST_BYTES * copied / costs.copy
+        seconds += 0.5 * costs.paired * GHOST_BYTES * copied / costs.copy
     n_nodes = -(-n_ranks // per_node)
     traffic = np.maximum(*(np.bincount(end[~inside] // per_node, number[~inside], n_nodes)
                            for end in (sender, receiver)))
-    return seconds + GHOST_BYTES * traffic[np.arange(n_ranks) // per_node] / costs.bandwidth
+    return (seconds + costs.paired * GHOST_BYTES * traffic[np.arange(n_ranks) // per_node]
+            / costs.bandwidth)
 
 
 def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
@@ -100,5 +103,5 @@ def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
     return Prediction(n_ranks, float(total[slowest]),
                       {name: float(values[slowest]) for name, values in parts.items()},
                       alone * (1. + searches) / (n_ranks * float(total[slowest])),
-                      GHOST_BYTES * float(partition.sent.mean()),
-                      GHOST_BYTES * float(partition.sent.max()), float(memory.max()))
+                      costs.paired * GHOST_BYTES * float(partition.sent.mean()),
+                      costs.paired * GHOST_BYTES * float(partition.sent.max()), float(memory.max()))

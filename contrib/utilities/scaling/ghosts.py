@@ -9,15 +9,15 @@ import numpy as np
 from .mesh import Mesh
 
 DIRECTIONS = [offset for offset in product((-1, 0, 1), repeat=3) if offset != (0, 0, 0)]
-SKIN_SHARE = 0.1  # of the largest diameter, as `neighborhood threshold` = 1.1 makes it
 CHUNK = 1 << 18  # particles that are looked at together, which bounds the memory
 
 
-def reach_of(diameters: np.ndarray, cohesion: float = 0.) -> np.ndarray:
+def reach_of(diameters: np.ndarray, skin: float, cohesion: float = 0.) -> np.ndarray:
     """How far from its centre each particle is needed (m): up to the largest particle's centre at a
-    gap of the skin and of the range of cohesion, and the program's 0.1 per thousand more. DMT of
-    prm/spreading acts over 12 nm, which hardly changes a number of ghosts."""
-    gap = SKIN_SHARE * float(diameters.max()) + cohesion
+    gap of the skin (a share of the largest diameter) and of the range of cohesion (m), and the
+    program's 0.1 per thousand more. DMT of prm/spreading acts over 12 nm, which hardly changes a
+    number of ghosts."""
+    gap = skin * float(diameters.max()) + cohesion
     return 1.0001 * (0.5 * diameters + 0.5 * float(diameters.max()) + gap)
 
 
