@@ -117,6 +117,7 @@ struct Ignored
 const std::vector<Ignored> &ignored()
 {
   static const std::string of_fluids = "is for flows of fluids.";
+  static const std::string of_heat = "is for heat between particles.";
   static const std::string of_tables = "is not needed: what is recorded is in tables.";
   static const std::vector<Ignored> list = {
       {no_section, {"print parameters"}, "is not needed: used.prm holds all parameters."},
@@ -127,6 +128,7 @@ const std::vector<Ignored> &ignored()
         "respect capillary time-step constraint", "capillary time-step ratio", "subdivision",
         "output qcriterion", "output vorticity", "output velocity gradient"},
        of_fluids},
+      {control, {"output boundaries"}, "is not needed: cell averages draw the mesh."},
       {control, {"log precision"}, "is not needed."},
       {control, {"group files"}, "is not needed: every picture is one file a rank."},
       {{"timer"}, {}, "is not needed: summary.json has the times of all parts of the program."},
@@ -151,7 +153,25 @@ const std::vector<Ignored> &ignored()
        "is not needed: particles sleep one by one, and those that are free to fall move."},
       {insertion,
        {"insertion plane threshold distance"},
-       "is not needed: a cell takes a particle if it is empty."}};
+       "is not needed: a cell takes a particle if it is empty."},
+      {insertion, {"list temperatures"}, of_heat},
+      {{"insertion info", "initial temperature function"}, {}, of_heat},
+      {type,
+       {"thermal conductivity particles", "specific heat particles", "microhardness particles",
+        "surface slope particles", "surface roughness particles", "thermal accommodation particles",
+        "real young modulus particles"},
+       of_heat},
+      {properties,
+       {"thermal conductivity wall", "microhardness wall", "surface slope wall",
+        "surface roughness wall", "thermal accommodation wall", "real young modulus wall",
+        "thermal conductivity gas", "specific heat gas", "specific heats ratio gas",
+        "molecular mean free path gas"},
+       of_heat},
+      {{"solid objects", "solid surfaces", "solid object *"}, {"thermal boundary type"}, of_heat},
+      {{"solid objects", "solid surfaces", "solid object *", "temperature"}, {}, of_heat},
+      {{"solid objects", "solid volumes"}, {}, "has no effect, as in Lethe."},
+      {{"solid objects", "solid volumes", "*"}, {}, "has no effect."},
+      {{"solid objects", "solid volumes", "*", "*"}, {}, "has no effect."}};
   return list;
 }
 
@@ -169,7 +189,6 @@ const std::vector<Refused> &refused()
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},
       {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
-      {insertion, "list temperatures", "", heat + " Remove the entry."},
       {{"floating grid"}, "end time", "0", "Give the grid as a solid, in 'solid objects'."}};
   return list;
 }

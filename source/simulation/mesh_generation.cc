@@ -7,6 +7,7 @@
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
+#include "../core/deal_ii_message.h"
 #include "mesh.h"
 
 #include <algorithm>
@@ -19,20 +20,6 @@
 namespace eunoe {
 
 namespace {
-
-/// What went wrong inside deal.II, without its stack trace.
-std::string first_line_of_message(const std::exception &error)
-{
-  const auto *const exception = dynamic_cast<const dealii::ExceptionBase *>(&error);
-  if (exception == nullptr)
-    return error.what();
-  std::ostringstream text;
-  exception->print_info(text);
-  std::string line = text.str();
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  const std::size_t begin = line.find_first_not_of(' ');
-  return begin == std::string::npos ? "unknown reason" : line.substr(begin);
-}
 
 /// Number of cells of a mesh before its refinement as far as it can be known beforehand, else 1.
 double count_coarse_cells(const MeshParameters &mesh)
@@ -160,7 +147,7 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
     throw;
   } catch (const std::exception &error) {
     throw UserError(describe(mesh.path, "") + ": the mesh cannot be made (" +
-                    first_line_of_message(error) + "). Check " +
+                    deal_ii_message(error) + "). Check " +
                     (mesh.type == "gmsh"
                          ? "that " + mesh.file + " is a Gmsh file of hexahedra."
                          : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));

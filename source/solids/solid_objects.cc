@@ -39,6 +39,8 @@ TriangleMesh make_mesh(const SolidObject &object, MPI_Comm comm)
   TriangleMesh mesh;
   if (object.type == "gmsh")
     mesh = read_gmsh(object.file, comm);
+  else if (object.type == "dealii")
+    mesh = generate_surface(object.shape, object.arguments, object.refinement);
   else {
     ShapeArguments arguments(object.arguments);
     mesh = named_shapes().make(object.shape, arguments);
@@ -65,11 +67,12 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
     SolidObject &object = objects[k];
     prm.enter_subsection(object_section(k));
     prm.enter_subsection("mesh");
-    declare::choice(prm, "type", object.type, "gmsh|shape",
-                    "Origin of the surface: a Gmsh file of triangles, or a shape made in code.");
+    declare::choice(prm, "type", object.type, "gmsh|shape|dealii",
+                    "Origin of the surface: a Gmsh file of triangles, a shape made in code, or a "
+                    "generator of deal.II, in the plane z = 0 or hyper_sphere.");
     prm.add_parameter("file name", object.file, "gmsh: the file.");
-    declare::choice(prm, "grid type", object.shape, named_shapes().names(),
-                    "shape: which one (see 'grid arguments').");
+    prm.add_parameter("grid type", object.shape,
+                      "shape: which one (see 'grid arguments'). dealii: name of the generator.");
     prm.add_parameter(
         "grid arguments", object.arguments,
         "shape: its arguments (m). plane: corner : edge : edge. box: lower : upper. "
@@ -77,7 +80,10 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
         "lower end of the rim : axis to the face : radius : facets. half_round_bar: "
         "start of the lowest line : length in z : radius : height : facets. "
         "flat_blade: start of the front lower edge : length in z : thickness : "
-        "height.");
+        "height. dealii: those of the generator.");
+    prm.add_parameter("initial refinement", object.refinement,
+                      "dealii: number of times that every cell is cut into four.",
+                      declare::Patterns::Integer(0, 8));
     prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
     object.placement.declare(prm);
     prm.leave_subsection();
@@ -102,6 +108,10 @@ void SolidObjectParameters::check(const ParameterCheck &check) const
     const auto path = path_of(k, "mesh");
     check.require(object.type != "gmsh" || object.file != "none", path, "file name",
                   "is missing while the type is 'gmsh'.", "Name the file, or set type = shape.");
+    check.require(object.type != "shape" || named_shapes().has(object.shape), path, "grid type",
+                  "is '" + object.shape + "', which is no shape.",
+                  "Give one of " + named_shapes().names() +
+                      ", or set type = dealii for a generator of deal.II.");
     check.require(object.simplex, path, "simplex", "is false.",
                   "Surfaces of solids are made of triangles: set it to true.");
     object.placement.check(check, path);

@@ -256,7 +256,12 @@ int main(int argc, char **argv)
   print_problems("set dimension = 2\n");
   print_problems("subsection model parameters\n set solver type = dem_mp\nend\n");
   print_problems("subsection mesh\n set simplex = true\nend\n");
-  print_problems("subsection insertion info\n set list temperatures = 300\nend\n");
+  print_problems(
+      "subsection insertion info\n set list temperatures = 300\nend\n"
+      "subsection lagrangian physical properties\n subsection particle type 0\n"
+      "  set specific heat particles = 1000\n end\n set thermal conductivity gas = 0.01\n"
+      "end\nsubsection solid objects\n subsection solid volumes\n"
+      "  set number of solids = 0\n end\nend\n");
   print_problems("subsection mesh\n set type = cylinder\n set grid type = balanced\n"
                  " set grid arguments = 4 : 0.01 : 0.02\nend\n");
   return 0;

@@ -4,6 +4,7 @@
 
 #include "../tests.h"
 
+#include <fstream>
 #include <map>
 
 using namespace test;
@@ -129,6 +130,62 @@ void test_weighting()
   check_close("more fines", small / n, share, 4. * std::sqrt(share * (1. - share) / n));
 }
 
+/// A table in a file, in every form that it may have. Reference: its integrals.
+void test_tables()
+{
+  {
+    std::ofstream stream("sizes.txt");
+    stream << "diameter; cumulative\n40e-6; 0.2\n60e-6; 0.5\n\n100e-6; 1\n";
+  }
+  SizeDistributionParameters p;
+  p.type = "custom";
+  p.from_file = true;
+  p.file = "sizes.txt";
+  p.function_type = "CDF";
+  const auto share_below = [&p](double d) {
+    double below = 0.;
+    for (const double drawn : draw(p))
+      below += drawn <= d ? 1. / n : 0.;
+    return below;
+  };
+  const double error = 4. * 0.5 / std::sqrt(n);
+  check_close("CDF: classes", share_below(60e-6), 0.5, error);
+  check("CDF: nothing between the classes", share_below(99e-6) == share_below(60e-6));
+
+  p.interpolates = true;
+  // Half of the share between 60 and 100 um.
+  check_close("interpolated: between diameters", share_below(80e-6), 0.75, error);
+  check_close("interpolated: the first share at its diameter", share_below(40e-6), 0.2, error);
+  // Mean cubes over an interval: (b^4 - a^4) / 4 / (b - a).
+  const auto cube = [](double a, double b) {
+    return (std::pow(b, 4) - std::pow(a, 4)) / 4. / (b - a);
+  };
+  const double by_number =
+      0.2 * std::pow(40e-6, 3) + 0.3 * cube(40e-6, 60e-6) + 0.5 * cube(60e-6, 100e-6);
+  check_relative("interpolated: mean cube", p.make()->mean_cube(), by_number, 1e-4);
+
+  p.basis = "volume";
+  // The number of a share of the volume v: v times the mean of d^-3, (a^-2 - b^-2) / 2 / (b - a).
+  const auto number = [](double a, double b) {
+    return (std::pow(a, -2) - std::pow(b, -2)) / 2. / (b - a);
+  };
+  const double all =
+      0.2 * std::pow(40e-6, -3) + 0.3 * number(40e-6, 60e-6) + 0.5 * number(60e-6, 100e-6);
+  check_relative("interpolated by volume: mean cube", p.make()->mean_cube(), 1. / all, 1e-4);
+  check_close("interpolated by volume: share of the finest", share_below(40e-6),
+              0.2 * std::pow(40e-6, -3) / all, error);
+
+  p.basis = "number";
+  p.smallest = 50e-6;
+  p.largest = 80e-6;
+  // Left are 0.15 up to 60 um and 0.25 above.
+  check_close("cut-offs", share_below(60e-6), 0.15 / 0.4, error);
+  check("cut-offs: smallest and largest",
+        p.make()->smallest() == 50e-6 && p.make()->largest() == 80e-6);
+  p.interpolates = false;
+  check("cut-offs of classes", share_below(60e-6) > 0.9999);
+}
+
 } // namespace
 
 int main()
@@ -137,6 +194,7 @@ int main()
   test_normal();
   test_lognormal();
   test_weighting();
+  test_tables();
   SizeDistributionParameters p;
   p.average_diameter = 1e-3;
   check("uniform", draw(p).front() == 1e-3 && draw(p).back() == 1e-3);

@@ -36,6 +36,7 @@ struct SolidObject
   std::string file = "none";
   std::string shape = "plane";
   std::string arguments = "0,0,0 : 1,0,0 : 0,0,1";
+  unsigned int refinement = 0; ///< of a generator of deal.II
   bool simplex = true;
   Placement placement;
   std::string velocity = "0; 0; 0", angular_velocity = "0; 0; 0";
@@ -60,6 +61,11 @@ struct SolidObjectParameters : public ParameterSection
 
 /// Triangles of a Gmsh file, read on one rank and given to all; collective.
 TriangleMesh read_gmsh(const std::string &file, MPI_Comm comm);
+
+/// A surface of one of deal.II's generators, each cell of which is cut into four @p refinement
+/// times. Throws std::invalid_argument.
+TriangleMesh generate_surface(const std::string &type, const std::string &arguments,
+                              unsigned int refinement);
 
 } // namespace eunoe
 

@@ -1,24 +1,28 @@
-#include <eunoe/particles/size_distribution.h>
+#include <eunoe/core/problems.h>
+
+#include "tabulated.h"
 
 #include <algorithm>
+#include <fstream>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <stdexcept>
 
 namespace eunoe {
 namespace {
 
-/// Classes of equal diameters. A share of the volume becomes a share of the number by dividing by
-/// the cube of the diameter.
-class Custom : public SizeDistribution
+/// Classes of equal diameters, with their shares of the number.
+class Classes : public SizeDistribution
 {
 public:
-  Custom(const std::vector<double> &diameters, std::vector<double> shares, bool by_volume)
-      : diameters(diameters), cumulative(std::move(shares))
+  Classes(std::vector<double> diameters, std::vector<double> numbers)
+      : diameters(std::move(diameters)), cumulative(std::move(numbers))
   {
-    if (by_volume)
-      for (std::size_t c = 0; c < diameters.size(); ++c)
-        cumulative[c] /= diameters[c] * diameters[c] * diameters[c];
     double sum = 0.;
-    for (std::size_t c = 0; c < diameters.size(); ++c) {
-      cube += cumulative[c] * diameters[c] * diameters[c] * diameters[c];
+    for (std::size_t c = 0; c < cumulative.size(); ++c) {
+      const double d = this->diameters[c];
+      cube += cumulative[c] * d * d * d;
       sum += cumulative[c];
       cumulative[c] = sum;
     }
@@ -37,19 +41,172 @@ public:
   double mean_cube() const override { return cube; }
 
 private:
-  const std::vector<double> diameters;
-  std::vector<double> cumulative;
+  std::vector<double> diameters, cumulative;
   double cube = 0.;
 };
 
-const SizeDistributionRegistry::Registration registration(
-    size_distributions(), "custom", [](const SizeDistributionParameters &parameters) {
-      std::vector<double> shares = parameters.fractions;
-      for (std::size_t c = 0; c < shares.size(); ++c)
-        shares[c] *= parameters.weight(parameters.diameters[c]);
-      return std::make_unique<Custom>(parameters.diameters, std::move(shares),
-                                      parameters.basis == "volume");
-    });
+/// A custom distribution's cut-offs (m).
+std::pair<double, double> range_of(const SizeDistributionParameters &p)
+{
+  return {std::max(p.smallest, 0.),
+          p.largest > 0. ? p.largest : std::numeric_limits<double>::infinity()};
+}
+
+std::unique_ptr<SizeDistribution> make_classes(const SizeDistributionParameters &p,
+                                               const SizeTable &table)
+{
+  const auto [low, high] = range_of(p);
+  std::vector<double> diameters, numbers;
+  for (std::size_t c = 0; c < table.diameters.size(); ++c) {
+    const double d = table.diameters[c];
+    if (d < low || d > high)
+      continue;
+    diameters.push_back(d);
+    const double share = table.shares[c] * p.weight(d);
+    numbers.push_back(p.basis == "volume" ? share / (d * d * d) : share);
+  }
+  if (diameters.empty())
+    throw std::invalid_argument("leaves no diameter within the cut-offs.");
+  return std::make_unique<Classes>(std::move(diameters), std::move(numbers));
+}
+
+/// Each share spread evenly over the diameters since the one before; the first lies at its own.
+std::unique_ptr<SizeDistribution> make_spread(const SizeDistributionParameters &p,
+                                              const SizeTable &table)
+{
+  constexpr unsigned int n_pieces = 200;
+  const auto [low, high] = range_of(p);
+  const auto number = [&](double share, double d) {
+    return share * p.weight(d) / (p.basis == "volume" ? d * d * d : 1.);
+  };
+  std::vector<double> diameters, numbers;
+  const double first = table.diameters.front();
+  diameters.push_back(std::max(first, low));
+  numbers.push_back(first >= low && first <= high ? number(table.shares.front(), first) : 0.);
+  for (std::size_t c = 1; c < table.diameters.size(); ++c) {
+    const double a = table.diameters[c - 1], b = table.diameters[c];
+    const double from = std::max(a, low), to = std::min(b, high);
+    if (!(from < to))
+      continue;
+    const double piece = (to - from) / n_pieces, share = table.shares[c] * piece / (b - a);
+    for (unsigned int k = 0; k < n_pieces; ++k) {
+      diameters.push_back(k + 1 < n_pieces ? from + (k + 1) * piece : to);
+      numbers.push_back(number(share, from + (k + 0.5) * piece));
+    }
+  }
+  return std::make_unique<Tabulated>(std::move(diameters), numbers);
+}
+
+/// Rows of two numbers; a first line that is none is a header.
+SizeTable read_table(const std::string &file)
+{
+  std::ifstream stream(file);
+  if (!stream)
+    throw std::invalid_argument("is " + file + ", which cannot be read.");
+  SizeTable table;
+  unsigned int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    std::replace_if(
+        line.begin(), line.end(), [](char c) { return c == ';' || c == ',' || c == '\r'; }, ' ');
+    std::istringstream words(line);
+    double diameter, share;
+    std::string rest;
+    if (line.find_first_not_of(" \t") == std::string::npos || line[0] == '#')
+      continue;
+    if (words >> diameter >> share && !(words >> rest)) {
+      table.diameters.push_back(diameter);
+      table.shares.push_back(share);
+    } else if (number > 1)
+      throw std::invalid_argument("is " + file + ", whose line " + std::to_string(number) +
+                                  " is not a diameter and a probability.");
+  }
+  if (table.diameters.empty())
+    throw std::invalid_argument("is " + file + ", which has no row of numbers.");
+  return table;
+}
+
+/// For those who ask before the parameters have been checked, or in spite of that.
+UserError cannot_be_made(const std::string &what)
+{
+  return UserError("A custom size distribution cannot be made: " + what);
+}
+
+std::unique_ptr<SizeDistribution> make_custom(const SizeDistributionParameters &p)
+{
+  try {
+    const SizeTable table = p.table();
+    if (table.diameters.size() != table.shares.size())
+      throw cannot_be_made("there are not as many probabilities as diameters.");
+    return p.interpolates ? make_spread(p, table) : make_classes(p, table);
+  } catch (const std::invalid_argument &error) {
+    throw cannot_be_made("the file " + std::string(error.what()));
+  }
+}
+
+const SizeDistributionRegistry::Registration registration(size_distributions(), "custom",
+                                                          make_custom);
 
 } // namespace
+
+SizeTable SizeDistributionParameters::table() const
+{
+  SizeTable result = from_file ? read_table(file) : SizeTable{diameters, fractions};
+  // What a CDF gains at each diameter.
+  if (function_type == "CDF")
+    std::adjacent_difference(result.shares.begin(), result.shares.end(), result.shares.begin());
+  return result;
+}
+
+void SizeDistributionParameters::check_custom(const ParameterCheck &check,
+                                              const ParameterCheck::Path &path) const
+{
+  const std::string of_diameters =
+      from_file ? "custom distribution filename" : "custom distribution diameters values";
+  const std::string of_shares =
+      from_file ? of_diameters : "custom distribution diameters probabilities";
+  SizeTable read;
+  try {
+    read = table();
+  } catch (const std::invalid_argument &error) {
+    check.require(false, path, of_diameters, error.what(),
+                  "Give rows of a diameter (m) and a probability, separated by ';', ',' or space.");
+    return;
+  }
+  const std::size_t n = read.diameters.size();
+  check.require(n == read.shares.size(), path, of_shares,
+                "has " + std::to_string(read.shares.size()) + " values for " + std::to_string(n) +
+                    " diameters.",
+                "Give one share for each of '" + of_diameters + "'.");
+  if (n != read.shares.size())
+    return;
+  for (const double diameter : read.diameters)
+    check.require(diameter > 0. && std::isfinite(diameter), path, of_diameters,
+                  "contains a diameter of " + format(diameter) + " m.", "Give positive diameters.");
+  const bool is_ordered = std::is_sorted(read.diameters.begin(), read.diameters.end());
+  check.require(is_ordered || (function_type == "PDF" && !interpolates), path, of_diameters,
+                "is not in ascending order, as a CDF and interpolation need it.",
+                "Sort the diameters, each with its probability.");
+  const bool grows = std::all_of(read.shares.begin(), read.shares.end(),
+                                 [](const double share) { return share >= 0.; });
+  check.require(grows, path, of_shares,
+                function_type == "CDF" ? "decreases, which no CDF does." : "has a negative value.",
+                "Correct the value.");
+  const double sum = std::accumulate(read.shares.begin(), read.shares.end(), 0.);
+  check.require(std::abs(sum - 1.) <= 1e-5, path, of_shares,
+                (function_type == "CDF" ? "ends at " : "sums to ") + format(sum) + ", not " +
+                    (function_type == "CDF" ? "at 1." : "to 1."),
+                "Divide each share by their sum, or correct the one that is wrong.");
+  const auto [low, high] = range_of(*this);
+  double within = 0.;
+  for (std::size_t c = 0; c < n; ++c) {
+    const double from = interpolates && c > 0 ? read.diameters[c - 1] : read.diameters[c];
+    if (from <= high && read.diameters[c] >= low)
+      within += read.shares[c];
+  }
+  check.require(within > 0., path, "minimum diameter cutoff",
+                "and the maximum leave no diameter of the custom distribution.",
+                "Widen the cut-offs.");
+}
+
 } // namespace eunoe

@@ -1,8 +1,6 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/particles/size_distribution.h>
 
-#include <numeric>
-
 namespace eunoe {
 
 SizeDistributionRegistry &size_distributions()
@@ -26,17 +24,29 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
   prm.declare_alias("average diameter", "diameter");
   declare::positive(prm, "standard deviation", standard_deviation,
                     "Standard deviation of the diameter itself, normal and lognormal (m).");
-  prm.add_parameter("minimum diameter cutoff", smallest,
-                    "Smallest diameter drawn from a normal or lognormal distribution (m); -1: 2.5 "
-                    "standard deviations below the mean (of the logarithm for lognormal).");
+  prm.add_parameter(
+      "minimum diameter cutoff", smallest,
+      "Smallest diameter drawn (m); -1: 2.5 standard deviations below the mean (of the "
+      "logarithm for lognormal), none for custom.");
   prm.add_parameter("maximum diameter cutoff", largest, "Largest diameter drawn, likewise (m).");
   prm.add_parameter("custom distribution diameters values", diameters,
                     "Diameters of the classes of a custom distribution (m).",
                     declare::Patterns::List(declare::Patterns::Double(0.), 1));
   prm.declare_alias("custom distribution diameters values", "custom diameters");
   prm.add_parameter("custom distribution diameters probabilities", fractions,
-                    "Share of each class of a custom distribution; they sum to 1.",
+                    "Share of each class of a custom distribution, which sum to 1; of a CDF, the "
+                    "share up to each diameter.",
                     declare::Patterns::List(declare::Patterns::Double(0.), 1));
+  prm.add_parameter("custom distribution from file", from_file,
+                    "Whether diameters and probabilities of a custom distribution are in a file.");
+  prm.add_parameter("custom distribution filename", file,
+                    "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
+                    "space.");
+  declare::choice(prm, "custom distribution probability function type", function_type, "PDF|CDF",
+                  "Whether probabilities are those of each diameter or of all up to it.");
+  prm.add_parameter("custom distribution interpolation", interpolates,
+                    "Whether each share is spread evenly over the diameters since the one before, "
+                    "instead of having its own.");
   declare::choice(prm, "distribution weighting basis", basis, "number|volume",
                   "Whether the distribution counts particles or volume.");
   prm.add_parameter("size weighting exponent", weighting_exponent,
@@ -50,22 +60,11 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
 void SizeDistributionParameters::check(const ParameterCheck &check,
                                        const ParameterCheck::Path &path) const
 {
-  const std::string d = "custom distribution diameters values";
-  const std::string p = "custom distribution diameters probabilities";
   check.require(weighting_exponent == 0. || type != "uniform", path, "size weighting exponent",
                 "is " + format(weighting_exponent) + ", but all particles have one size.",
                 "Remove the entry, or choose another 'size distribution type'.");
   if (type == "custom") {
-    check.require(diameters.size() == fractions.size(), path, p,
-                  "has " + std::to_string(fractions.size()) + " values for " +
-                      std::to_string(diameters.size()) + " diameters.",
-                  "Give one share for each of '" + d + "'.");
-    for (const double diameter : diameters)
-      check.require(diameter > 0., path, d, "contains a diameter of " + format(diameter) + " m.",
-                    "Give positive diameters.");
-    const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.);
-    check.require(std::abs(sum - 1.) <= 1e-5, path, p, "sums to " + format(sum) + ", not to 1.",
-                  "Divide each share by their sum, or correct the one that is wrong.");
+    check_custom(check, path);
   } else {
     check.require(average_diameter > 0., path, "average diameter",
                   "is " + format(average_diameter) + " m.", "Give a positive diameter.");
