@@ -7,33 +7,6 @@ using namespace test;
 
 namespace {
 
-double area(const TriangleMesh &mesh)
-{
-  double sum = 0.;
-  for (const auto &t : mesh.triangles)
-    sum += 0.5 * norm(cross(mesh.vertices[t[1]] - mesh.vertices[t[0]],
-                            mesh.vertices[t[2]] - mesh.vertices[t[0]]));
-  return sum;
-}
-
-/// Length of the edges that belong to one triangle only; -1 if some belong to more than two.
-double open_length(TriangleMesh mesh)
-{
-  mesh.merge_vertices(1e-12);
-  std::map<std::pair<int, int>, int> count;
-  for (const auto &t : mesh.triangles)
-    for (unsigned int e = 0; e < 3; ++e)
-      ++count[std::minmax(t[e], t[(e + 1) % 3])];
-  double sum = 0.;
-  for (const auto &[edge, n] : count) {
-    if (n > 2)
-      return -1.;
-    if (n == 1)
-      sum += norm(mesh.vertices[edge.first] - mesh.vertices[edge.second]);
-  }
-  return sum;
-}
-
 /// Compares a named shape with what it should be.
 void examine(const std::string &name, const std::string &text, double expected_area,
              double expected_open_length, const Box &expected_box)
