@@ -45,6 +45,12 @@ private:
   double cube = 0.;
 };
 
+/// For those who ask before the parameters have been checked, or in spite of that.
+UserError cannot_be_made(const std::string &what)
+{
+  return UserError("A custom size distribution cannot be made: " + what);
+}
+
 /// A custom distribution's cut-offs (m).
 std::pair<double, double> range_of(const SizeDistributionParameters &p)
 {
@@ -66,7 +72,7 @@ std::unique_ptr<SizeDistribution> make_classes(const SizeDistributionParameters 
     numbers.push_back(p.basis == "volume" ? share / (d * d * d) : share);
   }
   if (diameters.empty())
-    throw std::invalid_argument("leaves no diameter within the cut-offs.");
+    throw cannot_be_made("the cut-offs leave no diameter.");
   return std::make_unique<Classes>(std::move(diameters), std::move(numbers));
 }
 
@@ -94,10 +100,12 @@ std::unique_ptr<SizeDistribution> make_spread(const SizeDistributionParameters &
       numbers.push_back(number(share, from + (k + 0.5) * piece));
     }
   }
+  if (!(std::accumulate(numbers.begin(), numbers.end(), 0.) > 0.))
+    throw cannot_be_made("the cut-offs leave no diameter.");
   return std::make_unique<Tabulated>(std::move(diameters), numbers);
 }
 
-/// Rows of two numbers; a first line that is none is a header.
+/// Rows of two numbers; lines of words before them are a header.
 SizeTable read_table(const std::string &file)
 {
   std::ifstream stream(file);
@@ -114,22 +122,17 @@ SizeTable read_table(const std::string &file)
     std::string rest;
     if (line.find_first_not_of(" \t") == std::string::npos || line[0] == '#')
       continue;
-    if (words >> diameter >> share && !(words >> rest)) {
+    const bool is_row = static_cast<bool>(words >> diameter);
+    if (is_row && words >> share && !(words >> rest)) {
       table.diameters.push_back(diameter);
       table.shares.push_back(share);
-    } else if (number > 1)
+    } else if (is_row || !table.diameters.empty())
       throw std::invalid_argument("is " + file + ", whose line " + std::to_string(number) +
                                   " is not a diameter and a probability.");
   }
   if (table.diameters.empty())
     throw std::invalid_argument("is " + file + ", which has no row of numbers.");
   return table;
-}
-
-/// For those who ask before the parameters have been checked, or in spite of that.
-UserError cannot_be_made(const std::string &what)
-{
-  return UserError("A custom size distribution cannot be made: " + what);
 }
 
 std::unique_ptr<SizeDistribution> make_custom(const SizeDistributionParameters &p)
