@@ -73,6 +73,9 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                  "null: runs of the base model of every experiment.", 8);
   declare::count(prm, "screen runs", options.screen_runs,
                  "screen: runs at each of the two amplitudes of an effect.", 1);
+  prm.add_parameter("second look", options.second_look,
+                    "null and screen: whether two and a half times as many runs are made where the "
+                    "first leave in doubt if anything is missing.");
   declare::count(prm, "confirm runs", options.confirm_runs,
                  "confirm: further runs for each leading effect, in each round.", 1);
   declare::count(prm, "confirm rounds", options.confirm_rounds, "confirm: most rounds.", 0);

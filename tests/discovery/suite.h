@@ -60,10 +60,18 @@ struct SuiteOptions
         study.common_random_numbers = false;
       else if (option == "no-confirmation")
         study.confirm = false;
+      else if (option == "no-second-look")
+        study.second_look = false;
       else if (option == "chi-square")
         study.bootstrap = false;
       else if (option.rfind("only=", 0) == 0)
         only = option.substr(5);
+      else if (option.rfind("null-runs=", 0) == 0)
+        study.null_runs = static_cast<unsigned int>(std::stoul(option.substr(10)));
+      else if (option.rfind("nuisance-runs=", 0) == 0)
+        study.nuisance_runs = static_cast<unsigned int>(std::stoul(option.substr(14)));
+      else if (option.rfind("screen-runs=", 0) == 0)
+        study.screen_runs = static_cast<unsigned int>(std::stoul(option.substr(12)));
       else
         others.push_back(option);
     }

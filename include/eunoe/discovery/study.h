@@ -21,7 +21,10 @@ struct StudyOptions
   unsigned int null_runs = 30;    ///< sets of runs of the base model, at least 8
   unsigned int nuisance_runs = 4; ///< sets on either side of each nuisance
   unsigned int screen_runs = 2;   ///< sets at each of an effect's two amplitudes
-  unsigned int confirm_runs = 8;  ///< further sets for each leader, in each round
+  /// Whether a study that is in doubt if anything is missing makes two and a half times as many
+  /// runs of the above, and looks again; not if the budget has no room for that.
+  bool second_look = true;
+  unsigned int confirm_runs = 8; ///< further sets for each leader, in each round
   unsigned int confirm_rounds = 3;
   unsigned int n_leaders = 4;     ///< most effects that a round confirms
   unsigned int fit_runs = 8;      ///< sets at the fitted amplitudes

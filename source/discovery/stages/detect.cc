@@ -29,10 +29,15 @@ Table flag_cells(const Workbench &bench, const Reference &reference)
 
 } // namespace
 
-Table stage_detect(Workbench &bench, Findings &findings)
+void settle_base_reference(Workbench &bench, Findings &findings)
 {
   findings.base_reference = make_reference(bench, {});
   bench.misfit.tail = findings.base_reference.tail;
+}
+
+Table stage_detect(Workbench &bench, Findings &findings)
+{
+  settle_base_reference(bench, findings);
   findings.evidence = evidence_against_base(bench, {});
   findings.p_global = findings.base_reference.p_joint(findings.evidence, false);
 

@@ -26,6 +26,7 @@ std::string study_key(const StudyOptions &o, const MeasuredData &data,
                o.seed,
                o.further_experiments,
                o.model_tolerance,
+               o.second_look,
                o.common_random_numbers,
                o.confirm,
                o.bootstrap};
@@ -197,14 +198,14 @@ Discovery discover(const StudyOptions &options, const MeasuredData &data,
     decide_without_detection(course.tables["screen"], findings);
   }
   Table separating = Table::array(), remainder = Table::object();
+  course.run("validate", [&] { return stage_validate(bench, findings); });
+  if (findings.withdrawn)
+    findings.verdict = Verdict::off_catalogue;
   if (findings.verdict == Verdict::tie)
     course.run("tie", [&]() -> Table {
       separating = separating_measurements(bench, findings.tie);
       return {{"measurements", separating}};
     });
-  course.run("validate", [&] { return stage_validate(bench, findings); });
-  if (findings.withdrawn)
-    findings.verdict = Verdict::off_catalogue;
   if (findings.verdict == Verdict::off_catalogue)
     remainder = describe_remainder(bench, findings);
 

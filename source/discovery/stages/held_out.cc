@@ -65,7 +65,7 @@ Eigen::MatrixXd run_rows(Workbench &bench, const Amplitudes &amplitudes, const u
 }
 
 /// Changes of all held-out cells by one prior deviation of each nuisance; none where a side failed.
-Eigen::MatrixXd nuisance_changes(Workbench &bench)
+Eigen::MatrixXd nuisance_changes(Workbench &bench, const unsigned int number)
 {
   Eigen::MatrixXd changes =
       Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(bench.data.held_out.size()),
@@ -76,7 +76,6 @@ Eigen::MatrixXd nuisance_changes(Workbench &bench)
         std::max(nuisance.lower, nuisance.null_value - nuisance_step * nuisance.prior_deviation);
     const double high =
         std::min(nuisance.upper, nuisance.null_value + nuisance_step * nuisance.prior_deviation);
-    const unsigned int number = nuisance_runs(bench.options);
     const Eigen::MatrixXd up = run_rows(bench, {{nuisance.name, high}}, number);
     const Eigen::MatrixXd down = run_rows(bench, {{nuisance.name, low}}, number);
     if (up.rows() > 0 && down.rows() > 0)
@@ -159,18 +158,20 @@ std::uint64_t held_out_runs(const MeasuredData &data, const StudyOptions &option
          experiments_of(data.held_out).size();
 }
 
-HeldOut make_held_out(Workbench &bench, const Amplitudes &chosen)
+HeldOut make_held_out(Workbench &bench, const Amplitudes &chosen, const unsigned int times)
 {
   const std::vector<MeasuredCell> &cells = bench.data.held_out;
-  const Eigen::MatrixXd before = run_rows(bench, {}, bench.options.validate_runs);
+  const unsigned int number = times * bench.options.validate_runs;
+  const unsigned int of_nuisances = times * nuisance_runs(bench.options);
+  const Eigen::MatrixXd before = run_rows(bench, {}, number);
   const Eigen::MatrixXd after =
-      chosen.empty() ? Eigen::MatrixXd() : run_rows(bench, chosen, bench.options.validate_runs);
+      chosen.empty() ? Eigen::MatrixXd() : run_rows(bench, chosen, number);
   HeldOut result;
   if (before.rows() < 3)
     return result;
-  const Eigen::MatrixXd changes = nuisance_changes(bench);
+  const Eigen::MatrixXd changes = nuisance_changes(bench, of_nuisances);
   result.nuisance_variance =
-      2. / static_cast<double>(nuisance_runs(bench.options)) / std::pow(2. * nuisance_step, 2);
+      2. / static_cast<double>(of_nuisances) / std::pow(2. * nuisance_step, 2);
   const Eigen::VectorXd unit = units(cells, before);
   std::vector<Eigen::Index> used;
   for (Eigen::Index c = 0; c < unit.size(); ++c)

@@ -136,6 +136,7 @@ Eigen::MatrixXd changes_by(Workbench &bench, const Factor &nuisance)
 void settle_nuisances(Workbench &bench)
 {
   const Misfit white(bench.chaos.matrix, 0. * bench.chaos.matrix);
+  bench.nuisance_noise = 0.;
   bench.nuisance_cells = Eigen::MatrixXd::Zero(bench.modes.n_cells(),
                                                static_cast<Eigen::Index>(bench.nuisances.size()));
   for (std::size_t k = 0; k < bench.nuisances.size(); ++k) {
@@ -155,23 +156,33 @@ void settle_nuisances(Workbench &bench)
 
 } // namespace
 
+void ask_base_runs(Workbench &bench, const unsigned int base, const unsigned int nuisance)
+{
+  std::vector<Workbench::Order> orders = {{{}, base}};
+  for (const Factor &factor : bench.nuisances)
+    for (const double value : nuisance_values(factor))
+      orders.push_back({{{factor.name, value}}, nuisance});
+  bench.ask(orders);
+}
+
+void settle_noise(Workbench &bench)
+{
+  settle_chaos(bench);
+  settle_nuisances(bench);
+  settle_chaos(bench);
+}
+
 Table stage_null(Workbench &bench)
 {
   bench.column_of_cell = places(bench);
-  std::vector<Workbench::Order> orders = {{{}, bench.options.null_runs}};
-  for (const Factor &nuisance : bench.nuisances)
-    for (const double value : nuisance_values(nuisance))
-      orders.push_back({{{nuisance.name, value}}, bench.options.nuisance_runs});
-  bench.ask(orders);
+  ask_base_runs(bench, bench.options.null_runs, bench.options.nuisance_runs);
   if (bench.base().size() < 8)
     throw UserError("Only " + std::to_string(bench.base().size()) + " of " +
                     std::to_string(bench.options.null_runs) +
                     " sets of runs of the base model came to their end, and at least 8 are needed: "
                     "raise the budget, or see why runs fail.");
   settle_cells(bench);
-  settle_chaos(bench);
-  settle_nuisances(bench);
-  settle_chaos(bench);
+  settle_noise(bench);
 
   Table table = {{"base runs", bench.base().size()},
                  {"cells", bench.cells.size()},

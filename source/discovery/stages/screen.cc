@@ -23,19 +23,26 @@ std::vector<double> levels(const Factor &effect)
   return {0.5 * side * most, side * most};
 }
 
-void make_fingerprints(Workbench &bench)
+/// Runs of each effect at both amplitudes, so that there are this many in all.
+void ask_fingerprints(Workbench &bench, const unsigned int number)
 {
   std::vector<Workbench::Order> orders;
   Eigen::VectorXd position(1);
   for (std::size_t k = 0; k < bench.effects.size(); ++k)
     for (const double level : levels(bench.effects[k])) {
       position(0) = level;
-      orders.push_back({bench.amplitudes({k}, position), bench.options.screen_runs});
+      orders.push_back({bench.amplitudes({k}, position), number});
     }
   bench.ask(orders);
+}
+
+void make_fingerprints(Workbench &bench)
+{
+  ask_fingerprints(bench, bench.options.screen_runs);
 
   // An effect of which no run came to its end gets another chance, weaker.
-  orders.clear();
+  std::vector<Workbench::Order> orders;
+  Eigen::VectorXd position(1);
   for (std::size_t k = 0; k < bench.effects.size(); ++k)
     if (!is_simulated(bench, k)) {
       position(0) = 0.5 * levels(bench.effects[k]).front();
@@ -53,6 +60,54 @@ void make_fingerprints(Workbench &bench)
   if (n_simulated == 0)
     throw UserError("No effect of the catalogue could be simulated: raise the budget, or see why "
                     "runs fail.");
+}
+
+/// Runs with which a study in doubt looks again: of the base model, on either side of a nuisance,
+/// and at each amplitude of an effect, in all.
+struct SecondLook
+{
+  unsigned int base, nuisance, fingerprint;
+
+  explicit SecondLook(const StudyOptions &options)
+      : base(more(options.null_runs)), nuisance(more(options.nuisance_runs)),
+        fingerprint(more(options.screen_runs))
+  {
+  }
+
+  /// Whether the budget has room for it, and for what follows if it finds something.
+  bool fits(const Workbench &bench) const
+  {
+    const StudyOptions &o = bench.options;
+    const std::uint64_t sets =
+        base - o.null_runs + 2ull * bench.nuisances.size() * (nuisance - o.nuisance_runs) +
+        2ull * bench.effects.size() * (fingerprint - o.screen_runs) +
+        static_cast<std::uint64_t>(o.n_leaders) * o.confirm_runs + o.fit_runs;
+    return sets * bench.experiments.size() <= bench.archive.remaining();
+  }
+
+private:
+  static unsigned int more(unsigned int number) { return (5 * number + 1) / 2; }
+};
+
+/// Tests the base model with all that is known so far.
+/// @param share of the level that this look may spend
+Table look(Workbench &bench, Findings &findings, const double share)
+{
+  std::vector<Response> responses;
+  for (std::size_t k = 0; k < bench.effects.size(); ++k)
+    responses.push_back(bench.response_of_modes({k}));
+  findings.reference = make_reference(bench, responses);
+  findings.evidence = evidence_against_base(bench, responses);
+  const double p = findings.reference.p_joint(findings.evidence, true);
+  findings.p_detected = std::min(findings.p_detected, findings.decision.safety_of_p * p / share);
+  findings.detected = findings.p_detected <= bench.options.level;
+  return {{"sets of runs of the base model", bench.base().size()},
+          {"p", p},
+          {"share of the level", share},
+          {"largest gain", findings.evidence.gain},
+          {"p of largest gain", findings.reference.p_gain(findings.evidence.gain)},
+          {"p of distance", findings.reference.p_distance(findings.evidence.distance)},
+          {"p of largest deviation", findings.reference.p_cell(findings.evidence.cell)}};
 }
 
 /// How clearly the data would show an effect: its change in standard errors, with the share that
@@ -171,19 +226,27 @@ Table cosines(const Workbench &bench)
 
 Table stage_screen(Workbench &bench, Findings &findings)
 {
+  const Decision &decision = findings.decision;
   make_fingerprints(bench);
   settle_chaos(bench);
-  std::vector<Response> responses;
-  for (std::size_t k = 0; k < bench.effects.size(); ++k)
-    responses.push_back(bench.response_of_modes({k}));
-  findings.reference = make_reference(bench, responses);
-  findings.evidence = evidence_against_base(bench, responses);
-  findings.p_detected = std::min(1., findings.decision.safety_of_p *
-                                         findings.reference.p_joint(findings.evidence, true));
-  findings.detected = findings.p_detected <= bench.options.level;
+  const SecondLook second(bench.options);
+  const bool may_look_again = bench.options.second_look && second.fits(bench);
+  const double share = may_look_again ? decision.share_of_first_look : 1.;
+  Table looks = Table::array();
+  looks.push_back(look(bench, findings, share));
+  if (may_look_again && !findings.detected &&
+      looks.back().at("p").get<double>() <= decision.p_of_second_look)
+  {
+    ask_base_runs(bench, second.base, second.nuisance);
+    ask_fingerprints(bench, second.fingerprint);
+    settle_noise(bench);
+    settle_base_reference(bench, findings);
+    looks.push_back(look(bench, findings, 1. - share));
+  }
 
   Table table = {{"p", findings.p_detected},
                  {"detected", findings.detected},
+                 {"looks", looks},
                  {"largest gain", findings.evidence.gain},
                  {"p of largest gain", findings.reference.p_gain(findings.evidence.gain)},
                  {"gain needed", findings.reference.gain_limit(bench.options.level)},

@@ -138,9 +138,8 @@ Table compare_base(const HeldOut &held_out, const Prediction &base, const std::u
 }
 
 /// Relative standard error of fitted amplitudes, root mean square.
-double amplitude_error(const Workbench &bench, const Findings &findings)
+double amplitude_error(const Workbench &bench, const Findings &findings, const Fit &fit)
 {
-  const Fit &fit = findings.chosen.fit;
   const double limit = findings.reference.direction_limit;
   double square = 0.;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
@@ -178,6 +177,112 @@ Table describe_cells(const HeldOut &held_out)
   return rows;
 }
 
+/// What held-out data say of a model.
+struct Judgement
+{
+  Table table;
+  bool has_runs = false; ///< of both models
+  bool shrinks = false, does_not_shrink = false, is_bad_fit = false;
+  /// Whether few more runs could change that.
+  bool is_in_doubt = false;
+
+  bool refutes() const { return does_not_shrink || is_bad_fit; }
+};
+
+/// @param times how many times the runs of the study's options
+Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit,
+                const unsigned int times)
+{
+  Judgement result;
+  const HeldOut held_out = make_held_out(bench, bench.amplitudes(fit.effects, fit.position), times);
+  if (held_out.cells.empty()) {
+    result.table = {{"result", "too few runs of the held-out experiments came to their end"}};
+    return result;
+  }
+  const Prediction base = predict(bench, held_out, held_out.before, fit_model(bench, {}), 0.);
+  Table &table = result.table;
+  if (held_out.after.rows() < 3) {
+    table = compare_base(held_out, base, bench.options.seed);
+    table["result"] =
+        fit.effects.empty() ? "base model only" : "runs of the model with the effect failed";
+  } else {
+    const Prediction chosen =
+        predict(bench, held_out, held_out.after, fit, amplitude_error(bench, findings, fit));
+    table = compare(held_out, base, chosen, bench.options.seed);
+    // Between the models, with one standard error against the name: shrinks are rarely so unlucky.
+    const Progress between = progress(held_out, base, chosen);
+    const bool informative = between.error < 0.5;
+    const double p = table["p of the chosen model"].get<double>();
+    result.has_runs = true;
+    result.does_not_shrink = informative && between.value < 0.5 - between.error;
+    result.is_bad_fit = p <= findings.decision.p_of_bad_held_out;
+    result.shrinks = informative && !result.refutes();
+    result.is_in_doubt = p <= findings.decision.p_of_doubtful_held_out ||
+                         (informative && between.value < 0.5 + between.error);
+    table["position between the models"] = informative ? Table(between.value) : Table(nullptr);
+    table["standard error of the position"] = informative ? Table(between.error) : Table(nullptr);
+    table["result"] = result.does_not_shrink ? "the gap does not shrink: the name is withdrawn"
+                      : result.is_bad_fit
+                          ? "the model does not describe them: the name is withdrawn"
+                      : informative ? "the gap shrinks"
+                                    : "held-out data cannot tell the two models apart";
+  }
+  table["envelopes"] = describe_cells(held_out);
+  return result;
+}
+
+/// Few runs estimate a covariance badly: where they speak against a model, or nearly, more decide.
+Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit)
+{
+  constexpr unsigned int more = 3;
+  const Judgement first = judge(bench, findings, fit, 1);
+  const std::uint64_t needed =
+      more * held_out_runs(bench.data, bench.options, bench.nuisances.size());
+  return first.is_in_doubt && needed <= bench.archive.remaining()
+             ? judge(bench, findings, fit, more)
+             : first;
+}
+
+/// Members of a tie that the held-out data refute leave it, if two at least stay; if one stays with
+/// which the gap shrinks, it is named; and if none does, nothing is.
+Judgement judge_tie(Workbench &bench, Findings &findings)
+{
+  constexpr std::size_t most = 4;
+  Table rows = Table::array();
+  std::vector<Scored> left;
+  std::vector<Judgement> judgements;
+  for (std::size_t k = 0; k < findings.tie.size(); ++k) {
+    const Scored &member = findings.tie[k];
+    if (k >= most) {
+      left.push_back(member);
+      continue;
+    }
+    const Judgement judgement = judge(bench, findings, member.fit);
+    judgements.push_back(judgement);
+    rows.push_back({{"effects", name_of(bench, member.fit.effects)},
+                    {"p", judgement.table.value("p of the chosen model", Table(nullptr))},
+                    {"result", judgement.table["result"]}});
+    if (!judgement.refutes())
+      left.push_back(member);
+  }
+  const auto of = [&](const Scored &member) -> const Judgement & {
+    std::size_t k = 0;
+    while (findings.tie[k].fit.effects != member.fit.effects)
+      ++k;
+    return judgements[std::min(k, judgements.size() - 1)];
+  };
+  Judgement result = judgements.front();
+  findings.withdrawn = left.empty();
+  if (left.size() >= 2 || (left.size() == 1 && of(left.front()).shrinks)) {
+    result = of(left.front());
+    findings.chosen = left.front();
+    findings.verdict = left.size() == 1 ? Verdict::named : Verdict::tie;
+    findings.tie = left;
+  }
+  result.table["members of the tie"] = rows;
+  return result;
+}
+
 } // namespace
 
 Table stage_validate(Workbench &bench, Findings &findings)
@@ -185,39 +290,11 @@ Table stage_validate(Workbench &bench, Findings &findings)
   if (bench.data.held_out.empty())
     return {{"result", "no held-out data"}};
   bench.archive.set_aside(0);
-  const Fit &fit = findings.chosen.fit;
-  const HeldOut held_out = make_held_out(bench, bench.amplitudes(fit.effects, fit.position));
-  if (held_out.cells.empty())
-    return {{"result", "too few runs of the held-out experiments came to their end"}};
-  const Prediction base = predict(bench, held_out, held_out.before, fit_model(bench, {}), 0.);
-  if (held_out.after.rows() < 3) {
-    Table table = compare_base(held_out, base, bench.options.seed);
-    table["envelopes"] = describe_cells(held_out);
-    table["result"] = fit.effects.empty() ? "base model only"
-                                          : "runs of the model with the "
-                                            "effect failed";
-    return table;
-  }
-  const Prediction chosen =
-      predict(bench, held_out, held_out.after, fit, amplitude_error(bench, findings));
-  Table table = compare(held_out, base, chosen, bench.options.seed);
-  table["envelopes"] = describe_cells(held_out);
-  // Between the models, with one standard error against the name: shrinks are rarely so unlucky.
-  const Progress between = progress(held_out, base, chosen);
-  const bool informative = between.error < 0.5;
-  const bool does_not_shrink = informative && between.value < 0.5 - between.error;
-  // Of a tie another member may describe them.
-  const bool is_bad_fit =
-      findings.verdict == Verdict::named &&
-      table["p of the chosen model"].get<double>() <= findings.decision.p_of_bad_held_out;
-  findings.withdrawn = does_not_shrink || is_bad_fit;
-  table["position between the models"] = informative ? Table(between.value) : Table(nullptr);
-  table["standard error of the position"] = informative ? Table(between.error) : Table(nullptr);
-  table["result"] = does_not_shrink ? "the gap does not shrink: the name is withdrawn"
-                    : is_bad_fit    ? "the model does not describe them: the name is withdrawn"
-                    : informative   ? "the gap shrinks"
-                                    : "held-out data cannot tell the two models apart";
-  return table;
+  if (findings.verdict == Verdict::tie)
+    return judge_tie(bench, findings).table;
+  const Judgement judgement = judge(bench, findings, findings.chosen.fit);
+  findings.withdrawn = judgement.refutes();
+  return judgement.table;
 }
 
 } // namespace eunoe::discovery

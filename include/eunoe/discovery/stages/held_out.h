@@ -18,9 +18,11 @@ struct HeldOut
 /// Makes the runs of the held-out experiments: of the base model, of the model with these
 /// amplitudes, unless there are none, and of the base model with each nuisance on both sides. No
 /// cells if fewer than three runs of the base model came to their end, or if nothing varies.
-HeldOut make_held_out(Workbench &bench, const Amplitudes &chosen);
+/// @param times how many times the runs that the study's options say; those of an earlier call
+///   count
+HeldOut make_held_out(Workbench &bench, const Amplitudes &chosen, unsigned int times);
 
-/// Number of runs that this takes at most.
+/// Number of runs that this takes at most, once.
 std::uint64_t held_out_runs(const MeasuredData &data, const StudyOptions &options,
                             std::size_t n_nuisances);
 

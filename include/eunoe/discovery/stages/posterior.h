@@ -23,11 +23,16 @@ struct Decision
   /// The joint p-value is multiplied by this: on 150 synthetic laboratories without anything
   /// missing the plain one gave 7 % alarms at a level of 5 %.
   double safety_of_p = 2.;
-  double credible = 0.95;          ///< probability that a tie set covers
-  double off_catalogue = 0.5;      ///< least probability for this verdict
-  double p_of_bad_fit = 0.01;      ///< below: the best model does not describe the data
-  double p_of_bad_held_out = 0.02; ///< the same on held-out data
-  double least_inclusion = 0.02;   ///< an effect less likely than this is not confirmed
+  /// Without a finding at the first look, more runs are made if its p-value is at most this; the
+  /// level is shared between both looks (Bonferroni).
+  double p_of_second_look = 0.5;
+  double share_of_first_look = 0.25;
+  double credible = 0.95;               ///< probability that a tie set covers
+  double off_catalogue = 0.5;           ///< least probability for this verdict
+  double p_of_bad_fit = 0.01;           ///< below: the best model does not describe the data
+  double p_of_bad_held_out = 0.02;      ///< the same on held-out data
+  double p_of_doubtful_held_out = 0.25; ///< below: more runs decide
+  double least_inclusion = 0.02;        ///< an effect less likely than this is not confirmed
 };
 
 /// A set of effects and how likely it is.

@@ -46,8 +46,16 @@ Table stage_fit(Workbench &bench, Findings &findings);
 Table stage_iterate(Workbench &bench, Findings &findings);
 Table stage_validate(Workbench &bench, Findings &findings);
 
+/// Makes sets of runs of the base model, and of it with each nuisance on either side, so that there
+/// are this many in all.
+void ask_base_runs(Workbench &bench, unsigned int base, unsigned int nuisance);
+
 /// Estimates chaos, the data's noise and the misfit anew from all runs so far.
 void settle_chaos(Workbench &bench);
+/// The same, and what nuisances change.
+void settle_noise(Workbench &bench);
+/// What evidence would be were nothing missing, and the tail of the misfit that it shows.
+void settle_base_reference(Workbench &bench, Findings &findings);
 
 /// Amplitudes at which more runs tell most: those of a fit, or of runs nearby.
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
