@@ -154,7 +154,8 @@ Table content(Workbench &bench, const Findings &findings, const Table &stages)
     ties = describe_models(bench, findings.tie);
   result["tie"] = ties;
   result["nuisances"] = Table::array();
-  const Eigen::VectorXd estimates = nuisance_estimates(bench, findings.chosen.fit);
+  const Eigen::VectorXd estimates =
+      nuisance_estimates(bench, findings.chosen.fit.remainder, findings.chosen.fit.leverage);
   for (std::size_t k = 0; k < bench.nuisances.size(); ++k) {
     const Factor &nuisance = bench.nuisances[k];
     const double shift = estimates(static_cast<Eigen::Index>(k));
@@ -193,7 +194,7 @@ Discovery discover(const StudyOptions &options, const MeasuredData &data,
     course.run("confirm", [&] { return stage_confirm(bench, findings); });
     course.run("fit", [&] { return stage_fit(bench, findings); });
     course.run("iterate", [&] { return stage_iterate(bench, findings); });
-    decide(bench, findings);
+    decide(findings);
   } else {
     decide_without_detection(course.tables["screen"], findings);
   }

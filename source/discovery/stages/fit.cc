@@ -183,18 +183,19 @@ Table describe_amplitudes(const Workbench &bench, const Findings &findings)
   return rows;
 }
 
-Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit)
+Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Eigen::VectorXd &remainder,
+                                   const double leverage)
 {
   const Eigen::MatrixXd changes =
       bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
-  return changes.transpose() * fit.remainder.cwiseQuotient(bench.misfit.variance(fit.leverage));
+  return changes.transpose() * remainder.cwiseQuotient(bench.misfit.variance(leverage));
 }
 
-Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const Fit &fit)
+Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const double leverage)
 {
   const Eigen::MatrixXd changes =
       bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
-  const Eigen::VectorXd weight = bench.misfit.variance(fit.leverage).cwiseInverse();
+  const Eigen::VectorXd weight = bench.misfit.variance(leverage).cwiseInverse();
   return Eigen::MatrixXd::Identity(changes.cols(), changes.cols()) -
          changes.transpose() * weight.asDiagonal() * changes;
 }

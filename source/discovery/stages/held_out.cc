@@ -121,14 +121,20 @@ struct Estimates
   DataNoise noise;
 };
 
-/// @param others runs of another model, which tell of the chaos too; or none
+/// @param others runs of another model, which tell of the chaos too, once their own size of it is
+///   taken off; or none
 Estimates estimate(const Modes &modes, const Eigen::MatrixXd &runs, const Eigen::MatrixXd &others,
                    const Repeats &repeats, const Eigen::MatrixXd &doubt)
 {
   Eigen::MatrixXd cells(runs.rows() + others.rows(), runs.cols());
   cells.topRows(runs.rows()) = centred(runs);
-  if (others.rows() > 0)
-    cells.bottomRows(others.rows()) = centred(others);
+  if (others.rows() > 0) {
+    const Eigen::MatrixXd deviations = centred(others);
+    const double own =
+        cells.topRows(runs.rows()).squaredNorm() / static_cast<double>(runs.rows() - 1);
+    const double theirs = deviations.squaredNorm() / static_cast<double>(others.rows() - 1);
+    cells.bottomRows(others.rows()) = deviations * (theirs > 0. ? std::sqrt(own / theirs) : 1.);
+  }
   const auto dof = static_cast<double>(cells.rows() - (others.rows() > 0 ? 2 : 1));
   Estimates result;
   result.chaos =
@@ -208,8 +214,8 @@ Prediction predict(const Workbench &bench, const HeldOut &held_out, const Eigen:
   result.runs = runs;
   result.is_of_base = fit.effects.empty();
   const Eigen::VectorXd mean = runs.colwise().mean().transpose();
-  const Eigen::VectorXd estimates = nuisance_estimates(bench, fit);
-  const Eigen::MatrixXd covariance = nuisance_covariance(bench, fit);
+  const Eigen::VectorXd estimates = nuisance_estimates(bench, fit.remainder, fit.leverage);
+  const Eigen::MatrixXd covariance = nuisance_covariance(bench, fit.leverage);
   result.mean = mean + held_out.nuisances * estimates;
   result.leverage = 1. / static_cast<double>(runs.rows()) +
                     held_out.nuisance_variance * (estimates.squaredNorm() + covariance.trace());
@@ -220,8 +226,13 @@ Prediction predict(const Workbench &bench, const HeldOut &held_out, const Eigen:
     result.doubt.leftCols(n) = held_out.nuisances * eigen.eigenvectors() *
                                eigen.eigenvalues().cwiseMax(0.).cwiseSqrt().asDiagonal();
   }
+  // With another amplitude the data of the fit would have the nuisances elsewhere.
+  const Response response = bench.response(fit.effects);
+  const Eigen::VectorXd moved =
+      nuisance_estimates(bench, response.change(fit.position), fit.leverage);
   result.doubt.col(n) =
-      amplitude_error * (mean - held_out.before.colwise().mean().transpose().eval());
+      amplitude_error *
+      (mean - held_out.before.colwise().mean().transpose().eval() - held_out.nuisances * moved);
   return result;
 }
 

@@ -250,6 +250,7 @@ Judgement judge_tie(Workbench &bench, Findings &findings)
   constexpr std::size_t most = 4;
   Table rows = Table::array();
   std::vector<Scored> left;
+  std::vector<EffectSet> refuted;
   std::vector<Judgement> judgements;
   for (std::size_t k = 0; k < findings.tie.size(); ++k) {
     const Scored &member = findings.tie[k];
@@ -262,7 +263,9 @@ Judgement judge_tie(Workbench &bench, Findings &findings)
     rows.push_back({{"effects", name_of(bench, member.fit.effects)},
                     {"p", judgement.table.value("p of the chosen model", Table(nullptr))},
                     {"result", judgement.table["result"]}});
-    if (!judgement.refutes())
+    if (judgement.refutes())
+      refuted.push_back(member.fit.effects);
+    else
       left.push_back(member);
   }
   const auto of = [&](const Scored &member) -> const Judgement & {
@@ -278,6 +281,8 @@ Judgement judge_tie(Workbench &bench, Findings &findings)
     findings.chosen = left.front();
     findings.verdict = left.size() == 1 ? Verdict::named : Verdict::tie;
     findings.tie = left;
+    findings.refuted = refuted;
+    settle_confidence(findings);
   }
   result.table["members of the tie"] = rows;
   return result;

@@ -39,29 +39,48 @@ int exit_code(const Verdict verdict)
   return 1;
 }
 
-void decide(const Workbench &, Findings &findings)
+namespace {
+
+/// Sets of as many effects as the chosen one, without those that were refuted. Other sizes were
+/// ruled out by the stages fit and iterate, which says nothing of "something else".
+std::vector<const Scored *> rivals(const Findings &findings)
+{
+  std::vector<const Scored *> result;
+  for (const Scored &model : findings.posterior.models)
+    if (model.fit.effects.size() == findings.chosen.fit.effects.size() &&
+        std::find(findings.refuted.begin(), findings.refuted.end(), model.fit.effects) ==
+            findings.refuted.end())
+      result.push_back(&model);
+  return result;
+}
+
+} // namespace
+
+void settle_confidence(Findings &findings)
+{
+  double alike = 0.;
+  for (const Scored *model : rivals(findings))
+    alike += model->probability;
+  findings.off_catalogue = findings.posterior.off_catalogue;
+  const double share = alike > 0. ? (1. - findings.off_catalogue) / alike : 0.;
+  findings.confidence.assign(findings.posterior.inclusion.size(), 0.);
+  for (const Scored *model : rivals(findings))
+    for (const std::size_t k : model->fit.effects)
+      findings.confidence[k] += model->probability * share;
+}
+
+void decide(Findings &findings)
 {
   const Decision &decision = findings.decision;
-  const std::size_t size = findings.chosen.fit.effects.size();
-  double alike = 0.;
-  for (const Scored &model : findings.posterior.models)
-    if (model.fit.effects.size() == size)
-      alike += model.probability;
-  // Other sizes were ruled out by the stages fit and iterate, which says nothing of "something
-  // else".
-  const double off = findings.posterior.off_catalogue, share = alike > 0. ? (1. - off) / alike : 0.;
-  findings.off_catalogue = off;
-  findings.confidence.assign(findings.posterior.inclusion.size(), 0.);
+  settle_confidence(findings);
+  double alike = 0., sum = 0.;
+  for (const Scored *model : rivals(findings))
+    alike += model->probability;
   findings.tie.clear();
-  double sum = 0.;
-  for (const Scored &model : findings.posterior.models) {
-    if (model.fit.effects.size() != size)
-      continue;
-    for (const std::size_t k : model.fit.effects)
-      findings.confidence[k] += model.probability * share;
+  for (const Scored *model : rivals(findings)) {
     if (sum < decision.credible * alike)
-      findings.tie.push_back(model);
-    sum += model.probability;
+      findings.tie.push_back(*model);
+    sum += model->probability;
   }
   if (findings.off_catalogue > decision.off_catalogue || findings.p_fit < decision.p_of_bad_fit)
     findings.verdict = Verdict::off_catalogue;

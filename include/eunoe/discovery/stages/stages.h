@@ -32,6 +32,7 @@ struct Findings
   std::vector<Scored> tie; ///< sets of effects that cannot be told apart, the likeliest first
   std::vector<double> confidence; ///< of each effect
   double off_catalogue = 0.;      ///< confidence in "something else"
+  std::vector<EffectSet> refuted; ///< sets of the tie that held-out data speak against
   bool withdrawn = false;
 };
 
@@ -62,7 +63,9 @@ Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
                            const Eigen::VectorXd &position);
 
 /// Verdict, tie set and confidences from the posterior.
-void decide(const Workbench &bench, Findings &findings);
+void decide(Findings &findings);
+/// Confidences alone, once sets of effects have been refuted.
+void settle_confidence(Findings &findings);
 
 /// Sets of effects as a table: effects, probability, amplitudes.
 Table describe_models(const Workbench &bench, const std::vector<Scored> &models);
@@ -77,9 +80,12 @@ Table describe_remainder(const Workbench &bench, const Findings &findings);
 Table describe_amplitudes(const Workbench &bench, const Findings &findings);
 
 /// Best values of the nuisances beside a fit, in prior deviations from their null values.
-Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Fit &fit);
+/// @param remainder that the fit leaves, in coordinates of the misfit
+/// @param leverage of the fit
+Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Eigen::VectorXd &remainder,
+                                   double leverage);
 /// Their covariance, which is the unit matrix where the data say nothing of them.
-Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const Fit &fit);
+Eigen::MatrixXd nuisance_covariance(const Workbench &bench, double leverage);
 
 /// Means and spreads of base model, chosen model and data per cell.
 Table describe_envelopes(const Workbench &bench, const Findings &findings);
