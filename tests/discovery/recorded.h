@@ -2,10 +2,12 @@
 #define eunoe_tests_discovery_recorded_h
 
 // A laboratory that draws from recorded simulations. Measured are, at the recorded amplitudes,
-// means and the growth of chaos, and the chaos of the base model; interpolated is in between:
-// linearly, and beyond the last amplitude along the last piece. Effects add. A run's chaos is a
-// recorded deviation of the base model from its mean, mixed with independent noise of each cell by
-// Ledoit and Wolf's share, so that its covariance is their estimate.
+// means and the growth of chaos, and the chaos of the base model. What is truth here are these
+// means less the share of their changes that noise explains (James and Stein), with linear
+// interpolation between amplitudes, and along the last piece beyond them; nuisances, which move
+// little, change cells in proportion. Effects add. A run's chaos is a recorded deviation of the
+// base model from its mean, mixed with independent noise of each cell by Ledoit and Wolf's share,
+// so that its covariance is their estimate.
 
 #include <eunoe/discovery/statistics/covariance.h>
 
@@ -120,6 +122,8 @@ private:
     pieces.push_back({factor.null_value, Eigen::VectorXd::Zero(own.mean.size())});
     if (without_trace)
       return; // an effect that this process cannot have
+    if (factor.kind == Factor::Kind::nuisance)
+      return add_linear_pieces(experiment, factor, by_amplitude, pieces);
     for (const auto &[amplitude, runs] : by_amplitude) {
       const auto n = static_cast<double>(runs.size());
       Piece piece{amplitude, Eigen::VectorXd::Zero(own.mean.size())};
@@ -133,10 +137,45 @@ private:
         piece.growth = std::clamp(
             std::sqrt(square / (n - 1.) / static_cast<double>(own.mean.size())), 0.3, 3.);
       piece.variance = 1. / n + 1. / static_cast<double>(own.rows.rows());
+      take_noise_off(experiment, piece);
       pieces.push_back(piece);
     }
     std::sort(pieces.begin(), pieces.end(),
               [](const Piece &a, const Piece &b) { return a.amplitude < b.amplitude; });
+  }
+
+  void take_noise_off(const std::string &experiment, Piece &piece) const
+  {
+    const auto &lower = half.at(experiment).triangularView<Eigen::Lower>();
+    const double square = lower.solve(piece.change).squaredNorm();
+    const double noise = piece.variance * static_cast<double>(piece.change.size());
+    piece.change *= square > noise ? 1. - noise / square : 0.;
+  }
+
+  /// The slope through all amplitudes by least squares, to both ends of the range.
+  void add_linear_pieces(
+      const std::string &experiment, const Factor &factor,
+      const std::map<double, std::vector<const RecordedTable::Run *>> &by_amplitude,
+      std::vector<Piece> &pieces) const
+  {
+    const Chaos &own = chaos.at(experiment);
+    Piece slope{1., Eigen::VectorXd::Zero(own.mean.size())};
+    double squares = 0., sum = 0.;
+    for (const auto &[amplitude, runs] : by_amplitude)
+      for (const auto *run : runs) {
+        const double u = amplitude - factor.null_value;
+        slope.change += u * (run->values - own.mean);
+        squares += u * u;
+        sum += u;
+      }
+    slope.change /= squares;
+    slope.variance =
+        1. / squares + sum * sum / (squares * squares * static_cast<double>(own.rows.rows()));
+    take_noise_off(experiment, slope);
+    for (const double u : {-1., 1.}) {
+      pieces.push_back({factor.null_value + u, u * slope.change, 1., slope.variance});
+      std::rotate(pieces.begin(), u < 0. ? pieces.end() - 1 : pieces.begin(), pieces.end());
+    }
   }
 
   Piece at(const std::string &experiment, const std::string &name, double amplitude) const

@@ -26,25 +26,56 @@ int n_levels(const std::vector<Response::Run> &runs, const Eigen::Index effect)
   return static_cast<int>(levels.size());
 }
 
+/// Expected change of a slope where the amplitude grows e times, over the slope.
+constexpr double expected_turn = 0.4;
+
+/// Next amplitude of an effect beyond a level that was run, on the side of a number; 0 if there is
+/// none.
+double next_level(const std::vector<Response::Run> &runs, const Eigen::Index effect,
+                  const double level, const double side)
+{
+  double next = 0.;
+  for (const Response::Run &run : runs) {
+    const double u = run.position(effect);
+    if (u * side > 0. && std::abs(u) > std::abs(level) &&
+        (next == 0. || std::abs(u) < std::abs(next)))
+      next = u;
+  }
+  return next;
+}
+
+/// Amplitudes of an effect after which the next one is far away, so that a response that is bent
+/// smoothly by what runs there say would be wrong before.
+std::vector<double> knots(const std::vector<Response::Run> &runs, const Eigen::Index effect)
+{
+  constexpr double far = 3.;
+  std::vector<double> result;
+  for (const Response::Run &run : runs) {
+    const double u = run.position(effect);
+    if (std::abs(next_level(runs, effect, u, u)) >= far * std::abs(u) && u != 0. &&
+        std::find(result.begin(), result.end(), u) == result.end())
+      result.push_back(u);
+  }
+  return result;
+}
+
 } // namespace
 
-Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares)
-    : least(Eigen::VectorXd::Zero(slope_squares.size())), most(least)
+void Response::add_terms(const std::vector<Run> &runs, const Eigen::Index n_effects)
 {
-  const Eigen::Index n_effects = slope_squares.size();
   constexpr int highest_degree = 3;
-  constexpr double beyond = 1.5;
-  const Term none(static_cast<std::size_t>(n_effects), 0);
+  const Term none{std::vector<int>(static_cast<std::size_t>(n_effects), 0)};
   terms.push_back(none);
   for (Eigen::Index k = 0; k < n_effects; ++k) {
-    for (int power = 1; power <= std::min(n_levels(runs, k) - 1, highest_degree); ++power) {
+    const auto add = [&](int power, double knot) {
       terms.push_back(none);
-      terms.back()[static_cast<std::size_t>(k)] = power;
-    }
-    for (const Run &run : runs) {
-      least(k) = std::min(least(k), beyond * run.position(k));
-      most(k) = std::max(most(k), beyond * run.position(k));
-    }
+      terms.back().powers[static_cast<std::size_t>(k)] = power;
+      terms.back().knot = knot;
+    };
+    for (int power = 1; power <= std::min(n_levels(runs, k) - 1, highest_degree); ++power)
+      add(power, 0.);
+    for (const double knot : knots(runs, k))
+      add(1, knot);
   }
   for (Eigen::Index k = 0; k < n_effects; ++k)
     for (Eigen::Index l = 0; l < k; ++l)
@@ -53,9 +84,46 @@ Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_sq
           }))
       {
         terms.push_back(none);
-        terms.back()[static_cast<std::size_t>(k)] = terms.back()[static_cast<std::size_t>(l)] = 1;
+        terms.back().powers[static_cast<std::size_t>(k)] = 1;
+        terms.back().powers[static_cast<std::size_t>(l)] = 1;
       }
+}
 
+double Response::stiffness(const Term &term, const std::vector<Run> &runs,
+                           const Eigen::VectorXd &slope_squares) const
+{
+  // Expected sizes over that of the slope: second order, third order, products.
+  constexpr double expected_bend[] = {0.4, 0.15}, expected_product = 0.4;
+  double square = 1.;
+  int order = 0, n_factors = 0;
+  for (Eigen::Index k = 0; k < slope_squares.size(); ++k)
+    if (const int power = term.powers[static_cast<std::size_t>(k)]; power > 0) {
+      order = std::max(order, power);
+      ++n_factors;
+      square *= slope_squares(k);
+      if (term.knot != 0.)
+        return 1. / (square * expected_turn * expected_turn *
+                     std::log(next_level(runs, k, term.knot, term.knot) / term.knot));
+    }
+  if (n_factors == 2)
+    return 1. / (std::sqrt(square) * expected_product * expected_product);
+  return order > 1 ? 1. / (square * expected_bend[order - 2] * expected_bend[order - 2]) : 0.;
+}
+
+Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares)
+    : least(Eigen::VectorXd::Zero(slope_squares.size())), most(least), first_below(least),
+      first_above(least), slopes(slope_squares)
+{
+  constexpr double beyond = 1.5;
+  for (const Run &run : runs) {
+    least = least.cwiseMin(beyond * run.position);
+    most = most.cwiseMax(beyond * run.position);
+  }
+  for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+    first_below(k) = next_level(runs, k, 0., -1.);
+    first_above(k) = next_level(runs, k, 0., 1.);
+  }
+  add_terms(runs, slope_squares.size());
   const auto n_terms = static_cast<Eigen::Index>(terms.size());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n_terms, n_terms);
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, runs.front().values.size());
@@ -65,24 +133,8 @@ Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_sq
     normal += t * t.transpose() / run.variance;
     right += t * run.values.transpose() / run.variance;
   }
-  // Expected sizes of terms over that of the slope: second order, third order, products.
-  constexpr double expected_bend[] = {0.4, 0.15}, expected_product = 0.4;
   for (Eigen::Index t = 1; t < n_terms; ++t) {
-    double square = 1.;
-    int order = 0;
-    for (Eigen::Index k = 0; k < n_effects; ++k)
-      if (const int power = terms[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)];
-          power > 0) {
-        order = std::max(order, power);
-        square *= slope_squares(k);
-      }
-    const bool is_product = std::count(terms[static_cast<std::size_t>(t)].begin(),
-                                       terms[static_cast<std::size_t>(t)].end(), 1) == 2;
-    if (is_product)
-      square = std::sqrt(square) * expected_product * expected_product;
-    else if (order > 1)
-      square *= expected_bend[order - 2] * expected_bend[order - 2];
-    normal(t, t) += is_product || order > 1 ? 1. / square : 0.;
+    normal(t, t) += stiffness(terms[static_cast<std::size_t>(t)], runs, slope_squares);
     normal(t, t) *= 1. + 1e-9;
   }
   inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
@@ -94,9 +146,12 @@ Eigen::VectorXd Response::terms_at(const Eigen::VectorXd &position) const
   Eigen::VectorXd result(static_cast<Eigen::Index>(terms.size()));
   for (std::size_t t = 0; t < terms.size(); ++t) {
     double product = 1.;
-    for (std::size_t k = 0; k < terms[t].size(); ++k)
-      for (int power = 0; power < terms[t][k]; ++power)
-        product *= position(static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < terms[t].powers.size(); ++k) {
+      const double knot = terms[t].knot, beyond = position(static_cast<Eigen::Index>(k)) - knot;
+      const double x = knot > 0. ? std::max(0., beyond) : knot < 0. ? std::min(0., beyond) : beyond;
+      for (int power = 0; power < terms[t].powers[k]; ++power)
+        product *= x;
+    }
     result(static_cast<Eigen::Index>(t)) = product;
   }
   return result;
@@ -119,7 +174,18 @@ double Response::change_leverage(const Eigen::VectorXd &position) const
 double Response::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
-  return t.dot(inverse * t);
+  return t.dot(inverse * t) + unseen_bend(position);
+}
+
+double Response::unseen_bend(const Eigen::VectorXd &position) const
+{
+  double result = 0.;
+  for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+    const double u = position(k), first = u > 0. ? first_above(k) : first_below(k);
+    if (u != 0. && std::abs(u) < std::abs(first))
+      result += u * u * slopes(k) * expected_turn * expected_turn * std::log(first / u);
+  }
+  return result;
 }
 
 Response Response::with_shifted_base(const Eigen::VectorXd &shift) const

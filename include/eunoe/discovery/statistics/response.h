@@ -7,8 +7,9 @@
 namespace eunoe::discovery {
 
 /// Emulator: the mean outcome of a run as a polynomial of the amplitudes of a few effects, by
-/// generalised least squares. All runs have the same covariance C up to a factor, so the variance
-/// of a prediction is C times one number, its leverage.
+/// generalised least squares, bent at amplitudes beyond which there are no runs for long. All runs
+/// have the same covariance C up to a factor, so the variance of a prediction is C times one
+/// number, its leverage.
 class Response
 {
 public:
@@ -34,7 +35,8 @@ public:
   /// What is predicted to change from the origin to a position, and its leverage.
   Eigen::VectorXd change(const Eigen::VectorXd &position) const;
   double change_leverage(const Eigen::VectorXd &position) const;
-  /// Leverage of the outcome itself, origin and change.
+  /// Leverage of the outcome itself, origin and change, with what bends unseen before the first
+  /// amplitude that was run.
   double leverage(const Eigen::VectorXd &position) const;
 
   /// What the fit would be had the mean of the runs at the origin come out differently: the origin
@@ -49,15 +51,28 @@ public:
   double upper(Eigen::Index effect) const { return most(effect); }
 
 private:
-  /// A product of powers; powers[k] of effect k.
-  using Term = std::vector<int>;
+  /// A product of powers, powers[k] of effect k; with a knot, what one effect is beyond it.
+  struct Term
+  {
+    std::vector<int> powers;
+    double knot = 0.;
+  };
+  void add_terms(const std::vector<Run> &runs, Eigen::Index n_effects);
+  /// Inverse mean square that is expected of a term's coefficient; 0: anything.
+  double stiffness(const Term &term, const std::vector<Run> &runs,
+                   const Eigen::VectorXd &slope_squares) const;
+  /// Variance of a change before the first amplitude of an effect: its slope there is that beyond,
+  /// but for a random walk along the logarithm of the amplitude.
+  double unseen_bend(const Eigen::VectorXd &position) const;
   Eigen::VectorXd terms_at(const Eigen::VectorXd &position) const;
 
   std::vector<Term> terms;
   Eigen::MatrixXd coefficients; ///< terms x values
   Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
   Eigen::VectorXd least, most;
-  double base_weight = 0.; ///< of the runs at the origin
+  Eigen::VectorXd first_below, first_above; ///< nearest amplitudes that were run; 0: none
+  Eigen::VectorXd slopes;                   ///< squares of slopes, in units of C
+  double base_weight = 0.;                  ///< of the runs at the origin
 };
 
 } // namespace eunoe::discovery
