@@ -156,7 +156,8 @@ void print_check(const StudyInput &study, Log &log)
     const double n = experiment.is_held_out() ? 2. * options.validate_runs
                      : n_cells == 0
                          ? 0.
-                         : looks * (options.null_runs + 2. * options.screen_runs * n_factors) +
+                         : looks * (options.null_runs + 2. * options.screen_runs * n_effects +
+                                    2. * options.nuisance_runs * (n_factors - n_effects)) +
                                options.confirm_rounds * options.confirm_runs * leaders +
                                options.fit_runs * options.max_effects;
     const RunEstimate &estimate = experiment.estimate();

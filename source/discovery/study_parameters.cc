@@ -71,6 +71,8 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                  0);
   declare::count(prm, "null runs", options.null_runs,
                  "null: runs of the base model of every experiment.", 8);
+  declare::count(prm, "nuisance runs", options.nuisance_runs,
+                 "null: runs on either side of each nuisance.", 2);
   declare::count(prm, "screen runs", options.screen_runs,
                  "screen: runs at each of the two amplitudes of an effect.", 1);
   prm.add_parameter("second look", options.second_look,

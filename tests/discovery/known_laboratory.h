@@ -59,49 +59,7 @@ public:
   /// Mahalanobis distance from the base model in the chaos of one run of each experiment.
   double strength(const Amplitudes &amplitudes, const std::vector<std::string> &experiments) const
   {
-    double square = 0.;
-    for (const std::string &e : experiments) {
-      const Eigen::VectorXd change = mean(e, amplitudes) - mean(e, {});
-      square += half.at(e).triangularView<Eigen::Lower>().solve(change).squaredNorm();
-    }
-    return std::sqrt(square);
-  }
-
-  /// The same in standard errors of a measurement, after what nuisances could explain is taken off:
-  /// how clear a truth is to someone who knows covariance, nuisances and fingerprints.
-  double clearness(const Amplitudes &amplitudes, const std::vector<std::string> &experiments,
-                   double repeats) const
-  {
-    Eigen::Index n = 0;
-    for (const std::string &e : experiments)
-      n += half.at(e).rows();
-    Eigen::VectorXd change(n);
-    Eigen::MatrixXd nuisances(n, 0);
-    Eigen::Index row = 0;
-    for (const std::string &e : experiments) {
-      const auto &lower = half.at(e).triangularView<Eigen::Lower>();
-      const auto in_units = [&](const Amplitudes &a) -> Eigen::VectorXd {
-        return std::sqrt(repeats) * lower.solve(mean(e, a) - mean(e, {}));
-      };
-      Eigen::Index column = 0;
-      Amplitudes effects = amplitudes;
-      for (const Factor &f : all_factors) {
-        if (f.kind != Factor::Kind::nuisance)
-          continue;
-        effects.erase(f.name);
-        if (row == 0)
-          nuisances.conservativeResize(n, column + 1);
-        nuisances.col(column++).segment(row, half.at(e).rows()) =
-            in_units({{f.name, f.null_value + f.prior_deviation}});
-      }
-      change.segment(row, half.at(e).rows()) = in_units(effects);
-      row += half.at(e).rows();
-    }
-    // (1 + G G')^-1 by the matrix inversion lemma.
-    const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(nuisances.cols(), nuisances.cols()) +
-                                  nuisances.transpose() * nuisances;
-    const Eigen::VectorXd along = nuisances.transpose() * change;
-    return std::sqrt(change.squaredNorm() - along.dot(inner.ldlt().solve(along)));
+    return change(amplitudes, experiments).norm();
   }
 
   /// Amplitude of an effect that has this strength.
@@ -165,6 +123,21 @@ public:
     return data;
   }
 
+  /// What changes in all cells of some experiments, in units in which the chaos of a run is the
+  /// unit matrix.
+  Eigen::VectorXd change(const Amplitudes &amplitudes,
+                         const std::vector<std::string> &experiments) const
+  {
+    Eigen::VectorXd result;
+    for (const std::string &e : experiments) {
+      const Eigen::VectorXd part =
+          half.at(e).triangularView<Eigen::Lower>().solve(mean(e, amplitudes) - mean(e, {}));
+      result.conservativeResize(result.size() + part.size());
+      result.tail(part.size()) = part;
+    }
+    return result;
+  }
+
 protected:
   /// What a run gives, if it does not fail.
   virtual Eigen::VectorXd value(const std::string &experiment, const Amplitudes &amplitudes,
@@ -193,6 +166,98 @@ private:
   }
 
   std::uint64_t made = 0;
+};
+
+/// How clear differences between models are to someone who knows covariance, nuisances and
+/// fingerprints: in standard errors of a measurement, after what nuisances could explain is taken
+/// off.
+class Resolution
+{
+public:
+  Resolution(const KnownLaboratory &laboratory, std::vector<std::string> experiments,
+             double repeats)
+      : laboratory(laboratory), experiments(std::move(experiments)), scale(std::sqrt(repeats))
+  {
+    for (const Factor &f : laboratory.factors())
+      if (f.kind == Factor::Kind::nuisance) {
+        const Eigen::VectorXd column = change_by({{f.name, f.null_value + f.prior_deviation}});
+        nuisances.conservativeResize(column.size(), nuisances.cols() + 1);
+        nuisances.rightCols(1) = column;
+      }
+    inner = (Eigen::MatrixXd::Identity(nuisances.cols(), nuisances.cols()) +
+             nuisances.transpose() * nuisances)
+                .ldlt();
+  }
+
+  /// Of a truth's effects from the base model.
+  double clearness(const Amplitudes &truth) const { return size(effects_of(truth)); }
+
+  /// Of a truth's effects from the nearest single effect that is none of them, at its best
+  /// amplitude; their clearness if that is less.
+  double separation(const Amplitudes &truth) const
+  {
+    const Eigen::VectorXd wanted = effects_of(truth);
+    double least = size(wanted);
+    for (const Factor &f : laboratory.factors())
+      if (f.kind == Factor::Kind::effect &&
+          (truth.size() > 1 + n_nuisances() || truth.count(f.name) == 0))
+        for (const double limit : {f.lower, f.upper})
+          if (const bool above = limit > f.null_value;
+              limit != f.null_value &&
+              f.sign != (above ? Factor::Sign::below : Factor::Sign::above))
+            least = std::min(least, least_distance(wanted, f, limit));
+    return least;
+  }
+
+private:
+  std::size_t n_nuisances() const { return static_cast<std::size_t>(nuisances.cols()); }
+
+  Eigen::VectorXd change_by(const Amplitudes &amplitudes) const
+  {
+    return scale * laboratory.change(amplitudes, experiments);
+  }
+
+  Eigen::VectorXd effects_of(Amplitudes truth) const
+  {
+    for (const Factor &f : laboratory.factors())
+      if (f.kind == Factor::Kind::nuisance)
+        truth.erase(f.name);
+    return change_by(truth);
+  }
+
+  /// (1 + G G')^-1 by the matrix inversion lemma.
+  double size(const Eigen::VectorXd &difference) const
+  {
+    const Eigen::VectorXd along = nuisances.transpose() * difference;
+    return std::sqrt(difference.squaredNorm() - along.dot(inner.solve(along)));
+  }
+
+  /// Amplitudes are tried in a geometric row, then between the best one's neighbours.
+  double least_distance(const Eigen::VectorXd &wanted, const Factor &f, double limit) const
+  {
+    constexpr double ratio = 0.8;
+    constexpr int coarse = 30, fine = 20;
+    const auto distance = [&](double share) {
+      const double amplitude = f.null_value + share * (limit - f.null_value);
+      return size(wanted - change_by({{f.name, amplitude}}));
+    };
+    double best = 1., least = distance(best);
+    for (int k = 1; k <= coarse; ++k)
+      if (const double d = distance(std::pow(ratio, k)); d < least) {
+        least = d;
+        best = std::pow(ratio, k);
+      }
+    for (int k = 0; k <= fine; ++k)
+      least =
+          std::min(least, distance(std::min(1., best * (ratio + (1. / ratio - ratio) * k / fine))));
+    return least;
+  }
+
+  const KnownLaboratory &laboratory;
+  const std::vector<std::string> experiments;
+  const double scale;
+  Eigen::MatrixXd nuisances;
+  Eigen::LDLT<Eigen::MatrixXd> inner;
 };
 
 } // namespace test

@@ -23,7 +23,7 @@ inline RecordedStudy interpolated_study(const RecordedTable &table, const StudyK
   RecordedLaboratory laboratory(table, seed);
   SuiteCase one = draw_case(laboratory, kind, table.fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  one.clearness = laboratory.clearness(one.truth, table.fit, repeats);
+  find_resolution(laboratory, table.fit, repeats, one);
   const MeasuredData data = laboratory.measure(table.fit, table.held_out, one.truth, repeats,
                                                0.4 * random.uniform(), seed);
   return {one, study_of(one, laboratory, data, options)};

@@ -37,7 +37,7 @@ struct SuiteCase
   std::map<std::string, double> strengths; ///< of the effects, below zero for those below null
   Amplitudes truth;                        ///< with the nuisances
   std::vector<std::string> excluded;       ///< deleted from the catalogue
-  double clearness = 0.;                   ///< of the truth, in standard errors of the measurement
+  double clearness = 0., separation = 0.;  ///< of the truth (Resolution)
 };
 
 /// What the command line of a suite asks for.
@@ -116,6 +116,15 @@ inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &k
   return one;
 }
 
+/// How clear a drawn truth is from the base model and from its rivals.
+inline void find_resolution(const KnownLaboratory &laboratory, const std::vector<std::string> &fit,
+                            unsigned int repeats, SuiteCase &one)
+{
+  const Resolution resolution(laboratory, fit, repeats);
+  one.clearness = resolution.clearness(one.truth);
+  one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
+}
+
 /// Sets of effects that the last stage that compared any found likeliest.
 inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &stages)
 {
@@ -158,6 +167,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
       {"answer",
        {{"verdict", c["verdict"]},
         {"clearness of the truth", one.clearness},
+        {"separation of the truth", one.separation},
         {"p of nothing missing", c["p of nothing missing"]},
         {"p of distance", detect["p of distance"]},
         {"p of largest deviation", detect["p of largest deviation"]},

@@ -51,7 +51,7 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
   }
   SuiteCase one = draw_case(laboratory, kind, fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  one.clearness = laboratory.clearness(one.truth, fit, repeats);
+  find_resolution(laboratory, fit, repeats, one);
   const MeasuredData data =
       laboratory.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
   options.further_experiments = {"shear"};

@@ -12,6 +12,9 @@ from statistics import median
 from .case import Case
 
 SOMETHING = ("named", "tie", "off catalogue")
+# Standard errors of the measurement by which a truth must differ from the nearest other single effect
+# to be one that could be told from it.
+APART = 4.
 
 
 @dataclass
@@ -25,6 +28,11 @@ class Outcome:
     amplitudes: dict[str, dict]
     shrink: float | None
     runs: int
+    separation: float | None = None  # from the nearest other effect, where the suite knows it
+
+    @property
+    def stands_apart(self) -> bool:
+        return self.separation is not None and self.separation >= APART
 
     @property
     def truth(self) -> set[str]:
@@ -77,7 +85,8 @@ def outcome(case: Case, content: dict) -> Outcome:
     covering = [named] if named else [set(row["effects"].split(" + ")) for row in content["tie"]]
     return Outcome(case, content["verdict"], named, candidates[0]["effect"] if candidates else "",
                    covering, {row["effect"]: row["confidence"] for row in candidates}, rows,
-                   content["gaps"].get("held-out", {}).get("shrink"), content["runs"]["asked for"])
+                   content["gaps"].get("held-out", {}).get("shrink"), content["runs"]["asked for"],
+                   content.get("separation of the truth"))
 
 
 def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
@@ -149,6 +158,7 @@ def score(outcomes: list[Outcome]) -> Scores:
         rate("confident and wrong", single + two + deleted, lambda o: o.confidently_wrong, "at most 3 %"),
         rate("amplitude within its interval",
              [o for o in right for _ in o.truth], _covers_amplitudes, "95 %")]
+    rates += _rates_apart(strong, two, deleted)
     numbers = {}
     sizes = [len(o.covering) for o in answered]
     if sizes:
@@ -167,6 +177,21 @@ def score(outcomes: list[Outcome]) -> Scores:
         answer = o.first if o.verdict == "named" else o.verdict
         confusion.setdefault(truth, Counter())[answer] += 1
     return Scores(rates, numbers, confusion, calibration(single))
+
+
+def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcome]) -> list[Rate]:
+    """Of truths that could be told from every other single effect."""
+    def apart(outcomes: list[Outcome]) -> list[Outcome]:
+        return [o for o in outcomes if o.stands_apart]
+    answered = [o for o in apart(strong) if o.verdict in ("named", "tie")]
+    return [rate("apart: first name correct at strength 4 and more", apart(strong),
+                 lambda o: o.detected and o.first in o.truth, "at least 90 %"),
+            rate("apart: set covers the truth", answered, lambda o: o.covers, "at least 95 %"),
+            rate("apart: both of two effects named", apart(two), lambda o: o.named == o.truth),
+            rate("apart: deleted effect recognised as off the catalogue", apart(deleted),
+                 lambda o: o.verdict == "off catalogue", "at least 70 %"),
+            rate("apart: confident and wrong", apart(strong + two + deleted),
+                 lambda o: o.confidently_wrong, "at most 3 %")]
 
 
 def _covers_amplitudes(o: Outcome) -> bool:

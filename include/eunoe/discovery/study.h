@@ -17,10 +17,12 @@ namespace eunoe::discovery {
 /// How a study is made. A *set of runs* is one run of every experiment that is measured.
 struct StudyOptions
 {
-  double level = 0.05;            ///< probability of a false alarm that is accepted
-  unsigned int null_runs = 30;    ///< sets of runs of the base model, at least 8
-  unsigned int nuisance_runs = 4; ///< sets on either side of each nuisance
-  unsigned int screen_runs = 2;   ///< sets at each of an effect's two amplitudes
+  double level = 0.05;         ///< probability of a false alarm that is accepted
+  unsigned int null_runs = 30; ///< sets of runs of the base model, at least 8
+  /// Sets on either side of each nuisance. What stays unknown of its change looks like an effect
+  /// that resembles it: with 4 instead of 8, three times as many false alarms.
+  unsigned int nuisance_runs = 10;
+  unsigned int screen_runs = 2; ///< sets at each of an effect's two amplitudes
   /// Whether a study that is in doubt if anything is missing makes two and a half times as many
   /// runs of the above, and looks again; not if the budget has no room for that.
   bool second_look = true;

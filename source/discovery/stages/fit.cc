@@ -163,13 +163,21 @@ Table stage_iterate(Workbench &bench, Findings &findings)
           {"models", describe_models(bench, findings.posterior.models)}};
 }
 
+Interval amplitude_interval(const Workbench &bench, const Findings &findings, const Fit &fit,
+                            const std::size_t member)
+{
+  return profile_interval(bench, fit, member,
+                          findings.decision.width_of_intervals *
+                              findings.reference.direction_limit);
+}
+
 Table describe_amplitudes(const Workbench &bench, const Findings &findings)
 {
   Table rows = Table::array();
   const Fit &fit = findings.chosen.fit;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
     const Factor &effect = bench.effects[fit.effects[k]];
-    const Interval interval = profile_interval(bench, fit, k, findings.reference.direction_limit);
+    const Interval interval = amplitude_interval(bench, findings, fit, k);
     const auto amplitude = [&](double u) { return effect.null_value + u * effect.scale; };
     rows.push_back({{"effect", effect.name},
                     {"unit", effect.unit},

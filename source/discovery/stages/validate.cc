@@ -140,12 +140,12 @@ Table compare_base(const HeldOut &held_out, const Prediction &base, const std::u
 /// Relative standard error of fitted amplitudes, root mean square.
 double amplitude_error(const Workbench &bench, const Findings &findings, const Fit &fit)
 {
-  const double limit = findings.reference.direction_limit;
+  const double deviations = 2. * std::sqrt(findings.reference.direction_limit);
   double square = 0.;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
-    const Interval interval = profile_interval(bench, fit, k, limit);
+    const Interval interval = amplitude_interval(bench, findings, fit, k);
     const double size = std::abs(fit.position(static_cast<Eigen::Index>(k)));
-    const double error = (interval.upper - interval.lower) / (2. * std::sqrt(limit));
+    const double error = (interval.upper - interval.lower) / deviations;
     square += std::pow(size > 0. ? error / size : 1., 2) / static_cast<double>(fit.effects.size());
   }
   return std::sqrt(square);

@@ -20,9 +20,11 @@ struct Decision
   double cost_of_effect = 5.2;
   /// Deviances are divided by this before they become probabilities.
   double temperature = 1.4;
-  /// The joint p-value is multiplied by this: on 150 synthetic laboratories without anything
-  /// missing the plain one gave 7 % alarms at a level of 5 %.
-  double safety_of_p = 2.;
+  /// The joint p-value is multiplied by this, so that false alarms stay clearly below the level.
+  double safety_of_p = 1.5;
+  /// Limits of amplitudes are where the deviance has risen by this many times what it rises by
+  /// chance along one direction: fingerprints are uncertain in more than their noise.
+  double width_of_intervals = 1.75;
   /// Without a finding at the first look, more runs are made if its p-value is at most this; the
   /// level is shared between both looks (Bonferroni).
   double p_of_second_look = 0.5;
