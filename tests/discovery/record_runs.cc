@@ -70,6 +70,8 @@ void write_table(const std::string &path, const StudyInput &study, DemLaboratory
                  const std::vector<RunRequest> &requests)
 {
   const std::vector<RunResult> results = laboratory.run(requests);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+    return;
   const std::string unfinished = path + ".unfinished";
   std::FILE *const file = std::fopen(unfinished.c_str(), "w");
   if (file == nullptr)

@@ -101,6 +101,38 @@ void responses()
   check("range of amplitudes", response.upper(0) == 3. && response.lower(0) == 0.);
 }
 
+/// Runs at 0 and at some amplitudes, whose values grow less and less.
+constexpr double power = 0.75;
+std::vector<Response::Run> saturating(const std::vector<double> &amplitudes)
+{
+  std::vector<Response::Run> runs;
+  const auto add = [&](double u, int count) {
+    for (int k = 0; k < count; ++k)
+      runs.push_back({Eigen::VectorXd::Constant(1, u),
+                      Eigen::VectorXd::Constant(2, 100. * std::pow(u, power)), 1.});
+  };
+  add(0., 10);
+  for (const double u : amplitudes)
+    add(u, 8);
+  return runs;
+}
+
+void bent_responses()
+{
+  // Of the mean slope between 0 and 1.
+  const Eigen::VectorXd slope = Eigen::VectorXd::Constant(1, 100. * 100.);
+  const Eigen::VectorXd small = Eigen::VectorXd::Constant(1, 0.04);
+  const Response far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
+  const double truth = 100. * std::pow(0.04, power);
+  const double miss = std::abs(far.change(small)(0) - truth);
+  check("what bends before the first amplitude is missed", miss > 2.);
+  check("and known to be doubtful", far.leverage(small) > std::pow(0.5 * miss, 2),
+        std::to_string(miss) + ", " + std::to_string(far.leverage(small)));
+  check("runs there mend it", std::abs(near.change(small)(0) - truth) < 1.,
+        std::to_string(near.change(small)(0)));
+  check("and are trusted", near.leverage(small) < 0.5);
+}
+
 void modes_and_noise()
 {
   std::vector<Cell> cells;
@@ -140,5 +172,6 @@ int main()
   covariances();
   misfits();
   responses();
+  bent_responses();
   modes_and_noise();
 }

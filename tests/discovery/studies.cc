@@ -125,6 +125,50 @@ void tie_and_how_to_break_it()
         more.content["verdict"].get<std::string>());
 }
 
+void tie_that_held_out_data_break()
+{
+  // In the heap the two are one; the thick layers, where they differ, are held out.
+  SyntheticLaboratory laboratory(nature(51));
+  laboratory.make_alike("b", "c", 0., {"heap"});
+  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 12., {"heap"})}};
+  const Discovery d =
+      study(laboratory, laboratory.measure({"heap"}, {"spreading"}, truth, 4, 0.2, 2));
+  const auto &members = d.content["gaps"]["held-out"]["members of the tie"];
+  check("members of a tie are judged by held-out data", members.size() >= 2, members.dump());
+  check("that which they refute goes", d.verdict == Verdict::named && d.model_after.count("b") == 1,
+        d.content["verdict"].get<std::string>());
+  check("and has no confidence", d.content["candidates"][0]["effect"] == "b" &&
+                                     d.content["candidates"][1]["confidence"].get<double>() < 0.05);
+}
+
+void second_look()
+{
+  unsigned int twice = 0, sure = 0, base_runs = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    SyntheticLaboratory laboratory(nature(3000 + seed));
+    const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 3., both)}};
+    const Discovery d = study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, seed));
+    const auto &screen = d.content["stages"]["screen"];
+    const auto &looks = screen["looks"];
+    if (looks.size() == 2) {
+      ++twice;
+      base_runs = std::max(base_runs, looks[1]["sets of runs of the base model"].get<unsigned>());
+    } else if (looks[0]["p"].get<double>() > 0.5 || screen["detected"].get<bool>()) {
+      ++sure;
+    }
+  }
+  check("studies in doubt look twice", twice >= 2 && twice < 10, std::to_string(twice) + " of 10");
+  check("with more runs", base_runs == 75, std::to_string(base_runs));
+  check("the others do not", twice + sure == 10);
+  SyntheticLaboratory laboratory(nature(3001));
+  StudyOptions options;
+  options.second_look = false;
+  const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 4, 0.2, 1), options);
+  const auto &looks = d.content["stages"]["screen"]["looks"];
+  check("only one look if it is switched off",
+        looks.size() == 1 && looks[0]["share of the level"] == 1.);
+}
+
 void too_weak_to_see()
 {
   Nature weak = nature(61);
@@ -197,6 +241,8 @@ int main(int argc, char **argv)
   two_effects();
   not_in_the_catalogue();
   tie_and_how_to_break_it();
+  tie_that_held_out_data_break();
+  second_look();
   too_weak_to_see();
   withdrawn();
   goes_on();
