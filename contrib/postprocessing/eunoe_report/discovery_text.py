@@ -104,20 +104,30 @@ def verdict_text(study: Study) -> list[str]:
             "more observables, would help.", chance]
 
 
+def _refuted(table: dict) -> str:
+    """Which members of a tie the held-out data speak against."""
+    rows = table.get("members of the tie", [])
+    refuted = [plain(row["effects"]) for row in rows if row["result"].endswith("withdrawn")]
+    if not refuted:
+        return ""
+    return (f" The data of the fit alone left {len(rows)} candidates; the held-out data speak against "
+            f"{', '.join(refuted)}.")
+
+
 def held_out_text(study: Study) -> str:
     table = study.content["gaps"].get("held-out", {})
     if table.get("result", "no held-out data") == "no held-out data":
         return ("No data were held out, so nothing tests the answer but the data that it was found "
                 "with.")
     if "shrink" not in table or table["shrink"] is None:
-        return f"Held-out data: {table['result']}."
+        return f"Held-out data: {table['result']}.{_refuted(table)}"
     low, high = table["shrink interval"]
     chosen = "" if study.verdict != "tie" else (
         f" with {plain(study.content['tie'][0]['effects'])}, the likeliest by a little, added")
     change = "shrinks" if table["shrink"] >= 0. else "grows"
     return (f"On data that were held out, the gap {change} by {percent(abs(table['shrink']), 0)}{chosen} "
             f"(95{SPACE}% interval of the shrink {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
-            f"{table['result']}.")
+            f"{table['result']}.{_refuted(table)}")
 
 
 def gap_text(study: Study) -> str:
