@@ -152,14 +152,18 @@ void print_check(const StudyInput &study, Log &log)
     };
     const auto n_cells = cells(study.data.fit) + cells(study.data.held_out);
     const double leaders = std::min<double>(options.n_leaders, n_effects);
-    const double looks = options.second_look ? 2.5 : 1.;
-    const double n = experiment.is_held_out() ? 2. * options.validate_runs
-                     : n_cells == 0
-                         ? 0.
-                         : looks * (options.null_runs + 2. * options.screen_runs * n_effects +
-                                    2. * options.nuisance_runs * (n_factors - n_effects)) +
-                               options.confirm_rounds * options.confirm_runs * leaders +
-                               options.fit_runs * options.max_effects;
+    const double n_nuisances = n_factors - n_effects;
+    // A second look, and held-out data that speak against the answer, ask for more.
+    const double looks = options.second_look ? 2.5 : 1., judgements = 3.;
+    const double of_base = options.null_runs + 2. * options.screen_runs * n_effects +
+                           2. * options.nuisance_runs * n_nuisances;
+    const double of_leaders = options.confirm_rounds * options.confirm_runs * leaders +
+                              options.fit_runs * options.max_effects;
+    const double n =
+        experiment.is_held_out()
+            ? judgements * (2. * options.validate_runs + options.nuisance_runs * n_nuisances)
+        : n_cells == 0 ? 0.
+                       : looks * of_base + of_leaders;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +

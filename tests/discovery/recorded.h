@@ -152,7 +152,7 @@ private:
     piece.change *= square > noise ? 1. - noise / square : 0.;
   }
 
-  /// The slope through all amplitudes by least squares, to both ends of the range.
+  /// The slope through all amplitudes by least squares, to both sides.
   void add_linear_pieces(
       const std::string &experiment, const Factor &factor,
       const std::map<double, std::vector<const RecordedTable::Run *>> &by_amplitude,
@@ -172,10 +172,8 @@ private:
     slope.variance =
         1. / squares + sum * sum / (squares * squares * static_cast<double>(own.rows.rows()));
     take_noise_off(experiment, slope);
-    for (const double u : {-1., 1.}) {
-      pieces.push_back({factor.null_value + u, u * slope.change, 1., slope.variance});
-      std::rotate(pieces.begin(), u < 0. ? pieces.end() - 1 : pieces.begin(), pieces.end());
-    }
+    pieces.insert(pieces.begin(), {factor.null_value - 1., -slope.change, 1., slope.variance});
+    pieces.push_back({factor.null_value + 1., slope.change, 1., slope.variance});
   }
 
   Piece at(const std::string &experiment, const std::string &name, double amplitude) const

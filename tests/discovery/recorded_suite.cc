@@ -2,7 +2,8 @@
 // JSON each.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/discovery/score.py answers.jsonl
-// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square (ablations); simulated
+// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
+// (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER; simulated
 // (studies whose data are recorded simulations, instead of truths at any amplitude); describe (what
 // the table holds, and no study); table=FILE.
 

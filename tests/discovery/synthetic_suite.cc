@@ -2,7 +2,8 @@
 // JSON each. It takes minutes to hours and is no part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/discovery/score.py answers.jsonl
-// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square (ablations);
+// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
+// (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER;
 // no-nuisances, no-bend, even-chaos, no-swing (simpler laboratories).
 
 #include "suite.h"

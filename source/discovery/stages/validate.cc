@@ -181,7 +181,6 @@ Table describe_cells(const HeldOut &held_out)
 struct Judgement
 {
   Table table;
-  bool has_runs = false; ///< of both models
   bool shrinks = false, does_not_shrink = false, is_bad_fit = false;
   /// Whether few more runs could change that.
   bool is_in_doubt = false;
@@ -213,7 +212,6 @@ Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit,
     const Progress between = progress(held_out, base, chosen);
     const bool informative = between.error < 0.5;
     const double p = table["p of the chosen model"].get<double>();
-    result.has_runs = true;
     result.does_not_shrink = informative && between.value < 0.5 - between.error;
     result.is_bad_fit = p <= findings.decision.p_of_bad_held_out;
     result.shrinks = informative && !result.refutes();
@@ -221,11 +219,12 @@ Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit,
                          (informative && between.value < 0.5 + between.error);
     table["position between the models"] = informative ? Table(between.value) : Table(nullptr);
     table["standard error of the position"] = informative ? Table(between.error) : Table(nullptr);
-    table["result"] = result.does_not_shrink ? "the gap does not shrink: the name is withdrawn"
-                      : result.is_bad_fit
-                          ? "the model does not describe them: the name is withdrawn"
-                      : informative ? "the gap shrinks"
-                                    : "held-out data cannot tell the two models apart";
+    const std::string end =
+        findings.verdict == Verdict::off_catalogue ? "" : ": the name is withdrawn";
+    table["result"] = result.does_not_shrink ? "the gap does not shrink" + end
+                      : result.is_bad_fit    ? "the model does not describe them" + end
+                      : informative          ? "the gap shrinks"
+                                             : "held-out data cannot tell the two models apart";
   }
   table["envelopes"] = describe_cells(held_out);
   return result;

@@ -20,7 +20,7 @@ struct Decision
   double cost_of_effect = 5.2;
   /// Deviances are divided by this before they become probabilities.
   double temperature = 1.4;
-  /// The joint p-value is multiplied by this, so that false alarms stay clearly below the level.
+  /// The joint p-value is multiplied by this, as estimates from few runs make it too small.
   double safety_of_p = 1.5;
   /// Limits of amplitudes are where the deviance has risen by this many times what it rises by
   /// chance along one direction: fingerprints are uncertain in more than their noise.

@@ -7,9 +7,9 @@
 namespace eunoe::discovery {
 
 /// Emulator: the mean outcome of a run as a polynomial of the amplitudes of a few effects, by
-/// generalised least squares, bent at amplitudes beyond which there are no runs for long. All runs
-/// have the same covariance C up to a factor, so the variance of a prediction is C times one
-/// number, its leverage.
+/// generalised least squares, with a kink at amplitudes beyond which there are no runs for long.
+/// All runs have the same covariance C up to a factor, so the variance of a prediction is C times
+/// one number, its leverage.
 class Response
 {
 public:
