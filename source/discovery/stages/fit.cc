@@ -5,6 +5,13 @@
 
 namespace eunoe::discovery {
 
+double p_of_fit(const Findings &findings, const Fit &fit)
+{
+  const double modes = findings.reference.n_modes;
+  return findings.reference.p_distance(
+      fit.distance, std::max(1., modes - static_cast<double>(fit.effects.size())) / modes);
+}
+
 namespace {
 
 const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
@@ -76,14 +83,6 @@ Scored prune(const Workbench &bench, const Findings &findings, const Scored &mod
     result = find_scored(findings.posterior, best);
   }
   return result;
-}
-
-/// Probability that data are as far from a model as these, were it true.
-double p_of_fit(const Findings &findings, const Fit &fit)
-{
-  const double modes = findings.reference.n_modes;
-  return findings.reference.p_distance(
-      fit.distance, std::max(1., modes - static_cast<double>(fit.effects.size())) / modes);
 }
 
 /// Adds an effect to a model that does not describe the data, if the best larger set that holds it

@@ -243,41 +243,38 @@ Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit)
 }
 
 /// Members of a tie that the held-out data refute leave it, if two at least stay; if one stays with
-/// which the gap shrinks, it is named; and if none does, nothing is.
+/// which the gap shrinks, it is named; and if none does, nothing is. Only the likeliest are judged.
 Judgement judge_tie(Workbench &bench, Findings &findings)
 {
   constexpr std::size_t most = 4;
   Table rows = Table::array();
   std::vector<Scored> left;
   std::vector<EffectSet> refuted;
-  std::vector<Judgement> judgements;
+  std::vector<Judgement> judgements, of_left;
   for (std::size_t k = 0; k < findings.tie.size(); ++k) {
     const Scored &member = findings.tie[k];
     if (k >= most) {
       left.push_back(member);
       continue;
     }
-    const Judgement judgement = judge(bench, findings, member.fit);
-    judgements.push_back(judgement);
+    judgements.push_back(judge(bench, findings, member.fit));
+    const Judgement &judgement = judgements.back();
     rows.push_back({{"effects", name_of(bench, member.fit.effects)},
                     {"p", judgement.table.value("p of the chosen model", Table(nullptr))},
                     {"result", judgement.table["result"]}});
-    if (judgement.refutes())
+    if (judgement.refutes()) {
       refuted.push_back(member.fit.effects);
-    else
+    } else {
       left.push_back(member);
+      of_left.push_back(judgement);
+    }
   }
-  const auto of = [&](const Scored &member) -> const Judgement & {
-    std::size_t k = 0;
-    while (findings.tie[k].fit.effects != member.fit.effects)
-      ++k;
-    return judgements[std::min(k, judgements.size() - 1)];
-  };
   Judgement result = judgements.front();
   findings.withdrawn = left.empty();
-  if (left.size() >= 2 || (left.size() == 1 && of(left.front()).shrinks)) {
-    result = of(left.front());
+  if (!of_left.empty() && (left.size() >= 2 || of_left.front().shrinks)) {
+    result = of_left.front();
     findings.chosen = left.front();
+    findings.p_fit = p_of_fit(findings, findings.chosen.fit);
     findings.verdict = left.size() == 1 ? Verdict::named : Verdict::tie;
     findings.tie = left;
     findings.refuted = refuted;

@@ -76,6 +76,8 @@ Table separating_measurements(Workbench &bench, const std::vector<Scored> &tie);
 /// What remains of the data beside the closest model: where, and what it resembles.
 Table describe_remainder(const Workbench &bench, const Findings &findings);
 
+/// Probability that data are as far from a model as these, were it true.
+double p_of_fit(const Findings &findings, const Fit &fit);
 /// Interval (95 %) of the amplitude of one effect of a fit, in scales from the null value.
 Interval amplitude_interval(const Workbench &bench, const Findings &findings, const Fit &fit,
                             std::size_t member);
