@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and passes the tests. Tests labelled "long" are left out; run
-# them with: # Tests start the programs some hundred times: without a daemon for each, and without a search for
-# fast networks.
-export OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1
+# them with: # Tests start the programs some hundred times: without a search for fast networks for each.
+export OMPI_MCA_pml=ob1
 ctest --test-dir build/release -L long
 set -euo pipefail
 
@@ -14,7 +13,6 @@ if [ "$(id -u)" -eq 0 ]; then
   # As in a container; Open MPI wants to be asked twice.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-# Tests start the programs some hundred times: without a daemon for each, and without a search for
-# fast networks.
-export OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_pml=ob1
+# Tests start the programs some hundred times: without a search for fast networks for each.
+export OMPI_MCA_pml=ob1
 ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"
