@@ -1,8 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds, and passes the tests. Tests labelled "long" are left out; run
-# them with: # Tests start the programs some hundred times: without a search for fast networks for each.
-export OMPI_MCA_pml=ob1
-ctest --test-dir build/release -L long
+# them with: ctest --test-dir build/release -L long
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
