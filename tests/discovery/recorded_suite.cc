@@ -8,6 +8,7 @@
 // the table holds, and no study); table=FILE.
 
 #include "recorded_cases.h"
+#include "seed_correlation.h"
 
 #include <mpi.h>
 
@@ -18,9 +19,13 @@ using namespace test;
 void describe(const RecordedTable &table)
 {
   const RecordedLaboratory laboratory(table, 1);
-  for (const auto &[experiment, cells] : table.cells)
-    std::printf("%s: %zu cells, %zu runs of the base model\n", experiment.c_str(), cells.size(),
-                table.of(experiment, "base").size());
+  for (const auto &[experiment, cells] : table.cells) {
+    const SeedCorrelation seeds(table, experiment);
+    std::printf("%s: %zu cells, %zu runs of the base model, correlation of equal seeds %.3f "
+                "(by chance %.3f)\n",
+                experiment.c_str(), cells.size(), table.of(experiment, "base").size(), seeds.mean(),
+                seeds.scatter());
+  }
   std::printf("%zu runs, %u failed\n", table.runs.size(), table.n_failed);
   for (const Factor &factor : table.factors) {
     std::map<double, int> amplitudes;
