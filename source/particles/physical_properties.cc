@@ -58,7 +58,7 @@ struct Property
 constexpr double any = std::numeric_limits<double>::max();
 const Property properties[] = {
     {"young modulus", &Material::young_modulus, any, "Young's modulus (Pa)."},
-    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio."},
+    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio, below 0.5."},
     {"restitution coefficient", &Material::restitution, 1.,
      "Restitution coefficient; a pair takes the harmonic mean."},
     {"friction coefficient", &Material::friction, any,

@@ -53,7 +53,8 @@ def screen_row(effect: str) -> dict:
 
 def make_content(verdict: str) -> dict:
     found = verdict in ("named", "tie", "off catalogue")
-    content: dict = {"verdict": verdict, "p of nothing missing": 0.0001 if found else 0.4,
+    content: dict = {"verdict": verdict, "p of nothing missing": 0.012 if found else 0.4,
+                     "p of nothing missing is a bound": found,
                      "confidence off catalogue": 0.05,
                      "candidates": [{"effect": "cohesion", "confidence": 0.9},
                                     {"effect": "rolling_resistance", "confidence": 0.05}],

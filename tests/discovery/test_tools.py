@@ -62,6 +62,26 @@ class PageOfAStudy(InFolder):
             make_study(folder, verdict)
             self.assertIn(words, " ".join(verdict_text(Study(folder))))
 
+    def test_probability_that_draws_never_reach(self) -> None:
+        make_study(self.folder / "study", "named")
+        study = Study(self.folder / "study")
+        self.assertIn("probability at most 0.012.", " ".join(verdict_text(study)))
+        study.content["p of nothing missing is a bound"] = False
+        self.assertIn("probability 0.012.", " ".join(verdict_text(study)))
+
+    def test_what_held_out_data_say_of_a_tie(self) -> None:
+        make_study(self.folder / "study", "tie")
+        study = Study(self.folder / "study")
+        table = study.content["gaps"]["held-out"]
+        members = [{"effects": "cohesion", "p": 0.4, "result": "the gap shrinks"},
+                   {"effects": "rolling_resistance", "p": 0.06, "result": "the gap shrinks"}]
+        table["members of the tie"] = members
+        self.assertIn("refute none of the candidates (p of cohesion 0.4, rolling resistance 0.06)",
+                      held_out_text(study))
+        members[1]["result"] = "it does not describe the held-out data; the name is withdrawn"
+        self.assertIn("left 2 candidates; the held-out data speak against rolling resistance.",
+                      held_out_text(study))
+
     def test_without_held_out_data(self) -> None:
         make_study(self.folder / "study", "none")
         study = Study(self.folder / "study")

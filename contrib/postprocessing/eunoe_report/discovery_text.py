@@ -86,7 +86,9 @@ def _off_catalogue(study: Study) -> list[str]:
 def verdict_text(study: Study) -> list[str]:
     """Sentences that say what was found."""
     p = study.content["p of nothing missing"]
-    chance = f"If nothing were missing, data as far off as these would be found with probability {_probability(p)}."
+    most = "at most " if study.content.get("p of nothing missing is a bound") and p >= 0.001 else ""
+    chance = ("If nothing were missing, data as far off as these would be found with probability "
+              f"{most}{_probability(p)}.")
     if study.verdict == "named":
         return [*_named(study), chance, _where(study)]
     if study.verdict == "tie":
@@ -104,12 +106,15 @@ def verdict_text(study: Study) -> list[str]:
             "more observables, would help.", chance]
 
 
-def _refuted(table: dict) -> str:
-    """Which members of a tie the held-out data speak against."""
+def _members(table: dict) -> str:
+    """What the held-out data say of each member of a tie."""
     rows = table.get("members of the tie", [])
     refuted = [plain(row["effects"]) for row in rows if row["result"].endswith("withdrawn")]
-    if not refuted:
+    if not rows:
         return ""
+    if not refuted:
+        each = ", ".join(f"{plain(row['effects'])} {_probability(row['p'])}" for row in rows)
+        return f" They refute none of the candidates (p of {each})."
     return (f" The data of the fit alone left {len(rows)} candidates; the held-out data speak against "
             f"{', '.join(refuted)}.")
 
@@ -120,14 +125,14 @@ def held_out_text(study: Study) -> str:
         return ("No data were held out, so nothing tests the answer but the data that it was found "
                 "with.")
     if "shrink" not in table or table["shrink"] is None:
-        return f"Held-out data: {table['result']}.{_refuted(table)}"
+        return f"Held-out data: {table['result']}.{_members(table)}"
     low, high = table["shrink interval"]
     chosen = "" if study.verdict != "tie" else (
         f" with {plain(study.content['tie'][0]['effects'])}, the likeliest by a little, added")
     change = "shrinks" if table["shrink"] >= 0. else "grows"
     return (f"On data that were held out, the gap {change} by {percent(abs(table['shrink']), 0)}{chosen} "
             f"(95{SPACE}% interval of the shrink {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
-            f"{table['result']}.{_refuted(table)}")
+            f"{table['result']}.{_members(table)}")
 
 
 def gap_text(study: Study) -> str:

@@ -145,6 +145,7 @@ Table content(Workbench &bench, const Findings &findings, const Table &stages)
   Table result = {{"verdict", name_of(findings.verdict)},
                   {"exit code", exit_code(findings.verdict)},
                   {"p of nothing missing", findings.p_detected},
+                  {"p of nothing missing is a bound", findings.p_is_bound},
                   {"confidence off catalogue", findings.off_catalogue}};
   result["candidates"] = candidates(bench, findings);
   result["amplitudes"] = describe_amplitudes(bench, findings);

@@ -99,7 +99,11 @@ Table look(Workbench &bench, Findings &findings, const double share)
   findings.reference = make_reference(bench, responses);
   findings.evidence = evidence_against_base(bench, responses);
   const double p = findings.reference.p_joint(findings.evidence, true);
-  findings.p_detected = std::min(findings.p_detected, findings.decision.safety_of_p * p / share);
+  const double p_of_look = findings.decision.safety_of_p * p / share;
+  if (p_of_look < findings.p_detected) {
+    findings.p_detected = p_of_look;
+    findings.p_is_bound = p <= findings.reference.least_p();
+  }
   findings.detected = findings.p_detected <= bench.options.level;
   return {{"sets of runs of the base model", bench.base().size()},
           {"p", p},

@@ -28,6 +28,8 @@ struct Reference
   double p_gain(double gain) const;
   /// Of the least of the three (of the first two without effects), which is itself calibrated.
   double p_joint(const Evidence &evidence, bool with_gain) const;
+  /// The smallest p that so many draws can show: what they never reach may be far less likely.
+  double least_p() const { return chi_square ? 0. : 1. / (1. + static_cast<double>(draws.size())); }
   /// The value that the draws exceed with this probability.
   double gain_limit(double probability) const;
 

@@ -20,7 +20,8 @@ struct Findings
 
   // screen
   Reference reference;
-  double p_detected = 1.; ///< of all evidence together
+  double p_detected = 1.;  ///< of all evidence together
+  bool p_is_bound = false; ///< no draw of the bootstrap reaches the evidence: it is less likely yet
   bool detected = false;
 
   // confirm, fit, iterate
