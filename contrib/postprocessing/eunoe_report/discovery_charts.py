@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from matplotlib.ticker import FuncFormatter
 
 from . import style
 from .discovery_results import Fingerprint, Study
@@ -53,6 +54,15 @@ def _draw_band(axes: Axes, x: np.ndarray, rows: list[dict], name: str, colour: s
     axes.plot(x, mean, color=colour, linewidth=1.1)
 
 
+def _label_values(axes: Axes, unit: str) -> None:
+    """Power of ten in the label instead of above the axes, where it would move the title."""
+    exponent = int(np.floor(np.log10(max(np.abs(axes.get_ylim())))))
+    exponent = exponent if exponent < -2 or exponent > 3 else 0
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10.**exponent:.5g}"))
+    axes.set_ylabel((f"$10^{{{exponent}}}$ " if exponent else "") + (unit if unit != "1" else ""),
+                    fontsize=7.5)
+
+
 def envelope_figure(study: Study, held_out: bool) -> Figure:
     """Measured cells and the scatter of the model's runs, before and after."""
     groups = study.envelopes(held_out)
@@ -72,10 +82,8 @@ def envelope_figure(study: Study, held_out: bool) -> Figure:
                           color=style.VERMILLION if is_flagged else style.INK)
         description = study.observables[experiment, observable]
         axes.set_title(f"{experiment}: {observable.replace('_', ' ')}", fontsize=7.5)
-        axes.set_ylabel(description["unit"] if description["unit"] != "1" else "", fontsize=7.5)
         axes.tick_params(labelsize=7)
-        axes.ticklabel_format(axis="y", scilimits=(-3, 4), useMathText=True)
-        axes.yaxis.get_offset_text().set_fontsize(6.5)
+        _label_values(axes, description["unit"])
         if len(rows) == 1:
             axes.set_xlim(x[0] - 1., x[0] + 1.)
             axes.set_xticks([])
