@@ -81,6 +81,11 @@ void misfits()
   check("deviance", std::abs(misfit.deviance(12., 1.5) - 13.5) < 1e-5);
 }
 
+Slopes same_slopes(const double square)
+{
+  return {Eigen::VectorXd::Constant(1, square), Eigen::VectorXd::Constant(1, square)};
+}
+
 void responses()
 {
   // A straight response with exact values, at 0, 1 and 2, and replicates.
@@ -90,7 +95,7 @@ void responses()
   for (const auto &[u, count] : {std::pair<double, int>(0., 10), {1., 4}, {2., 4}})
     for (int k = 0; k < count; ++k)
       runs.push_back({Eigen::VectorXd::Constant(1, u), origin + u * slope, 1.});
-  const Response response(runs, Eigen::VectorXd::Constant(1, 1e12));
+  const Response response(runs, same_slopes(1e12));
   const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 1.3);
   check("origin", (response.origin() - origin).norm() < 1e-6);
   check("change", (response.change(at) - 1.3 * slope).norm() < 1e-6);
@@ -120,7 +125,7 @@ std::vector<Response::Run> saturating(const std::vector<double> &amplitudes)
 void bent_responses()
 {
   // Of the mean slope between 0 and 1.
-  const Eigen::VectorXd slope = Eigen::VectorXd::Constant(1, 100. * 100.);
+  const Slopes slope = same_slopes(100. * 100.);
   const Eigen::VectorXd small = Eigen::VectorXd::Constant(1, 0.04);
   const Response far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
   const double truth = 100. * std::pow(0.04, power);
@@ -131,6 +136,32 @@ void bent_responses()
   check("runs there mend it", std::abs(near.change(small)(0) - truth) < 1.,
         std::to_string(near.change(small)(0)));
   check("and are trusted", near.leverage(small) < 0.5);
+}
+
+/// A tenth of the values respond, most of it at small amplitudes: an angle of repose to rolling
+/// resistance.
+void steep_responses()
+{
+  const auto value = [](double u) { return 45. * std::pow(u, 0.45); };
+  std::vector<Response::Run> runs;
+  for (const auto &[u, count] :
+       {std::pair<double, int>(0., 30), {0.22, 8}, {0.25, 16}, {0.3, 8}, {1., 2}, {2., 2}})
+    for (int k = 0; k < count; ++k) {
+      Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
+      values(0) = value(u);
+      runs.push_back({Eigen::VectorXd::Constant(1, u), values, 1.});
+    }
+  const auto mean_square = [&](double u) {
+    return Eigen::VectorXd::Constant(1, std::pow(value(u) / u, 2) / 10.);
+  };
+  const Response response(runs, {mean_square(1.5), mean_square(0.22)});
+  for (const double u : {0.22, 0.25, 0.3, 1., 2.}) {
+    const double miss = response.change(Eigen::VectorXd::Constant(1, u))(0) - value(u);
+    check("follows the runs that are there", std::abs(miss) < 0.5, std::to_string(miss));
+  }
+  check("what bends is not seen before them",
+        response.bends_unseen(Eigen::VectorXd::Constant(1, 0.2)) &&
+            !response.bends_unseen(Eigen::VectorXd::Constant(1, 0.22)));
 }
 
 void modes_and_noise()
@@ -173,5 +204,6 @@ int main()
   misfits();
   responses();
   bent_responses();
+  steep_responses();
   modes_and_noise();
 }

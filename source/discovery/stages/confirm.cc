@@ -6,29 +6,30 @@
 namespace eunoe::discovery {
 
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position)
+                           const Eigen::VectorXd &position, const double nearness)
 {
-  constexpr double relative = 0.15;
   const Amplitudes wanted = bench.amplitudes(set, position);
-  for (const auto &runs : bench.runs) {
-    const Amplitudes &amplitudes = runs.first;
-    if (amplitudes.size() != wanted.size() || runs.second.empty())
+  Amplitudes result = wanted;
+  double least = nearness;
+  for (const auto &[amplitudes, sets] : bench.runs) {
+    if (wanted.empty() || amplitudes.size() != wanted.size() || sets.empty())
       continue;
-    const bool near = std::all_of(wanted.begin(), wanted.end(), [&](const auto &entry) {
-      const auto found = amplitudes.find(entry.first);
-      if (found == amplitudes.end())
-        return false;
-      double null_value = 0.;
-      for (const Factor &effect : bench.effects)
-        if (effect.name == entry.first)
-          null_value = effect.null_value;
-      return std::abs(found->second - entry.second) <=
-             relative * std::abs(entry.second - null_value);
-    });
-    if (near && !wanted.empty())
-      return amplitudes;
+    double apart = 0.;
+    for (const std::size_t k : set) {
+      const Factor &effect = bench.effects[k];
+      const auto there = amplitudes.find(effect.name), here = wanted.find(effect.name);
+      if (here != wanted.end())
+        apart = std::max(apart, there == amplitudes.end()
+                                    ? 2. * nearness
+                                    : std::abs((there->second - here->second) /
+                                               (here->second - effect.null_value)));
+    }
+    if (apart <= least) {
+      least = apart;
+      result = amplitudes;
+    }
   }
-  return wanted;
+  return result;
 }
 
 Table describe_models(const Workbench &bench, const std::vector<Scored> &models)

@@ -20,10 +20,26 @@ const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
                        [&](const Scored &model) { return model.fit.effects == set; });
 }
 
+/// How far from a fit its verifying runs may be. Before the first amplitude that was run nothing is
+/// known of how the response bends, so that only runs at the fit itself tell whether it is right.
+double nearness_of_runs(const Workbench &bench, const Fit &fit)
+{
+  return bench.response(fit.effects).bends_unseen(fit.position) ? 0.03 : 0.15;
+}
+
+/// Whether there are runs to rest the fit on.
+bool is_verified(const Workbench &bench, const Fit &fit)
+{
+  const auto there = bench.runs.find(
+      near_amplitudes(bench, fit.effects, fit.position, nearness_of_runs(bench, fit)));
+  return there != bench.runs.end() && !there->second.empty();
+}
+
 /// Makes runs at the amplitudes of a fit, and says how well the emulator had foreseen them.
 Table verify(Workbench &bench, const Fit &fit, const unsigned int number)
 {
-  const Amplitudes amplitudes = near_amplitudes(bench, fit.effects, fit.position);
+  const Amplitudes amplitudes =
+      near_amplitudes(bench, fit.effects, fit.position, nearness_of_runs(bench, fit));
   Eigen::VectorXd position = fit.position;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
     const Factor &effect = bench.effects[fit.effects[k]];
@@ -120,9 +136,13 @@ Table stage_fit(Workbench &bench, Findings &findings)
 {
   Table passes = Table::array();
   Table steps = Table::array();
-  for (unsigned int pass = 0; pass < 2; ++pass) {
+  constexpr unsigned int least_passes = 2, most_passes = 6;
+  for (unsigned int pass = 0; pass < most_passes; ++pass) {
     findings.chosen = prune(bench, findings, findings.posterior.best(), steps);
-    passes.push_back(verify(bench, findings.chosen.fit, (bench.options.fit_runs + 1 - pass) / 2));
+    if (pass >= least_passes && is_verified(bench, findings.chosen.fit))
+      break;
+    passes.push_back(
+        verify(bench, findings.chosen.fit, (bench.options.fit_runs + 1 - pass % 2) / 2));
     settle_chaos(bench);
     findings.posterior = compare_models(bench, findings.decision);
   }

@@ -287,43 +287,53 @@ std::vector<Response::Run> Workbench::runs_of(
   return result;
 }
 
-Eigen::VectorXd Workbench::slope_squares(const EffectSet &set) const
+Slopes Workbench::slopes(const EffectSet &set) const
 {
-  constexpr double least = 1e-3;
+  constexpr double least = 1e-3, clear = 3.;
   Eigen::VectorXd base_mean = Eigen::VectorXd::Zero(modes.n_modes());
   for (const RunSet &run : base())
     base_mean += run.modes / static_cast<double>(base().size());
-  Eigen::VectorXd result = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(set.size()), least);
+  const auto mean_square = [&](const Eigen::VectorXd &slope) {
+    return misfit.coordinates(slope).squaredNorm() / static_cast<double>(misfit.size());
+  };
+  Slopes result;
+  result.overall = Eigen::VectorXd::Constant(static_cast<Eigen::Index>(set.size()), least);
+  result.steepest = result.overall;
   for (std::size_t k = 0; k < set.size(); ++k) {
     const Factor &effect = effects[set[k]];
+    double &overall = result.overall(static_cast<Eigen::Index>(k)), steepest = least;
     Eigen::VectorXd products = Eigen::VectorXd::Zero(modes.n_modes());
     double squares = 0.;
     for (const auto &[amplitudes, sets] : runs) {
-      if (amplitudes.size() != 1 || amplitudes.begin()->first != effect.name)
+      if (amplitudes.size() != 1 || amplitudes.begin()->first != effect.name || sets.empty())
         continue;
       const double u = (amplitudes.begin()->second - effect.null_value) / effect.scale;
-      for (const RunSet &run : sets) {
-        products += u * (run.modes - base_mean);
-        squares += u * u;
-      }
+      const auto number = static_cast<double>(sets.size());
+      Eigen::VectorXd change = Eigen::VectorXd::Zero(modes.n_modes());
+      for (const RunSet &run : sets)
+        change += (run.modes - base_mean) / number;
+      products += number * u * change;
+      squares += number * u * u;
+      const double noise = (1. / number + 1. / static_cast<double>(base().size())) / (u * u);
+      const double square = mean_square(change / u) - noise;
+      if (square > clear * noise * std::sqrt(2. / static_cast<double>(misfit.size())))
+        steepest = std::max(steepest, square);
     }
     if (squares > 0.)
-      result(static_cast<Eigen::Index>(k)) =
-          std::max(least, misfit.coordinates(products / squares).squaredNorm() /
-                                  static_cast<double>(misfit.size()) -
-                              1. / squares);
+      overall = std::max(least, mean_square(products / squares) - 1. / squares);
+    result.steepest(static_cast<Eigen::Index>(k)) = std::max(overall, steepest);
   }
   return result;
 }
 
 Response Workbench::response_of_modes(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }), slope_squares(set));
+  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }), slopes(set));
 }
 
 Response Workbench::response_of_columns(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.values; }), slope_squares(set));
+  return Response(runs_of(set, [](const RunSet &run) { return run.values; }), slopes(set));
 }
 
 std::string name_of(const Workbench &bench, const EffectSet &set)

@@ -44,16 +44,19 @@ double next_level(const std::vector<Response::Run> &runs, const Eigen::Index eff
   return next;
 }
 
-/// Amplitudes of an effect after which the next one is far away, so that a response that is bent
-/// smoothly by what runs there say would be wrong before.
+/// Amplitudes of an effect beyond which runs go on to far larger ones, so that a response that is
+/// bent smoothly by what runs there say would be wrong before.
 std::vector<double> knots(const std::vector<Response::Run> &runs, const Eigen::Index effect)
 {
   constexpr double far = 3.;
   std::vector<double> result;
   for (const Response::Run &run : runs) {
     const double u = run.position(effect);
-    if (std::abs(next_level(runs, effect, u, u)) >= far * std::abs(u) && u != 0. &&
-        std::find(result.begin(), result.end(), u) == result.end())
+    const bool goes_on = std::any_of(runs.begin(), runs.end(), [&](const Response::Run &other) {
+      return u * other.position(effect) > 0. &&
+             std::abs(other.position(effect)) >= far * std::abs(u);
+    });
+    if (goes_on && std::find(result.begin(), result.end(), u) == result.end())
       result.push_back(u);
   }
   return result;
@@ -90,40 +93,43 @@ void Response::add_terms(const std::vector<Run> &runs, const Eigen::Index n_effe
 }
 
 double Response::stiffness(const Term &term, const std::vector<Run> &runs,
-                           const Eigen::VectorXd &slope_squares) const
+                           const Slopes &slopes) const
 {
   // Expected sizes over that of the slope: second order, third order, products.
   constexpr double expected_bend[] = {0.4, 0.15}, expected_product = 0.4;
   double square = 1.;
   int order = 0, n_factors = 0;
-  for (Eigen::Index k = 0; k < slope_squares.size(); ++k)
+  for (Eigen::Index k = 0; k < slopes.overall.size(); ++k)
     if (const int power = term.powers[static_cast<std::size_t>(k)]; power > 0) {
       order = std::max(order, power);
       ++n_factors;
-      square *= slope_squares(k);
-      if (term.knot != 0.)
-        return 1. / (square * expected_turn * expected_turn *
-                     std::log(next_level(runs, k, term.knot, term.knot) / term.knot));
+      square *= slopes.overall(k);
+      if (term.knot != 0.) {
+        // Before the first amplitude only the mean slope is known; the mean of log(first / u) is 1.
+        const double unseen = next_level(runs, k, 0., term.knot) == term.knot ? 1. : 0.;
+        const double further = std::log(next_level(runs, k, term.knot, term.knot) / term.knot);
+        return 1. / (slopes.steepest(k) * expected_turn * expected_turn * (unseen + further));
+      }
     }
   if (n_factors == 2)
     return 1. / (std::sqrt(square) * expected_product * expected_product);
   return order > 1 ? 1. / (square * expected_bend[order - 2] * expected_bend[order - 2]) : 0.;
 }
 
-Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares)
-    : least(Eigen::VectorXd::Zero(slope_squares.size())), most(least), first_below(least),
-      first_above(least), slopes(slope_squares)
+Response::Response(const std::vector<Run> &runs, const Slopes &slopes)
+    : least(Eigen::VectorXd::Zero(slopes.overall.size())), most(least), first_below(least),
+      first_above(least), steepest(slopes.steepest)
 {
   constexpr double beyond = 1.5;
   for (const Run &run : runs) {
     least = least.cwiseMin(beyond * run.position);
     most = most.cwiseMax(beyond * run.position);
   }
-  for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+  for (Eigen::Index k = 0; k < steepest.size(); ++k) {
     first_below(k) = next_level(runs, k, 0., -1.);
     first_above(k) = next_level(runs, k, 0., 1.);
   }
-  add_terms(runs, slope_squares.size());
+  add_terms(runs, steepest.size());
   const auto n_terms = static_cast<Eigen::Index>(terms.size());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n_terms, n_terms);
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, runs.front().values.size());
@@ -134,7 +140,7 @@ Response::Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_sq
     right += t * run.values.transpose() / run.variance;
   }
   for (Eigen::Index t = 1; t < n_terms; ++t) {
-    normal(t, t) += stiffness(terms[static_cast<std::size_t>(t)], runs, slope_squares);
+    normal(t, t) += stiffness(terms[static_cast<std::size_t>(t)], runs, slopes);
     normal(t, t) *= 1. + 1e-9;
   }
   inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
@@ -180,10 +186,10 @@ double Response::leverage(const Eigen::VectorXd &position) const
 double Response::unseen_bend(const Eigen::VectorXd &position) const
 {
   double result = 0.;
-  for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+  for (Eigen::Index k = 0; k < steepest.size(); ++k) {
     const double u = position(k), first = u > 0. ? first_above(k) : first_below(k);
     if (u != 0. && std::abs(u) < std::abs(first))
-      result += u * u * slopes(k) * expected_turn * expected_turn * std::log(first / u);
+      result += u * u * steepest(k) * expected_turn * expected_turn * std::log(first / u);
   }
   return result;
 }

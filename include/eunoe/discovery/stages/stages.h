@@ -59,9 +59,12 @@ void settle_noise(Workbench &bench);
 /// What evidence would be were nothing missing, and the tail of the misfit that it shows.
 void settle_base_reference(Workbench &bench, Findings &findings);
 
-/// Amplitudes at which more runs tell most: those of a fit, or of runs nearby.
+/// Amplitudes at which more runs tell most: those of the nearest runs, or where none are near,
+/// those of the position itself.
+/// @param nearness largest distance from each effect's null value to another amplitude, relative to
+///   that of the position
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position);
+                           const Eigen::VectorXd &position, double nearness = 0.15);
 
 /// Verdict, tie set and confidences from the posterior.
 void decide(Findings &findings);

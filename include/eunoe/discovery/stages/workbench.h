@@ -106,7 +106,7 @@ struct Workbench
 
 private:
   /// Mean square over modes of an effect's change at one scale, in units of chaos, without noise.
-  Eigen::VectorXd slope_squares(const EffectSet &set) const;
+  Slopes slopes(const EffectSet &set) const;
   double estimate_correlation(const EffectSet &active) const;
   std::vector<Response::Run> runs_of(const EffectSet &set,
                                      const std::function<Eigen::VectorXd(const RunSet &)> &) const;

@@ -6,8 +6,16 @@
 
 namespace eunoe::discovery {
 
+/// How steeply runs respond to each effect: mean squares over values, in units of the covariance of
+/// a run, of the change by one scale.
+struct Slopes
+{
+  Eigen::VectorXd overall;  ///< of all amplitudes together
+  Eigen::VectorXd steepest; ///< where the change over the amplitude is largest; at least overall
+};
+
 /// Emulator: the mean outcome of a run as a polynomial of the amplitudes of a few effects, by
-/// generalised least squares, with a kink at amplitudes beyond which there are no runs for long.
+/// generalised least squares, with kinks at amplitudes beyond which runs go on to far larger ones.
 /// All runs have the same covariance C up to a factor, so the variance of a prediction is C times
 /// one number, its leverage.
 class Response
@@ -23,10 +31,9 @@ public:
   Response() = default;
 
   /// @param runs at least one of them at the origin
-  /// @param slope_squares of each effect: mean square over values, in units of C, of the change at
-  ///   one scale. How much a response may bend is expected in proportion to it; noise in the
+  /// @param slopes How much a response may bend is expected in proportion to them; noise in the
   ///   slope at a fitted amplitude would make its interval too narrow.
-  Response(const std::vector<Run> &runs, const Eigen::VectorXd &slope_squares);
+  Response(const std::vector<Run> &runs, const Slopes &slopes);
 
   /// Predicted outcome at the origin.
   Eigen::VectorXd origin() const { return coefficients.row(0).transpose(); }
@@ -38,6 +45,8 @@ public:
   /// Leverage of the outcome itself, origin and change, with what bends unseen before the first
   /// amplitude that was run.
   double leverage(const Eigen::VectorXd &position) const;
+  /// Whether an effect lies before its first amplitude that was run.
+  bool bends_unseen(const Eigen::VectorXd &position) const { return unseen_bend(position) > 0.; }
 
   /// What the fit would be had the mean of the runs at the origin come out differently: the origin
   /// moves, and every change that is measured from it.
@@ -59,8 +68,7 @@ private:
   };
   void add_terms(const std::vector<Run> &runs, Eigen::Index n_effects);
   /// Inverse mean square that is expected of a term's coefficient; 0: anything.
-  double stiffness(const Term &term, const std::vector<Run> &runs,
-                   const Eigen::VectorXd &slope_squares) const;
+  double stiffness(const Term &term, const std::vector<Run> &runs, const Slopes &slopes) const;
   /// Variance of a change before the first amplitude of an effect: its slope there is that beyond,
   /// but for a random walk along the logarithm of the amplitude.
   double unseen_bend(const Eigen::VectorXd &position) const;
@@ -71,7 +79,7 @@ private:
   Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
   Eigen::VectorXd least, most;
   Eigen::VectorXd first_below, first_above; ///< nearest amplitudes that were run; 0: none
-  Eigen::VectorXd slopes;                   ///< squares of slopes, in units of C
+  Eigen::VectorXd steepest;                 ///< squares of slopes, in units of C
   double base_weight = 0.;                  ///< of the runs at the origin
 };
 
