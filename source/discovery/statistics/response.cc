@@ -44,19 +44,21 @@ double next_level(const std::vector<Response::Run> &runs, const Eigen::Index eff
   return next;
 }
 
-/// Amplitudes of an effect beyond which runs go on to far larger ones, so that a response that is
-/// bent smoothly by what runs there say would be wrong before.
+/// Amplitudes of an effect after which the next one is far away, or beyond which runs go on to much
+/// larger ones, so that a response that is bent smoothly by what runs there say would be wrong
+/// before.
 std::vector<double> knots(const std::vector<Response::Run> &runs, const Eigen::Index effect)
 {
-  constexpr double far = 3.;
+  constexpr double far = 3., much_larger = 6.;
   std::vector<double> result;
   for (const Response::Run &run : runs) {
     const double u = run.position(effect);
+    if (u == 0. || std::find(result.begin(), result.end(), u) != result.end())
+      continue;
     const bool goes_on = std::any_of(runs.begin(), runs.end(), [&](const Response::Run &other) {
-      return u * other.position(effect) > 0. &&
-             std::abs(other.position(effect)) >= far * std::abs(u);
+      return other.position(effect) / u >= much_larger;
     });
-    if (goes_on && std::find(result.begin(), result.end(), u) == result.end())
+    if (goes_on || next_level(runs, effect, u, u) / u >= far)
       result.push_back(u);
   }
   return result;
@@ -118,18 +120,18 @@ double Response::stiffness(const Term &term, const std::vector<Run> &runs,
 
 Response::Response(const std::vector<Run> &runs, const Slopes &slopes)
     : least(Eigen::VectorXd::Zero(slopes.overall.size())), most(least), first_below(least),
-      first_above(least), steepest(slopes.steepest)
+      first_above(least), overall(slopes.overall)
 {
   constexpr double beyond = 1.5;
   for (const Run &run : runs) {
     least = least.cwiseMin(beyond * run.position);
     most = most.cwiseMax(beyond * run.position);
   }
-  for (Eigen::Index k = 0; k < steepest.size(); ++k) {
+  for (Eigen::Index k = 0; k < overall.size(); ++k) {
     first_below(k) = next_level(runs, k, 0., -1.);
     first_above(k) = next_level(runs, k, 0., 1.);
   }
-  add_terms(runs, steepest.size());
+  add_terms(runs, overall.size());
   const auto n_terms = static_cast<Eigen::Index>(terms.size());
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n_terms, n_terms);
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, runs.front().values.size());
@@ -186,10 +188,10 @@ double Response::leverage(const Eigen::VectorXd &position) const
 double Response::unseen_bend(const Eigen::VectorXd &position) const
 {
   double result = 0.;
-  for (Eigen::Index k = 0; k < steepest.size(); ++k) {
+  for (Eigen::Index k = 0; k < overall.size(); ++k) {
     const double u = position(k), first = u > 0. ? first_above(k) : first_below(k);
     if (u != 0. && std::abs(u) < std::abs(first))
-      result += u * u * steepest(k) * expected_turn * expected_turn * std::log(first / u);
+      result += u * u * overall(k) * expected_turn * expected_turn * std::log(first / u);
   }
   return result;
 }

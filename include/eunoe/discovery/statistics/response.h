@@ -79,7 +79,7 @@ private:
   Eigen::MatrixXd inverse;      ///< covariance of the coefficients in units of C
   Eigen::VectorXd least, most;
   Eigen::VectorXd first_below, first_above; ///< nearest amplitudes that were run; 0: none
-  Eigen::VectorXd steepest;                 ///< squares of slopes, in units of C
+  Eigen::VectorXd overall;                  ///< squares of slopes, in units of C
   double base_weight = 0.;                  ///< of the runs at the origin
 };
 
