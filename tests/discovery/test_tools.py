@@ -78,6 +78,9 @@ class PageOfAStudy(InFolder):
         table["members of the tie"] = members
         self.assertIn("refute none of the candidates (p of cohesion 0.4, rolling resistance 0.06)",
                       held_out_text(study))
+        table["members of the tie"] = [member | {"p": None} for member in members]
+        self.assertNotIn("refute", held_out_text(study))
+        table["members of the tie"] = members
         members[1]["result"] = "it does not describe the held-out data; the name is withdrawn"
         self.assertIn("left 2 candidates; the held-out data speak against rolling resistance.",
                       held_out_text(study))

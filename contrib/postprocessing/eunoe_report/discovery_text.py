@@ -113,8 +113,10 @@ def _members(table: dict) -> str:
     if not rows:
         return ""
     if not refuted:
-        each = ", ".join(f"{plain(row['effects'])} {_probability(row['p'])}" for row in rows)
-        return f" They refute none of the candidates (p of {each})."
+        # Without runs of the held-out experiments there is no p.
+        each = ", ".join(f"{plain(row['effects'])} {_probability(row['p'])}" for row in rows
+                         if row["p"] is not None)
+        return f" The held-out data refute none of the candidates (p of {each})." if each else ""
     return (f" The data of the fit alone left {len(rows)} candidates; the held-out data speak against "
             f"{', '.join(refuted)}.")
 
