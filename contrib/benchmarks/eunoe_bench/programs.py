@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -49,9 +50,10 @@ def launch(command: list[str], ranks: int, folder: Path) -> str:
 
 
 def said(*command: str) -> str:
-    """What a command printed; LIGGGHTS ends its help with an error."""
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          check=False).stdout
+    """What a command printed; LIGGGHTS ends its help with an error and leaves a log behind."""
+    with tempfile.TemporaryDirectory() as folder:
+        return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, check=False).stdout
 
 
 class Eunoe:
