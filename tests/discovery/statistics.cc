@@ -160,8 +160,8 @@ void steep_responses()
     check("follows the runs that are there", std::abs(miss) < 0.5, std::to_string(miss));
   }
   check("what bends is not seen before them",
-        response.bends_unseen(Eigen::VectorXd::Constant(1, 0.2)) &&
-            !response.bends_unseen(Eigen::VectorXd::Constant(1, 0.22)));
+        response.unseen_bends(Eigen::VectorXd::Constant(1, 0.2))(0) > 0. &&
+            response.unseen_bends(Eigen::VectorXd::Constant(1, 0.22))(0) == 0.);
 }
 
 void modes_and_noise()

@@ -21,8 +21,9 @@ struct Nature
 {
   std::uint32_t seed = 1; ///< of fingerprints and chaos
   unsigned int n_effects = 12;
-  double bend = 0.3;             ///< second-order change over the first-order one at one scale
-  double alike = 0.6;            ///< share of fingerprints that stems from a few common patterns
+  double power = 1.;  ///< of the amplitude, with which changes by effects that only add grow
+  double bend = 0.3;  ///< second-order change over the first-order one at one scale
+  double alike = 0.6; ///< share of fingerprints that stems from a few common patterns
   double strength_of_scale = 5.; ///< strength at an amplitude of one scale
   double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
   double failures = 0.02;        ///< share of runs that fail
@@ -107,8 +108,9 @@ public:
         continue;
       const double u = (found->second - f.null_value) / f.scale;
       const Pattern &p = patterns.at(f.name).at(experiment);
-      const double bent = f.kind == Factor::Kind::nuisance ? 0. : u * std::abs(u);
-      result += crossed * (u * p.first + bent * p.second);
+      const double first = f.sign == Factor::Sign::above ? std::pow(u, nature.power) : u;
+      const double second = f.kind == Factor::Kind::nuisance ? 0. : u * std::abs(u);
+      result += crossed * (first * p.first + second * p.second);
       crossed = 0.9; // effects weaken each other
     }
     return result;

@@ -6,8 +6,9 @@
 namespace eunoe::discovery {
 
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position, const double nearness)
+                           const Eigen::VectorXd &position)
 {
+  constexpr double nearness = 0.15;
   const Amplitudes wanted = bench.amplitudes(set, position);
   Amplitudes result = wanted;
   double least = nearness;

@@ -20,26 +20,46 @@ const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
                        [&](const Scored &model) { return model.fit.effects == set; });
 }
 
-/// How far from a fit its verifying runs may be. Before the first amplitude that was run nothing is
-/// known of how the response bends, so that only runs at the fit itself tell whether it is right.
-double nearness_of_runs(const Workbench &bench, const Fit &fit)
+/// Variance of the data along what one effect of a fit changes.
+double variance_along(const Workbench &bench, const Fit &fit, const Response &response,
+                      const Eigen::Index effect)
 {
-  return bench.response(fit.effects).bends_unseen(fit.position) ? 0.03 : 0.15;
+  Eigen::VectorXd alone = Eigen::VectorXd::Zero(fit.position.size());
+  alone(effect) = fit.position(effect);
+  const Eigen::VectorXd squares = response.change(alone).cwiseAbs2();
+  const Eigen::VectorXd variance = bench.misfit.variance(fit.leverage);
+  return squares.sum() > 0. ? squares.dot(variance) / squares.sum() : variance.mean();
+}
+
+/// Where runs teach most about a fit. That is the fit itself, unless an effect lies before the
+/// first amplitude that was run, and may bend there by as much as the data could tell: then half
+/// way to nothing, so that the next fit lies between amplitudes that were run. Runs at the fit
+/// itself would draw nearer and nearer to a truth on one side of them without ever reaching it.
+Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit)
+{
+  constexpr double negligible = 0.25;
+  const Response response = bench.response(fit.effects);
+  const Eigen::VectorXd bends =
+      response.unseen_bends(fit.position) * static_cast<double>(bench.misfit.size());
+  Eigen::VectorXd place = fit.position;
+  for (Eigen::Index k = 0; k < place.size(); ++k)
+    if (bends(k) > negligible * variance_along(bench, fit, response, k))
+      place(k) *= 0.5;
+  return place;
 }
 
 /// Whether there are runs to rest the fit on.
 bool is_verified(const Workbench &bench, const Fit &fit)
 {
-  const auto there = bench.runs.find(
-      near_amplitudes(bench, fit.effects, fit.position, nearness_of_runs(bench, fit)));
-  return there != bench.runs.end() && !there->second.empty();
+  const Eigen::VectorXd place = place_of_runs(bench, fit);
+  const auto there = bench.runs.find(near_amplitudes(bench, fit.effects, place));
+  return place == fit.position && there != bench.runs.end() && !there->second.empty();
 }
 
-/// Makes runs at the amplitudes of a fit, and says how well the emulator had foreseen them.
+/// Makes runs to rest a fit on, and says how well the emulator had foreseen them.
 Table verify(Workbench &bench, const Fit &fit, const unsigned int number)
 {
-  const Amplitudes amplitudes =
-      near_amplitudes(bench, fit.effects, fit.position, nearness_of_runs(bench, fit));
+  const Amplitudes amplitudes = near_amplitudes(bench, fit.effects, place_of_runs(bench, fit));
   Eigen::VectorXd position = fit.position;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
     const Factor &effect = bench.effects[fit.effects[k]];

@@ -182,16 +182,16 @@ double Response::change_leverage(const Eigen::VectorXd &position) const
 double Response::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
-  return t.dot(inverse * t) + unseen_bend(position);
+  return t.dot(inverse * t) + unseen_bends(position).sum();
 }
 
-double Response::unseen_bend(const Eigen::VectorXd &position) const
+Eigen::VectorXd Response::unseen_bends(const Eigen::VectorXd &position) const
 {
-  double result = 0.;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(overall.size());
   for (Eigen::Index k = 0; k < overall.size(); ++k) {
     const double u = position(k), first = u > 0. ? first_above(k) : first_below(k);
     if (u != 0. && std::abs(u) < std::abs(first))
-      result += u * u * overall(k) * expected_turn * expected_turn * std::log(first / u);
+      result(k) = u * u * overall(k) * expected_turn * expected_turn * std::log(first / u);
   }
   return result;
 }

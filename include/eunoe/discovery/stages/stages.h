@@ -60,11 +60,10 @@ void settle_noise(Workbench &bench);
 void settle_base_reference(Workbench &bench, Findings &findings);
 
 /// Amplitudes at which more runs tell most: those of the nearest runs, or where none are near,
-/// those of the position itself.
-/// @param nearness largest distance from each effect's null value to another amplitude, relative to
-///   that of the position
+/// those of the position itself. Near is what differs by at most 15 % of the distance from the null
+/// value.
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position, double nearness = 0.15);
+                           const Eigen::VectorXd &position);
 
 /// Verdict, tie set and confidences from the posterior.
 void decide(Findings &findings);

@@ -45,8 +45,9 @@ public:
   /// Leverage of the outcome itself, origin and change, with what bends unseen before the first
   /// amplitude that was run.
   double leverage(const Eigen::VectorXd &position) const;
-  /// Whether an effect lies before its first amplitude that was run.
-  bool bends_unseen(const Eigen::VectorXd &position) const { return unseen_bend(position) > 0.; }
+  /// What of it is due to each effect that lies before its first amplitude that was run: its slope
+  /// there is that beyond, but for a random walk along the logarithm of the amplitude.
+  Eigen::VectorXd unseen_bends(const Eigen::VectorXd &position) const;
 
   /// What the fit would be had the mean of the runs at the origin come out differently: the origin
   /// moves, and every change that is measured from it.
@@ -69,9 +70,6 @@ private:
   void add_terms(const std::vector<Run> &runs, Eigen::Index n_effects);
   /// Inverse mean square that is expected of a term's coefficient; 0: anything.
   double stiffness(const Term &term, const std::vector<Run> &runs, const Slopes &slopes) const;
-  /// Variance of a change before the first amplitude of an effect: its slope there is that beyond,
-  /// but for a random walk along the logarithm of the amplitude.
-  double unseen_bend(const Eigen::VectorXd &position) const;
   Eigen::VectorXd terms_at(const Eigen::VectorXd &position) const;
 
   std::vector<Term> terms;
