@@ -33,6 +33,36 @@ Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
   return result;
 }
 
+namespace {
+
+/// Whether an effect of a fit changes so much that what it bends unseen could matter: beside the
+/// variance of the data along its change.
+bool may_bend(const Workbench &bench, const Fit &fit, const Response &response,
+              const Eigen::Index effect)
+{
+  constexpr double negligible = 0.25;
+  Eigen::VectorXd alone = Eigen::VectorXd::Zero(fit.position.size());
+  alone(effect) = fit.position(effect);
+  const Eigen::VectorXd squares = response.change(alone).cwiseAbs2();
+  const double noise = response.change_leverage(alone) * static_cast<double>(bench.misfit.size());
+  const double clear = squares.sum() - noise;
+  return clear > 0. &&
+         response.unseen_bends(alone).sum() * clear >
+             negligible * squares.dot(bench.misfit.variance(fit.leverage)) / squares.sum();
+}
+
+} // namespace
+
+Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit)
+{
+  const Response response = bench.response(fit.effects);
+  Eigen::VectorXd place = fit.position;
+  for (Eigen::Index k = 0; k < place.size(); ++k)
+    if (may_bend(bench, fit, response, k))
+      place(k) *= 0.5;
+  return place;
+}
+
 Table describe_models(const Workbench &bench, const std::vector<Scored> &models)
 {
   constexpr double least = 1e-3;
@@ -80,7 +110,20 @@ std::vector<Scored> promising(const Workbench &bench, const Posterior &posterior
   return models;
 }
 
-/// The most promising effects, each at its amplitude in the most promising set that holds it.
+/// Whether a set is more promising than it is without one of its effects. Otherwise that effect is
+/// in it by chance, with a sliver of an amplitude, and runs there would say nothing of the effect.
+bool wants(const std::vector<Scored> &models, const Scored &model, const std::size_t effect)
+{
+  EffectSet without;
+  for (const std::size_t k : model.fit.effects)
+    if (k != effect)
+      without.push_back(k);
+  return std::none_of(models.begin(), models.end(), [&](const Scored &other) {
+    return other.fit.effects == without && other.score <= model.score;
+  });
+}
+
+/// The most promising effects, each at its amplitude in the most promising set that wants it.
 std::vector<Leader> leaders(const Workbench &bench, const Posterior &posterior,
                             const Decision &decision)
 {
@@ -102,7 +145,7 @@ std::vector<Leader> leaders(const Workbench &bench, const Posterior &posterior,
     for (const Scored &model : models) {
       const EffectSet &set = model.fit.effects;
       const auto place = std::find(set.begin(), set.end(), k);
-      if (place == set.end())
+      if (place == set.end() || !wants(models, model, k))
         continue;
       const Eigen::VectorXd position =
           Eigen::VectorXd::Constant(1, model.fit.position(place - set.begin()));

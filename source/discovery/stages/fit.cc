@@ -20,34 +20,6 @@ const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
                        [&](const Scored &model) { return model.fit.effects == set; });
 }
 
-/// Variance of the data along what one effect of a fit changes.
-double variance_along(const Workbench &bench, const Fit &fit, const Response &response,
-                      const Eigen::Index effect)
-{
-  Eigen::VectorXd alone = Eigen::VectorXd::Zero(fit.position.size());
-  alone(effect) = fit.position(effect);
-  const Eigen::VectorXd squares = response.change(alone).cwiseAbs2();
-  const Eigen::VectorXd variance = bench.misfit.variance(fit.leverage);
-  return squares.sum() > 0. ? squares.dot(variance) / squares.sum() : variance.mean();
-}
-
-/// Where runs teach most about a fit. That is the fit itself, unless an effect lies before the
-/// first amplitude that was run, and may bend there by as much as the data could tell: then half
-/// way to nothing, so that the next fit lies between amplitudes that were run. Runs at the fit
-/// itself would draw nearer and nearer to a truth on one side of them without ever reaching it.
-Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit)
-{
-  constexpr double negligible = 0.25;
-  const Response response = bench.response(fit.effects);
-  const Eigen::VectorXd bends =
-      response.unseen_bends(fit.position) * static_cast<double>(bench.misfit.size());
-  Eigen::VectorXd place = fit.position;
-  for (Eigen::Index k = 0; k < place.size(); ++k)
-    if (bends(k) > negligible * variance_along(bench, fit, response, k))
-      place(k) *= 0.5;
-  return place;
-}
-
 /// Whether there are runs to rest the fit on.
 bool is_verified(const Workbench &bench, const Fit &fit)
 {

@@ -182,7 +182,9 @@ double Response::change_leverage(const Eigen::VectorXd &position) const
 double Response::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
-  return t.dot(inverse * t) + unseen_bends(position).sum();
+  // By the mean slope, as changes themselves are noisy and the doubt is spread over all values.
+  return t.dot(inverse * t) +
+         unseen_bends(position).dot(position.cwiseAbs2().cwiseProduct(overall));
 }
 
 Eigen::VectorXd Response::unseen_bends(const Eigen::VectorXd &position) const
@@ -191,7 +193,7 @@ Eigen::VectorXd Response::unseen_bends(const Eigen::VectorXd &position) const
   for (Eigen::Index k = 0; k < overall.size(); ++k) {
     const double u = position(k), first = u > 0. ? first_above(k) : first_below(k);
     if (u != 0. && std::abs(u) < std::abs(first))
-      result(k) = u * u * overall(k) * expected_turn * expected_turn * std::log(first / u);
+      result(k) = expected_turn * expected_turn * std::log(first / u);
   }
   return result;
 }

@@ -65,6 +65,12 @@ void settle_base_reference(Workbench &bench, Findings &findings);
 Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
                            const Eigen::VectorXd &position);
 
+/// Where runs teach most about a fit. That is the fit itself, unless an effect lies before the
+/// first amplitude that was run, and may bend there by as much as the data could tell: then half
+/// way to nothing, so that the next fit lies between amplitudes that were run. Runs at the fit
+/// itself would draw nearer and nearer to a truth on one side of them without ever reaching it.
+Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit);
+
 /// Verdict, tie set and confidences from the posterior.
 void decide(Findings &findings);
 /// Confidences alone, once sets of effects have been refuted.

@@ -45,8 +45,9 @@ public:
   /// Leverage of the outcome itself, origin and change, with what bends unseen before the first
   /// amplitude that was run.
   double leverage(const Eigen::VectorXd &position) const;
-  /// What of it is due to each effect that lies before its first amplitude that was run: its slope
-  /// there is that beyond, but for a random walk along the logarithm of the amplitude.
+  /// Variance of each effect's change over its square where it lies before the first amplitude that
+  /// was run: its slope there is that beyond, but for a random walk along the logarithm of the
+  /// amplitude.
   Eigen::VectorXd unseen_bends(const Eigen::VectorXd &position) const;
 
   /// What the fit would be had the mean of the runs at the origin come out differently: the origin
