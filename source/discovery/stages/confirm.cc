@@ -35,20 +35,45 @@ Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
 
 namespace {
 
+/// Square of what one effect of a fit changes, less what noise explains.
+double clear_square(const Workbench &bench, const Response &response, const Eigen::VectorXd &alone)
+{
+  const double noise = response.change_leverage(alone) * static_cast<double>(bench.misfit.size());
+  return std::max(0., response.change(alone).squaredNorm() - noise);
+}
+
+Eigen::VectorXd alone(const Fit &fit, const Eigen::Index effect)
+{
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(fit.position.size());
+  result(effect) = fit.position(effect);
+  return result;
+}
+
 /// Whether an effect of a fit changes so much that what it bends unseen could matter: beside the
 /// variance of the data along its change.
 bool may_bend(const Workbench &bench, const Fit &fit, const Response &response,
               const Eigen::Index effect)
 {
   constexpr double negligible = 0.25;
-  Eigen::VectorXd alone = Eigen::VectorXd::Zero(fit.position.size());
-  alone(effect) = fit.position(effect);
-  const Eigen::VectorXd squares = response.change(alone).cwiseAbs2();
-  const double noise = response.change_leverage(alone) * static_cast<double>(bench.misfit.size());
-  const double clear = squares.sum() - noise;
-  return clear > 0. &&
-         response.unseen_bends(alone).sum() * clear >
-             negligible * squares.dot(bench.misfit.variance(fit.leverage)) / squares.sum();
+  const Eigen::VectorXd position = alone(fit, effect);
+  const Eigen::VectorXd squares = response.change(position).cwiseAbs2();
+  return response.unseen_bends(position).sum() * clear_square(bench, response, position) *
+             squares.sum() >
+         negligible * squares.dot(bench.misfit.variance(fit.leverage));
+}
+
+/// Squared distance that would be left of a fit if what bends unseen, which may be as large as the
+/// change itself, bent to the data.
+double hoped_distance(const Workbench &bench, const Fit &fit)
+{
+  const Response response = bench.response(fit.effects);
+  double square = 0.;
+  for (Eigen::Index k = 0; k < fit.position.size(); ++k) {
+    const Eigen::VectorXd position = alone(fit, k);
+    square += response.unseen_bends(position).sum() * clear_square(bench, response, position);
+  }
+  return bench.misfit.distance(fit.remainder,
+                               fit.leverage + square / static_cast<double>(bench.misfit.size()));
 }
 
 } // namespace
@@ -82,24 +107,14 @@ Table describe_models(const Workbench &bench, const std::vector<Scored> &models)
   return rows;
 }
 
-namespace {
-
-struct Leader
-{
-  std::size_t effect;
-  Amplitudes amplitudes;
-};
-
-/// What could be the likeliest sets once their fingerprints are known well, the first first. A
-/// set's evidence suffers from what few runs leave unknown of its fingerprints, which is what
-/// confirming mends: without that share of it, sets of which little is known are not passed over
-/// for "something else". Probabilities are among the sets alone.
 std::vector<Scored> promising(const Workbench &bench, const Posterior &posterior,
                               const Decision &decision)
 {
   std::vector<Scored> models = posterior.models;
   for (Scored &model : models)
-    model.score -= bench.misfit.log_determinant(model.fit.leverage) / decision.temperature;
+    model.score +=
+        (bench.misfit.deviance(hoped_distance(bench, model.fit), 0.) - model.fit.deviance) /
+        decision.temperature;
   std::stable_sort(models.begin(), models.end(),
                    [](const Scored &a, const Scored &b) { return a.score < b.score; });
   double sum = 0.;
@@ -109,6 +124,14 @@ std::vector<Scored> promising(const Workbench &bench, const Posterior &posterior
     model.probability /= sum;
   return models;
 }
+
+namespace {
+
+struct Leader
+{
+  std::size_t effect;
+  Amplitudes amplitudes;
+};
 
 /// Whether a set is more promising than it is without one of its effects. Otherwise that effect is
 /// in it by chance, with a sliver of an amplitude, and runs there would say nothing of the effect.

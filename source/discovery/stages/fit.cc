@@ -122,6 +122,28 @@ Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &m
   return gain > limit ? *larger : model;
 }
 
+/// Makes runs of rivals that could be as likely as the chosen set were they known as well. Nothing
+/// else is fair: runs take from a set's doubt, and a set that got more of them looks likelier.
+/// @returns a row for each; none if all are known well enough
+Table challenge(Workbench &bench, const Findings &findings)
+{
+  constexpr double within_reach = 0.02, much_less_known = 1.25;
+  constexpr std::size_t most = 3;
+  Table rows = Table::array();
+  const Fit &chosen = findings.chosen.fit;
+  const std::vector<Scored> models = promising(bench, findings.posterior, findings.decision);
+  const double probability = std::find_if(models.begin(), models.end(), [&](const Scored &model) {
+                               return model.fit.effects == chosen.effects;
+                             })->probability;
+  for (const Scored &model : models)
+    if (rows.size() < most && model.fit.effects != chosen.effects &&
+        model.fit.effects.size() == chosen.effects.size() &&
+        model.probability > within_reach * probability &&
+        model.fit.leverage > much_less_known * chosen.leverage)
+      rows.push_back(verify(bench, model.fit, bench.options.fit_runs));
+  return rows;
+}
+
 } // namespace
 
 Table stage_fit(Workbench &bench, Findings &findings)
@@ -146,7 +168,8 @@ Table stage_fit(Workbench &bench, Findings &findings)
 Table stage_iterate(Workbench &bench, Findings &findings)
 {
   Table rounds = Table::array();
-  constexpr int most = 4;
+  constexpr int most = 6, most_challenges = 3;
+  int challenges = 0;
   for (int round = 0; round < most; ++round) {
     Table steps = Table::array();
     const EffectSet before = findings.chosen.fit.effects;
@@ -158,14 +181,15 @@ Table stage_iterate(Workbench &bench, Findings &findings)
                  {"deletions tried", steps},
                  {"additions tried", additions}};
     const bool settled = findings.chosen.fit.effects == before;
-    if (!settled) {
+    if (!settled)
       row["verification"] = verify(bench, findings.chosen.fit, bench.options.fit_runs);
-      settle_chaos(bench);
-      findings.posterior = compare_models(bench, findings.decision);
-    }
+    else if (bench.options.confirm && challenges++ < most_challenges)
+      row["rivals"] = challenge(bench, findings);
     rounds.push_back(row);
-    if (settled)
+    if (settled && row.value("rivals", Table::array()).empty())
       break;
+    settle_chaos(bench);
+    findings.posterior = compare_models(bench, findings.decision);
   }
   findings.chosen = find_scored(findings.posterior, findings.chosen.fit.effects);
   findings.p_fit = p_of_fit(findings, findings.chosen.fit);

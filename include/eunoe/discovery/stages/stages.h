@@ -71,6 +71,14 @@ Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
 /// itself would draw nearer and nearer to a truth on one side of them without ever reaching it.
 Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit);
 
+/// What could be the likeliest sets once their fingerprints are known well, the first first. A
+/// set's evidence suffers from what few runs leave unknown of its fingerprints, which is what
+/// confirming mends: without that share of it, sets of which little is known are not passed over
+/// for "something else". Neither are those that lie far before the amplitudes that were run, where
+/// they may do other things than what is foreseen. Probabilities are among the sets alone.
+std::vector<Scored> promising(const Workbench &bench, const Posterior &posterior,
+                              const Decision &decision);
+
 /// Verdict, tie set and confidences from the posterior.
 void decide(Findings &findings);
 /// Confidences alone, once sets of effects have been refuted.
