@@ -104,6 +104,46 @@ void steep_from_the_first_bit()
   check("and lie in the intervals", covered >= named - 2, std::to_string(covered));
 }
 
+void rivals_get_their_chance()
+{
+  // In the heap, all there is, effect d does nearly what b does, and its fingerprints are made
+  // where it does; those of b, which is the truth, are made far beyond.
+  int n = 0, slivers = 0, fair = 0, wrong = 0;
+  for (std::uint32_t seed = 1; n < 10; ++seed) {
+    Nature steep = nature(5100 + seed);
+    steep.n_effects = 4;
+    steep.power = 0.45;
+    steep.bend = 0.;
+    steep.strength_of_scale = 20.;
+    SyntheticLaboratory laboratory(steep);
+    laboratory.make_alike("d", "b", 0.15, {"heap"});
+    const double a = laboratory.amplitude_of("b", 14., {"heap"});
+    if (a > 0.3 * laboratory.factor("b").upper)
+      continue;
+    ++n;
+    const Discovery d =
+        study(laboratory, laboratory.measure({"heap"}, {}, {{"b", a}}, 5, 0.2, seed));
+    wrong += d.verdict == Verdict::named && d.model_after.count("b") == 0;
+    const auto &stages = d.content["stages"];
+    std::map<std::string, double> alone, leverage, probability;
+    for (const auto &row : d.content["candidates"])
+      alone[row["effect"]] = row["amplitude alone"];
+    for (const auto &round : stages["confirm"]["rounds"])
+      for (const auto &row : round["confirmed"])
+        slivers += std::abs(row["amplitude"].get<double>()) < 0.15 * std::abs(alone[row["effect"]]);
+    for (const auto &row : stages["iterate"]["models"]) {
+      leverage[row["effects"]] = row["leverage"];
+      probability[row["effects"]] = row["probability"];
+    }
+    const bool undecided = probability["b"] > 0.05 && probability["d"] > 0.05;
+    fair += !undecided || std::abs(std::log(leverage["b"] / leverage["d"])) < std::log(1.5);
+  }
+  // What an effect has beside a set that does not need it says nothing of it.
+  check("effects are confirmed where they explain the data", slivers <= 5, std::to_string(slivers));
+  check("rivals are known alike", fair >= 9, std::to_string(fair) + " of 10");
+  check("no other name is given", wrong == 0, std::to_string(wrong) + " of 10");
+}
+
 void two_effects()
 {
   SyntheticLaboratory laboratory(nature(31));
@@ -271,6 +311,7 @@ int main(int argc, char **argv)
   false_alarms();
   named_with_amplitude();
   steep_from_the_first_bit();
+  rivals_get_their_chance();
   two_effects();
   not_in_the_catalogue();
   tie_and_how_to_break_it();

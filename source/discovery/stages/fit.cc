@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe::discovery {
 
@@ -14,9 +15,9 @@ double p_of_fit(const Findings &findings, const Fit &fit)
 
 namespace {
 
-const Scored &find_scored(const Posterior &posterior, const EffectSet &set)
+const Scored &find_scored(const std::vector<Scored> &models, const EffectSet &set)
 {
-  return *std::find_if(posterior.models.begin(), posterior.models.end(),
+  return *std::find_if(models.begin(), models.end(),
                        [&](const Scored &model) { return model.fit.effects == set; });
 }
 
@@ -31,7 +32,12 @@ bool is_verified(const Workbench &bench, const Fit &fit)
 /// Makes runs to rest a fit on, and says how well the emulator had foreseen them.
 Table verify(Workbench &bench, const Fit &fit, const unsigned int number)
 {
-  const Amplitudes amplitudes = near_amplitudes(bench, fit.effects, place_of_runs(bench, fit));
+  const Eigen::VectorXd place = place_of_runs(bench, fit);
+  Amplitudes amplitudes = near_amplitudes(bench, fit.effects, place);
+  // Where there are so many runs already, others nearby teach more.
+  constexpr std::size_t plenty = 3;
+  if (bench.runs[amplitudes].size() >= plenty * bench.options.fit_runs)
+    amplitudes = bench.amplitudes(fit.effects, place);
   Eigen::VectorXd position = fit.position;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
     const Factor &effect = bench.effects[fit.effects[k]];
@@ -88,7 +94,7 @@ Scored prune(const Workbench &bench, const Findings &findings, const Scored &mod
     }
     if (best.empty())
       break;
-    result = find_scored(findings.posterior, best);
+    result = find_scored(findings.posterior.models, best);
   }
   return result;
 }
@@ -122,24 +128,29 @@ Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &m
   return gain > limit ? *larger : model;
 }
 
-/// Makes runs of rivals that could be as likely as the chosen set were they known as well. Nothing
-/// else is fair: runs take from a set's doubt, and a set that got more of them looks likelier.
-/// @returns a row for each; none if all are known well enough
+/// Makes runs of the chosen set and its rivals, as far as some could be as likely as others were
+/// they known as well. Nothing else is fair: runs take from a set's doubt, and a set that got more
+/// of them looks likelier.
+/// @returns a row for each; none if all are known alike
 Table challenge(Workbench &bench, const Findings &findings)
 {
   constexpr double within_reach = 0.02, much_less_known = 1.25;
   constexpr std::size_t most = 3;
-  Table rows = Table::array();
-  const Fit &chosen = findings.chosen.fit;
-  const std::vector<Scored> models = promising(bench, findings.posterior, findings.decision);
-  const double probability = std::find_if(models.begin(), models.end(), [&](const Scored &model) {
-                               return model.fit.effects == chosen.effects;
-                             })->probability;
+  const EffectSet &chosen = findings.chosen.fit.effects;
+  std::vector<Scored> models = promising(bench, findings.posterior, findings.decision);
+  const double probability = find_scored(models, chosen).probability;
+  models.erase(std::remove_if(models.begin(), models.end(),
+                              [&](const Scored &model) {
+                                return model.fit.effects.size() != chosen.size() ||
+                                       model.probability < within_reach * probability;
+                              }),
+               models.end());
+  double least = std::numeric_limits<double>::infinity();
   for (const Scored &model : models)
-    if (rows.size() < most && model.fit.effects != chosen.effects &&
-        model.fit.effects.size() == chosen.effects.size() &&
-        model.probability > within_reach * probability &&
-        model.fit.leverage > much_less_known * chosen.leverage)
+    least = std::min(least, model.fit.leverage);
+  Table rows = Table::array();
+  for (const Scored &model : models)
+    if (rows.size() < most && model.fit.leverage > much_less_known * least)
       rows.push_back(verify(bench, model.fit, bench.options.fit_runs));
   return rows;
 }
@@ -191,7 +202,7 @@ Table stage_iterate(Workbench &bench, Findings &findings)
     settle_chaos(bench);
     findings.posterior = compare_models(bench, findings.decision);
   }
-  findings.chosen = find_scored(findings.posterior, findings.chosen.fit.effects);
+  findings.chosen = find_scored(findings.posterior.models, findings.chosen.fit.effects);
   findings.p_fit = p_of_fit(findings, findings.chosen.fit);
   return {{"rounds", rounds},
           {"p of the fit", findings.p_fit},
