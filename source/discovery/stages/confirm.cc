@@ -1,92 +1,10 @@
+#include <eunoe/discovery/stages/places.h>
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace eunoe::discovery {
-
-Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position)
-{
-  constexpr double nearness = 0.15;
-  const Amplitudes wanted = bench.amplitudes(set, position);
-  Amplitudes result = wanted;
-  double least = nearness;
-  for (const auto &[amplitudes, sets] : bench.runs) {
-    if (wanted.empty() || amplitudes.size() != wanted.size() || sets.empty())
-      continue;
-    double apart = 0.;
-    for (const std::size_t k : set) {
-      const Factor &effect = bench.effects[k];
-      const auto there = amplitudes.find(effect.name), here = wanted.find(effect.name);
-      if (here != wanted.end())
-        apart = std::max(apart, there == amplitudes.end()
-                                    ? 2. * nearness
-                                    : std::abs((there->second - here->second) /
-                                               (here->second - effect.null_value)));
-    }
-    if (apart <= least) {
-      least = apart;
-      result = amplitudes;
-    }
-  }
-  return result;
-}
-
-namespace {
-
-/// Square of what one effect of a fit changes, less what noise explains.
-double clear_square(const Workbench &bench, const Response &response, const Eigen::VectorXd &alone)
-{
-  const double noise = response.change_leverage(alone) * static_cast<double>(bench.misfit.size());
-  return std::max(0., response.change(alone).squaredNorm() - noise);
-}
-
-Eigen::VectorXd alone(const Fit &fit, const Eigen::Index effect)
-{
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(fit.position.size());
-  result(effect) = fit.position(effect);
-  return result;
-}
-
-/// Whether an effect of a fit changes so much that what it bends unseen could matter: beside the
-/// variance of the data along its change.
-bool may_bend(const Workbench &bench, const Fit &fit, const Response &response,
-              const Eigen::Index effect)
-{
-  constexpr double negligible = 0.25;
-  const Eigen::VectorXd position = alone(fit, effect);
-  const Eigen::VectorXd squares = response.change(position).cwiseAbs2();
-  return response.unseen_bends(position).sum() * clear_square(bench, response, position) *
-             squares.sum() >
-         negligible * squares.dot(bench.misfit.variance(fit.leverage));
-}
-
-/// Squared distance that would be left of a fit if what bends unseen, which may be as large as the
-/// change itself, bent to the data.
-double hoped_distance(const Workbench &bench, const Fit &fit)
-{
-  const Response response = bench.response(fit.effects);
-  double square = 0.;
-  for (Eigen::Index k = 0; k < fit.position.size(); ++k) {
-    const Eigen::VectorXd position = alone(fit, k);
-    square += response.unseen_bends(position).sum() * clear_square(bench, response, position);
-  }
-  return bench.misfit.distance(fit.remainder,
-                               fit.leverage + square / static_cast<double>(bench.misfit.size()));
-}
-
-} // namespace
-
-Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit)
-{
-  const Response response = bench.response(fit.effects);
-  Eigen::VectorXd place = fit.position;
-  for (Eigen::Index k = 0; k < place.size(); ++k)
-    if (may_bend(bench, fit, response, k))
-      place(k) *= 0.5;
-  return place;
-}
 
 Table describe_models(const Workbench &bench, const std::vector<Scored> &models)
 {

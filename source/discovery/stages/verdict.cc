@@ -1,3 +1,4 @@
+#include <eunoe/discovery/stages/places.h>
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>

@@ -59,18 +59,6 @@ void settle_noise(Workbench &bench);
 /// What evidence would be were nothing missing, and the tail of the misfit that it shows.
 void settle_base_reference(Workbench &bench, Findings &findings);
 
-/// Amplitudes at which more runs tell most: those of the nearest runs, or where none are near,
-/// those of the position itself. Near is what differs by at most 15 % of the distance from the null
-/// value.
-Amplitudes near_amplitudes(const Workbench &bench, const EffectSet &set,
-                           const Eigen::VectorXd &position);
-
-/// Where runs teach most about a fit. That is the fit itself, unless an effect lies before the
-/// first amplitude that was run, and may bend there by as much as the data could tell: then half
-/// way to nothing, so that the next fit lies between amplitudes that were run. Runs at the fit
-/// itself would draw nearer and nearer to a truth on one side of them without ever reaching it.
-Eigen::VectorXd place_of_runs(const Workbench &bench, const Fit &fit);
-
 /// What could be the likeliest sets once their fingerprints are known well, the first first. A
 /// set's evidence suffers from what few runs leave unknown of its fingerprints, which is what
 /// confirming mends: without that share of it, sets of which little is known are not passed over
