@@ -16,10 +16,13 @@ double p_of_fit(const Findings &findings, const Fit &fit)
 
 namespace {
 
+/// A set among those that were compared; the likeliest where it is none of them, as triples are
+/// only compared about the best pairs, which more runs may have changed.
 const Scored &find_scored(const std::vector<Scored> &models, const EffectSet &set)
 {
-  return *std::find_if(models.begin(), models.end(),
-                       [&](const Scored &model) { return model.fit.effects == set; });
+  const auto found = std::find_if(models.begin(), models.end(),
+                                  [&](const Scored &model) { return model.fit.effects == set; });
+  return found != models.end() ? *found : models.front();
 }
 
 /// Whether there are runs to rest the fit on.
