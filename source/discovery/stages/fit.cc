@@ -1,5 +1,5 @@
-#include <eunoe/discovery/stages/places.h>
 #include <eunoe/discovery/stages/stages.h>
+#include <eunoe/discovery/stages/verification.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,53 +23,6 @@ const Scored &find_scored(const std::vector<Scored> &models, const EffectSet &se
   const auto found = std::find_if(models.begin(), models.end(),
                                   [&](const Scored &model) { return model.fit.effects == set; });
   return found != models.end() ? *found : models.front();
-}
-
-/// Whether there are runs to rest the fit on.
-bool is_verified(const Workbench &bench, const Fit &fit)
-{
-  const Eigen::VectorXd place = place_of_runs(bench, fit);
-  const auto there = bench.runs.find(near_amplitudes(bench, fit.effects, place));
-  return place == fit.position && there != bench.runs.end() && !there->second.empty();
-}
-
-/// Makes runs to rest a fit on, and says how well the emulator had foreseen them.
-Table verify(Workbench &bench, const Fit &fit, const unsigned int number)
-{
-  const Eigen::VectorXd place = place_of_runs(bench, fit);
-  Amplitudes amplitudes = near_amplitudes(bench, fit.effects, place);
-  // Where there are so many runs already, others nearby teach more.
-  constexpr std::size_t plenty = 3;
-  if (bench.runs[amplitudes].size() >= plenty * bench.options.fit_runs)
-    amplitudes = bench.amplitudes(fit.effects, place);
-  Eigen::VectorXd position = fit.position;
-  for (std::size_t k = 0; k < fit.effects.size(); ++k) {
-    const Factor &effect = bench.effects[fit.effects[k]];
-    const auto found = amplitudes.find(effect.name);
-    position(static_cast<Eigen::Index>(k)) =
-        found == amplitudes.end() ? 0. : (found->second - effect.null_value) / effect.scale;
-  }
-  const Response response = bench.response(fit.effects);
-  const Eigen::VectorXd foreseen = response.origin() + response.change(position);
-  const double leverage = response.leverage(position);
-
-  const auto before = bench.runs[amplitudes].size();
-  bench.ask({{amplitudes, static_cast<unsigned int>(before) + number}});
-  const auto &sets = bench.runs[amplitudes];
-  Table row = {{"effects", name_of(bench, fit.effects)}, {"amplitudes", Table::object()}};
-  for (const auto &[name, value] : amplitudes)
-    row["amplitudes"][name] = value;
-  row["runs"] = sets.size();
-  if (sets.size() == before)
-    return row;
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(bench.misfit.size());
-  const auto fresh = static_cast<double>(sets.size() - before);
-  for (std::size_t k = before; k < sets.size(); ++k)
-    mean += bench.misfit.coordinates(sets[k].modes) / fresh;
-  row["distance to what the emulator foresaw, over its expectation"] =
-      (mean - foreseen).squaredNorm() /
-      ((leverage + 1. / fresh) * static_cast<double>(bench.misfit.size()));
-  return row;
 }
 
 /// Takes effects away whose removal the data do not resent, the least needed first.
@@ -152,11 +105,11 @@ Table challenge(Workbench &bench, const Findings &findings)
   double least = std::numeric_limits<double>::infinity();
   for (const Scored &model : models)
     least = std::min(least, model.fit.leverage);
-  Table rows = Table::array();
+  std::vector<Fit> less_known;
   for (const Scored &model : models)
-    if (rows.size() < most && model.fit.leverage > much_less_known * least)
-      rows.push_back(verify(bench, model.fit, bench.options.fit_runs));
-  return rows;
+    if (less_known.size() < most && model.fit.leverage > much_less_known * least)
+      less_known.push_back(model.fit);
+  return verify(bench, less_known, bench.options.fit_runs);
 }
 
 } // namespace
@@ -171,7 +124,7 @@ Table stage_fit(Workbench &bench, Findings &findings)
     if (pass >= least_passes && is_verified(bench, findings.chosen.fit))
       break;
     passes.push_back(
-        verify(bench, findings.chosen.fit, (bench.options.fit_runs + 1 - pass % 2) / 2));
+        verify(bench, {findings.chosen.fit}, (bench.options.fit_runs + 1 - pass % 2) / 2).front());
     settle_chaos(bench);
     findings.posterior = compare_models(bench, findings.decision);
   }
@@ -197,7 +150,7 @@ Table stage_iterate(Workbench &bench, Findings &findings)
                  {"additions tried", additions}};
     const bool settled = findings.chosen.fit.effects == before;
     if (!settled)
-      row["verification"] = verify(bench, findings.chosen.fit, bench.options.fit_runs);
+      row["verification"] = verify(bench, {findings.chosen.fit}, bench.options.fit_runs).front();
     else if (bench.options.confirm && challenges++ < most_challenges)
       row["rivals"] = challenge(bench, findings);
     rounds.push_back(row);
