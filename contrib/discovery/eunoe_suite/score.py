@@ -156,13 +156,13 @@ def score(outcomes: list[Outcome]) -> Scores:
              lambda o: o.verdict == "off catalogue"),
         rate("confident and wrong, effect deleted", deleted, lambda o: o.confidently_wrong),
         rate("confident and wrong", single + two + deleted, lambda o: o.confidently_wrong, "at most 3 %"),
-        rate("amplitude within its interval",
-             [o for o in right for _ in o.truth], _covers_amplitudes, "95 %")]
+        rate("amplitude within its interval", right, _covers_amplitudes, "95 %")]
     rates += _rates_apart(strong, two, deleted)
     numbers = {}
-    sizes = [len(o.covering) for o in answered]
-    if sizes:
-        numbers["mean size of the set (target 1.4)"] = sum(sizes) / len(sizes)
+    for name, some in (("", answered), (", strength 4 and more", [o for o in answered if o.strength >= 4.])):
+        if some:
+            numbers[f"mean size of the set{name} (target 1.4)"] = (
+                sum(len(o.covering) for o in some) / len(some))
     shrinks = [o.shrink for o in single if o.verdict == "named" and o.shrink is not None]
     if shrinks:
         numbers["median shrink of the held-out gap (target 0.8)"] = median(shrinks)
