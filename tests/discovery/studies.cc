@@ -108,7 +108,7 @@ void rivals_get_their_chance()
 {
   // In the heap, all there is, effect d does nearly what b does, and its fingerprints are made
   // where it does; those of b, which is the truth, are made far beyond.
-  int n = 0, slivers = 0, fair = 0, wrong = 0;
+  int n = 0, slivers = 0, fair = 0, compared = 0, modest = 0, wrong = 0;
   for (std::uint32_t seed = 1; n < 10; ++seed) {
     Nature steep = nature(5100 + seed);
     steep.n_effects = 4;
@@ -125,9 +125,11 @@ void rivals_get_their_chance()
         study(laboratory, laboratory.measure({"heap"}, {}, {{"b", a}}, 5, 0.2, seed));
     wrong += d.verdict == Verdict::named && d.model_after.count("b") == 0;
     const auto &stages = d.content["stages"];
-    std::map<std::string, double> alone, leverage, probability;
-    for (const auto &row : d.content["candidates"])
+    std::map<std::string, double> alone, leverage, probability, confidence;
+    for (const auto &row : d.content["candidates"]) {
       alone[row["effect"]] = row["amplitude alone"];
+      confidence[row["effect"]] = row["confidence"];
+    }
     for (const auto &round : stages["confirm"]["rounds"])
       for (const auto &row : round["confirmed"])
         slivers += std::abs(row["amplitude"].get<double>()) < 0.15 * std::abs(alone[row["effect"]]);
@@ -135,12 +137,19 @@ void rivals_get_their_chance()
       leverage[row["effects"]] = row["leverage"];
       probability[row["effects"]] = row["probability"];
     }
+    if (probability["b"] > 0. && probability["d"] > 0. && d.model_after.size() == 1) {
+      ++compared;
+      modest += std::abs(std::log(confidence["b"] / confidence["d"])) <
+                0.99 * std::abs(std::log(probability["b"] / probability["d"]));
+    }
     const bool undecided = probability["b"] > 0.05 && probability["d"] > 0.05;
     fair += !undecided || std::abs(std::log(leverage["b"] / leverage["d"])) < std::log(1.5);
   }
   // What an effect has beside a set that does not need it says nothing of it.
   check("effects are confirmed where they explain the data", slivers <= 5, std::to_string(slivers));
   check("rivals are known alike", fair >= 9, std::to_string(fair) + " of 10");
+  check("the likelier is not overrated", compared >= 5 && modest == compared,
+        std::to_string(modest) + " of " + std::to_string(compared));
   check("no other name is given", wrong == 0, std::to_string(wrong) + " of 10");
 }
 

@@ -20,6 +20,8 @@ struct Decision
   double cost_of_effect = 5.2;
   /// Deviances are divided by this before they become probabilities.
   double temperature = 1.4;
+  /// Share of the stated confidences that allows for errors that no doubt accounts for.
+  double surprise = 0.1;
   /// The joint p-value is multiplied by this, as estimates from few runs make it too small.
   double safety_of_p = 1.5;
   /// Limits of amplitudes are where the deviance has risen by this many times what it rises by
