@@ -104,6 +104,23 @@ def write_failure(reference: Case, folder: Path) -> None:
     compare(reference, other, "After a checkpoint that could not be written")
 
 
+def locked_semaphore(program: str, folder: Path) -> None:
+    """A run that was killed while it opened a picture does not stop those after it."""
+    name = f"left_behind_{os.getpid()}"
+    left = Path(f"/dev/shm/sem.OMPIO_{name}_cells_00000.vtu")
+    if not left.parent.is_dir():
+        return
+    left.write_bytes(bytes(32))
+    other = Case(program, CASE, folder, [])
+    settings = (f"simulation control/output name = {name}", "simulation control/iteration end = 500")
+    try:
+        subprocess.run(other.command(1, *settings), check=True, capture_output=True, timeout=60)
+    except subprocess.SubprocessError as error:
+        raise Failure(f"With a semaphore that a killed run left locked: {error}") from None
+    finally:
+        left.unlink()
+
+
 def sleeping(program: str, folder: Path) -> None:
     """The same bits with particles that sleep and wake."""
     reference = Case(program, CASE, folder / "reference", list(SLEEPY))
@@ -183,6 +200,7 @@ def main(program: str, folder: Path) -> int:
     check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
     check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
     check("write failure", lambda: write_failure(reference, folder / "full"))
+    check("locked semaphore", lambda: locked_semaphore(reference.program, folder / "left"))
     check("sleep", lambda: sleeping(reference.program, folder / "sleep"))
     check("all laws", lambda: all_laws(reference.program, folder / "laws"))
     check("plane", lambda: on_plane(reference.program, folder / "plane"))
