@@ -19,7 +19,6 @@ report=(
   python3-matplotlib
 )
 checks=(
-  numdiff      # comparison of test output
   perl         # deal.II's test driver
   clang-format # layout of the code
 )
