@@ -1,4 +1,5 @@
-// Rolling resistance. Constant torque: mu_r R |F_n| against the relative spin. EPSD of Ai et al.
+// Rolling resistance. Constant torque: mu_r R |F_n| against the relative spin. Viscous (Zhou et al.
+// 1999): mu_r R |F_n| times the speed R |w| of rolling, R w x n (Luding 2008). EPSD of Ai et al.
 // (2011): spring 2.25 k_n (mu_r R)^2, its limit, and the damping with either inertia and its
 // share f once the spring is mobilised.
 
@@ -58,6 +59,30 @@ void check_constant()
               relative_error(torque, reference), 0., 1e-14);
   Contact still = contact({});
   check("constant: no torque without spin", norm(constant.apply(still, 1e-7).torque) == 0.);
+}
+
+void check_viscous()
+{
+  // Of two materials, so that no coefficient is taken for another.
+  Material other = material();
+  other.rolling_friction = 3. * friction;
+  Laws viscous_law({material(), other}, 2, {"hertz", {"dmt"}, "mindlin_limit_overlap", "viscous"});
+  std::vector<Contact> contacts = different_contacts(overlap);
+  for (Contact &c : contacts)
+    c.kind = viscous_law.model.get_materials().kind(0, 1);
+  const std::vector<Response> responses = viscous_law.apply(contacts, 1e-7);
+  std::vector<Vec3> torque, reference;
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const Contact &c = contacts[k];
+    const Vec3 rolling_velocity = c.radius * cross(c.roll, c.normal);
+    // The harmonic mean of 1 and 3 is 1.5.
+    const double size =
+        1.5 * friction * c.radius * std::abs(responses[k].contact_force) * norm(rolling_velocity);
+    torque.push_back(responses[k].torque);
+    reference.push_back(-size / norm(c.roll) * c.roll);
+  }
+  check_close("viscous: torque in proportion to the speed of rolling",
+              relative_error(torque, reference), 0., 1e-14);
 }
 
 void check_epsd(bool about_contact)
@@ -121,6 +146,7 @@ void check_limit()
 int main()
 {
   check_constant();
+  check_viscous();
   check_epsd(true);
   check_epsd(false);
   check_limit();

@@ -1,5 +1,7 @@
 // Rolling resistance in a head-on impact. It brakes the spin of one body against the other in the
 // plane of the contact: opposite spins lose mu_r R_e times the normal impulse, equal spins nothing.
+// With a torque in proportion to the speed of rolling the relative spin of two unlike spheres
+// decays exponentially with the impulse, and their angular momentum is kept.
 
 #include "../spheres.h"
 
@@ -43,6 +45,34 @@ void check_pair(const std::string &name, const Vec3 &normal, const Vec3 &turn)
   }
 }
 
+void check_viscous()
+{
+  Scene s;
+  s.rolling = "viscous";
+  const Vec3 normal = {0.6, 0., -0.8}, turn = {0., 1., 0.};
+  Sphere a = {{}, speed * normal, 1000. * turn, 2. * radius};
+  Sphere b = {{}, -speed * normal, -300. * turn, 1.2 * radius};
+  a.x = -a.radius() * normal;
+  b.x = b.radius() * normal;
+  const auto half = [](double x, double y) { return x * y / (x + y); };
+  const double r = half(a.radius(), b.radius()), m = half(s.mass(a), s.mass(b));
+  const double inertia = half(s.inertia(a), s.inertia(b)), impulse = 2. * m * 2. * speed;
+  const double exponent = 0.7;
+  s.particle.rolling_friction = exponent * inertia / (r * r * impulse);
+  s.spheres = {a, b};
+  const double duration = Impact(s.particle, s.particle, m, r, 2. * speed).duration();
+  s.time_step = duration / 5000.;
+  s.time_end = 1.5 * duration;
+  const std::vector<Sphere> after = run(s);
+  check_relative("viscous, unlike spheres: relative spin", dot(after[0].w - after[1].w, turn),
+                 1300. * std::exp(-exponent), 1e-4);
+  const auto momentum = [&s, &turn](const Sphere &one, const Sphere &other) {
+    return s.inertia(one) * dot(one.w, turn) + s.inertia(other) * dot(other.w, turn);
+  };
+  check_relative("viscous, unlike spheres: angular momentum", momentum(after[0], after[1]),
+                 momentum(a, b), 1e-12);
+}
+
 void check_floor()
 {
   const double w = 2000.;
@@ -63,5 +93,6 @@ int main(int argc, char **argv)
       if (t != n)
         check_pair(std::string("pair along ") + "xyz"[n] + ", spin about " + "xyz"[t] + ": ",
                    axes[n], axes[t]);
+  check_viscous();
   check_floor();
 }
