@@ -1,6 +1,8 @@
-// Studies on recorded DEM simulations: a small part of the recorded suite, with bounds that hold
-// with room at the suite's rates (doc/discovery.md) and that a broken stage misses: guessing among
-// eight effects would name 1 of 8.
+// Studies on recorded DEM simulations, a small part of the recorded suite. They draw all their
+// numbers from seeds, so what each answers is the same every time: the output holds it line by
+// line, and any change of a stage that changes an answer is seen. Whether the answers are good is
+// asked apart, with bounds that samples miss in four of a hundred at most at the rates of the whole
+// suite (doc/discovery.md), and a broken stage nearly always.
 
 #include "recorded_cases.h"
 
@@ -33,12 +35,25 @@ struct Answers
 
   void add(const RecordedStudy &study)
   {
+    tell(study);
     ++studies;
     detected += is_detected(study);
     wrong += is_wrong(study);
     off_catalogue += study.discovery.verdict == Verdict::off_catalogue;
     const std::string first = study.discovery.content["candidates"][0]["effect"];
     right += is_detected(study) && study.one.strengths.count(first) > 0;
+  }
+
+  /// The answer beside the truth.
+  static void tell(const RecordedStudy &study)
+  {
+    std::string truth;
+    for (const auto &[name, strength] : study.one.strengths)
+      truth += " " + name + (study.one.excluded.empty() ? "" : ", not in the catalogue");
+    const auto &candidates = study.discovery.content["candidates"];
+    print("seed " + std::to_string(study.one.seed) +
+          ", truth:" + (truth.empty() ? " none" : truth) + "; " + name_of(study.discovery.verdict) +
+          (is_detected(study) ? ", first " + candidates[0]["effect"].get<std::string>() : ""));
   }
 
   std::string text() const
@@ -68,13 +83,18 @@ int main(int argc, char **argv)
                                         table.of("heap", "base").size() >= 8 &&
                                         table.n_failed == 0);
 
+  // Behind each bound: how often a sample of this size is beyond it at the suite's rate.
   const Answers nothing = interpolated(table, {"none"}, 1, 6);
+  // 5.2 % false alarms: 0.3 %.
   check("false alarms", nothing.detected <= 2, nothing.text());
   const Answers strong = interpolated(table, {"single", 8., 1}, 1, 8);
+  // At least 97 % detected: 2.2 %. 74 % of first names right: 3.2 %; who guesses gets there in 1.1
+  // %. 6.8 % wrong names: 1.4 %.
   check("strong effects are detected", strong.detected >= 7, strong.text());
   check("and named", strong.right >= 4, strong.text());
-  check("nothing else is", strong.wrong <= 1, strong.text());
+  check("nothing else is", strong.wrong <= 2, strong.text());
   const Answers deleted = interpolated(table, {"deleted", 8., 1}, 1, 4);
+  // At least 97 % detected: 0.5 %.
   check("an effect that the catalogue lacks is detected", deleted.detected >= 3, deleted.text());
 
   Answers simulated_nothing, simulated;
@@ -84,9 +104,11 @@ int main(int argc, char **argv)
     if (answers.studies < enough)
       answers.add(simulated_study(table, left_out, 1, {}));
   }
+  // 5.2 % false alarms: 1.5 %.
   check("simulations of the base model as data", simulated_nothing.detected <= 1,
         simulated_nothing.text());
-  check("simulations of effects as data", simulated.detected >= 3 && simulated.wrong <= 2,
+  // At least 97 % detected: 0.5 %; 6.8 % wrong names: 2.5 %.
+  check("simulations of effects as data", simulated.detected >= 3 && simulated.wrong <= 1,
         simulated.text());
   MPI_Finalize();
 }
