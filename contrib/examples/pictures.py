@@ -2,7 +2,7 @@
 """Runs the cases of prm/examples and draws the pictures of doc/examples.md from their output.
 
 Usage: contrib/examples/pictures.py path/to/eunoe-particles folder [--cases NAME ...]
-       [--pictures doc/pictures] [--draw-only]
+       [--pictures doc/pictures] [--run-only | --draw-only]
 
 Each case runs in a folder of its own. Needs numpy, matplotlib and Pillow.
 """
@@ -23,8 +23,12 @@ import matplotlib  # noqa: E402
 matplotlib.use("Agg")
 import numpy as np  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
+from matplotlib.cm import ScalarMappable  # noqa: E402
 from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.colors import Normalize, to_rgba_array  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.patches import Patch  # noqa: E402
+from matplotlib.ticker import MaxNLocator  # noqa: E402
 from PIL import Image  # noqa: E402
 from eunoe_report import style  # noqa: E402
 from eunoe_report.canvas import MM, Window, draw_circles  # noqa: E402
@@ -52,16 +56,34 @@ def outline(axes: Axes, file: Path, view: tuple[int, int], number: int) -> None:
                                        linewidths=0.4, zorder=3))
 
 
-def colours(particles: dict[str, np.ndarray]) -> np.ndarray:
-    """By type where there are several, by size where sizes differ much, else by speed."""
-    kind = particles["type"].astype(int)
-    size = particles["diameter"]
-    if kind.max() > 0:
-        return np.array(matplotlib.colors.to_rgba_array([style.PALE_BLUE, style.VERMILLION]))[kind]
-    if size.max() > 1.5 * size.min():
-        return matplotlib.colormaps["plasma"]((size - size.min()) / np.ptp(size))
-    speed = np.linalg.norm(particles["velocity"], axis=1)
-    return matplotlib.colormaps["viridis"](np.clip(speed / 0.3, 0., 1.))
+# Of those that are not listed, the speed gives the colour.
+COLOURED_BY = {"granular_mixer": "type", "packing_in_box": "diameter"}
+TYPES = ((style.PALE_BLUE, "2500 kg/m³"), (style.VERMILLION, "4000 kg/m³"))
+LEGEND = 0.3  # height of its place below the panels (inch)
+SPEEDS = ScalarMappable(Normalize(0., 0.3), "viridis")  # m/s
+DIAMETERS = ScalarMappable(Normalize(0.7, 1.5), "plasma")  # mm
+
+
+def colours(name: str, particles: dict[str, np.ndarray]) -> np.ndarray:
+    if COLOURED_BY.get(name) == "type":
+        return to_rgba_array([colour for colour, _ in TYPES])[particles["type"].astype(int)]
+    if COLOURED_BY.get(name) == "diameter":
+        return DIAMETERS.to_rgba(MM * particles["diameter"])
+    return SPEEDS.to_rgba(np.linalg.norm(particles["velocity"], axis=1))
+
+
+def explain_colours(name: str, figure: Figure, panels: list[Axes]) -> None:
+    if COLOURED_BY.get(name) == "type":
+        share = LEGEND / figure.get_figheight()
+        figure.get_layout_engine().set(rect=(0., share, 1., 1. - share))
+        figure.legend(handles=[Patch(facecolor=colour, label=label) for colour, label in TYPES],
+                      loc="lower center", ncol=2)
+        return
+    shown, label = ((DIAMETERS, "Diameter (mm)") if name in COLOURED_BY else (SPEEDS, "Speed (m/s)"))
+    bar = figure.colorbar(shown, ax=panels, label=label, fraction=0.03, pad=0.01, aspect=12,
+                          extend="neither" if name in COLOURED_BY else "max")
+    bar.locator = MaxNLocator(4, steps=[1, 2, 5, 10])
+    bar.outline.set_linewidth(0.6)
 
 
 def draw_case(name: str, folder: Path) -> Figure:
@@ -70,23 +92,27 @@ def draw_case(name: str, folder: Path) -> Figure:
     depth = 3 - sum(view)
     window = Window(x0 / MM, x1 / MM, y0 / MM, y1 / MM)
     pictures, solids = read_pvd(folder / "out.pvd"), read_pvd(folder / "out_solids.pvd")
-    width = 6.5 / len(times)
-    figure = Figure(figsize=(6.5, width * (y1 - y0) / (x1 - x0) + 0.35), layout="constrained")
+    width = (style.WIDTH - 1.1) / len(times)
+    height = max(width * (y1 - y0) / (x1 - x0) + 0.8, 1.7)
+    height += LEGEND if COLOURED_BY.get(name) == "type" else 0.
+    figure = Figure(figsize=(style.WIDTH, height), layout="constrained")
     panels = figure.subplots(1, len(times), sharey=True)
     for axes, time in zip(panels, times):
         picture = min(pictures, key=lambda p: abs(p.time - time))
         particles = read_vtu(picture.file, ("diameter", "velocity", "type"))
         points = particles["points"].astype(float)
         axes.set(xlim=(x0, x1), ylim=(y0, y1), aspect="equal", title=f"{picture.time:.2g} s")
-        axes.tick_params(labelsize=6.5)
+        axes.locator_params(nbins=5)
+        axes.set_xlabel(f"{names[0]} (mm)")
         rows = np.flatnonzero(window.shows(points[:, view[0]], points[:, view[1]], particles["diameter"]))
         # Seen from the front: the nearest, with the least coordinate in depth, are drawn last.
         rows = rows[np.argsort(-points[rows, depth])]
         draw_circles(axes, points[rows, view[0]], points[rows, view[1]], particles["diameter"][rows],
-                     colours(particles)[rows])
+                     colours(name, particles)[rows])
         if name in DRAWN and solids:
             outline(axes, min(solids, key=lambda p: abs(p.time - time)).file, view, DRAWN[name])
     panels[0].set_ylabel(f"{names[1]} (mm)")
+    explain_colours(name, figure, list(panels))
     return figure
 
 
@@ -111,10 +137,10 @@ def draw_bounces(folder: Path) -> Figure:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """As a small file: 64 colours do for these pictures."""
+    """As a small file: 128 colours do for these pictures."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, dpi=110)
-    Image.open(buffer).convert("RGB").quantize(64).save(file, optimize=True)
+    figure.savefig(buffer, dpi=style.RESOLUTION)
+    Image.open(buffer).convert("RGB").quantize(128).save(file, optimize=True)
 
 
 def main(arguments: list[str]) -> int:
@@ -124,15 +150,20 @@ def main(arguments: list[str]) -> int:
     all_cases = ["bouncing_sphere", *VIEWS]
     parser.add_argument("--cases", nargs="+", default=all_cases, choices=all_cases)
     parser.add_argument("--pictures", type=Path, default=ROOT / "doc" / "pictures")
-    parser.add_argument("--draw-only", action="store_true", help="runs nothing")
+    parts = parser.add_mutually_exclusive_group()
+    parts.add_argument("--run-only", action="store_true", help="draws nothing")
+    parts.add_argument("--draw-only", action="store_true", help="runs nothing")
     options = parser.parse_args(arguments)
     program, folder = Path(options.program).resolve(), options.folder.resolve()
+    options.pictures.mkdir(parents=True, exist_ok=True)
     for name in options.cases:
         if not options.draw_only:
             subprocess.run([program, ROOT / "prm" / "examples" / f"{name}.prm", "--set",
                             f"simulation control/output path = {folder / name}"], check=True, cwd=ROOT)
-        figure = draw_bounces(folder / name) if name == "bouncing_sphere" else draw_case(name, folder / name)
-        save(figure, options.pictures / f"example_{name}.png")
+        if not options.run_only:
+            figure = (draw_bounces(folder / name) if name == "bouncing_sphere" else
+                      draw_case(name, folder / name))
+            save(figure, options.pictures / f"example_{name}.png")
     return 0
 
 
