@@ -172,31 +172,29 @@ def as_markdown(series: Series) -> str:
 
 
 def draw(series: Series, file: Path) -> None:
-    import matplotlib
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    shown = (("heap", "base_angle/0", "Base angle of the heap (degrees)"),
-             ("heap", "height/0", "Height of the heap (um)"),
-             ("spreading", "CRD/3", "CRD of layer 3"),
-             ("pile", "sinks", "Sinking at rest (1/1000 diameter)"))
-    figure, panels = plt.subplots(1, len(shown), figsize=(10., 2.7), layout="constrained")
-    for axes, (key, name, label) in zip(panels, shown):
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "postprocessing"))
+    from eunoe_report import style
+    from matplotlib.figure import Figure
+    shown = (("heap", "base_angle/0", "(a) Base angle of the heap (degrees)"),
+             ("heap", "height/0", "(b) Height of the heap (µm)"),
+             ("spreading", "CRD/3", "(c) CRD of layer 3"),
+             ("pile", "sinks", "(d) Sinking at rest (1/1000 diameter)"))
+    figure = Figure(figsize=(style.WIDTH, 4.4), layout="constrained")
+    for axes, (key, name, label) in zip(figure.subplots(2, 2).flat, shown):
         factor = next(f for n, _, f, _ in EXPERIMENTS[key].observables if n == name)
         intervals = sorted((n for e, n in series if e == key), key=lambda n: -n if n else -math.inf)
         for place, interval in enumerate(intervals):
             values = [factor * run[name] for run in series[key, interval]]
             mean, spread = mean_and_spread(values)
-            axes.plot([place] * len(values), values, "o", color="#a9cbe3", markersize=4)
-            axes.errorbar(place, mean, spread, fmt="_", color="#0072b2", markersize=14, capsize=3)
-        axes.set_xticks(range(len(intervals)), [f"{n}" if n else "never" for n in intervals],
-                        rotation=40)
-        axes.set_title(label, fontsize=8.5)
+            axes.plot([place] * len(values), values, "o", color=style.PALE_BLUE, markersize=4)
+            axes.errorbar(place, mean, spread, fmt="_", color=style.BLUE, markersize=14, capsize=3)
+        axes.set_xticks(range(len(intervals)), [f"{n:,}" if n else "never" for n in intervals])
+        axes.set_title(label)
         if name == "sinks":
             axes.set_yscale("symlog", linthresh=0.1)
             axes.set_ylim(-0.02, 200.)
-        axes.tick_params(labelsize=7.5)
     figure.supxlabel("Steps after which the contacts forget", fontsize=8.5)
-    figure.savefig(file, dpi=90)
+    figure.savefig(file, dpi=style.RESOLUTION)
 
 
 def main(arguments: list[str]) -> int:

@@ -7,6 +7,7 @@ import re
 
 import matplotlib
 import matplotlib.ticker
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
@@ -37,6 +38,7 @@ matplotlib.rcParams.update({
     "axes.spines.right": False,
     "axes.unicode_minus": True,
     "axes.axisbelow": True,
+    "axes.prop_cycle": cycler(color=[BLUE, VERMILLION, GREEN, ORANGE]),
     "grid.color": "#e6e6e6",
     "grid.linewidth": 0.5,
     "xtick.major.width": 0.6,

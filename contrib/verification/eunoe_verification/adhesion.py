@@ -86,7 +86,7 @@ def jkr(bench: Bench) -> Row:
         axes[0].plot(1e6 * gap[rises], 1e3 * repulsion[rises], color="#d55e00", label="Eunoe, approach")
         axes[0].plot(1e6 * gap[~rises], 1e3 * repulsion[~rises], color="#0072b2", label="Eunoe, pull")
         axes[0].plot(-1e6 * overlap, 1e3 * force, "--", color="#777777", label="theory")
-        axes[0].set(xlabel="Gap (um)", ylabel="Force, repulsion positive (mN)", xlim=(-2.1, 1.5),
+        axes[0].set(xlabel="Gap (µm)", ylabel="Force, repulsion positive (mN)", xlim=(-2.1, 1.5),
                     ylim=(-0.3, 0.5))
         axes[0].legend()
     return Row(checks, 1, draw)

@@ -72,7 +72,7 @@ def elastic(bench: Bench, cases: tuple, effective_mass, n: int) -> Row:
             axes[0].plot(1e6 * impact.overlap, 1e-3 * impact.force, color=colour, label=name)
             axes[0].plot(overlap, force, "o", color=colour, markerfacecolor="none")
         axes[0].plot([], [], "o", color="k", markerfacecolor="none", label="published maxima")
-        axes[0].set(xlabel="Overlap (um)", ylabel="Force (kN)", xlim=(0., None), ylim=(0., None))
+        axes[0].set(xlabel="Overlap (µm)", ylabel="Force (kN)", xlim=(0., None), ylim=(0., None))
         axes[0].legend()
     return Row(checks, 1, draw)
 

@@ -47,7 +47,7 @@ def sticking(bench: Bench) -> Row:
 
     def draw(axes) -> None:
         fine = np.linspace(0., 0.5, 51)
-        axes[0].plot(fine, 2. / 7. * (rebound(fine)**2 - 1.) * 100., color="#777777", label="own integration")
+        axes[0].plot(fine, 2. / 7. * (rebound(fine)**2 - 1.) * 100., color="#777777", label="integrated apart from Eunoe")
         axes[0].plot(poisson, 2. / 7. * (np.array(found)**2 - 1.) * 100., "o", label="Eunoe")
         axes[0].axhline(0., color="k", linewidth=0.5)
         axes[0].set(xlabel="Poisson's ratio", ylabel="Gain of tangential energy (%)")
@@ -108,7 +108,9 @@ def stacked_pair(bench: Bench) -> Row:
         for (restitution, (time, values, expected)), colour in zip(curves.items(), ("#0072b2", "#d55e00")):
             axes[0].plot(1e3 * time, 1e3 * values, color=colour, label=f"Eunoe, e = {restitution:g}")
             axes[0].plot(1e3 * time, 1e3 * expected, "--", color="k", linewidth=0.7)
-        axes[0].plot([], [], "--", color="k", linewidth=0.7, label="own integration")
+        axes[0].plot([], [], "--", color="k", linewidth=0.7, label="reference")
         axes[0].set(xlabel="Time (ms)", ylabel="Sum of the heights (mm)")
-        axes[0].legend()
+        # Above the panel, as the curves fill it.
+        axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.), ncol=3, columnspacing=0.9,
+                       handlelength=1.2)
     return Row(checks, 1, draw)

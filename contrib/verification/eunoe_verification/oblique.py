@@ -99,7 +99,7 @@ def tangential(bench: Bench) -> Row:
                          label="sliding throughout")
         axes[0].semilogx(v_t[~slides], 2. / 7. * v_t[~slides], "--", color="#777777",
                          label="2/7 $v_t$: rigid, rolls off")
-        axes[0].set(xlabel="Tangential velocity (m/s)", ylabel="Loss of it (m/s)", ylim=(0., None))
+        axes[0].set(xlabel="Tangential velocity (m/s)", ylabel="Loss of tangential velocity (m/s)", ylim=(0., None))
         axes[0].legend()
     return Row(checks, 1, draw)
 

@@ -30,13 +30,13 @@ def pile(bench: Bench) -> Row:
               at_least("constant torque: largest root mean square speed", speed["constant"], 1e-4, "m/s")]
 
     def draw(axes) -> None:
-        for name, colour in (("epsd", "#0072b2"), ("constant", "#d55e00")):
+        for name, label, colour in (("epsd", "EPSD", "#0072b2"), ("constant", "constant torque", "#d55e00")):
             time, height, rms = curves[name]
             late = time >= FROM
             axes[0].plot(time[late], 1e6 * (height[late] - height[late][0]), color=colour,
-                         label=f"{name}, {sunk[name]:.2g} diameters")
-            axes[1].semilogy(time, np.maximum(rms, 1e-12), color=colour, label=name)
-        axes[0].set(xlabel="Time (s)", ylabel="Rise of the centre of mass (um)")
+                         label=label)
+            axes[1].semilogy(time, np.maximum(rms, 1e-12), color=colour)
+        axes[0].set(xlabel="Time (s)", ylabel="Rise of the centre of mass (µm)")
         axes[1].set(xlabel="Time (s)", ylabel="RMS speed (m/s)")
         axes[0].legend()
     return Row(checks, 2, draw)

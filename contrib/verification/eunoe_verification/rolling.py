@@ -8,6 +8,7 @@ from .bench import Bench, Row, absolute, relative, row
 
 G, RADIUS, DENSITY = 9.81, 0.5e-3, 1000.
 MASS = 4. / 3. * np.pi * DENSITY * RADIUS**3
+LABELS = {"constant": "constant torque", "epsd": "EPSD"}
 METHOD = "model_parameters__rolling_resistance_torque_method"
 GRAVITY = "lagrangian_physical_properties__g"
 FRICTION = ("lagrangian_physical_properties__particle_type_0__friction_coefficient_particles",
@@ -77,7 +78,7 @@ def incline(bench: Bench) -> Row:
         axes[1].plot(fine, np.maximum(0., 5. / 7. * G * (np.sin(slope) - mu_r * np.cos(slope))),
                      color="#777777", label="rigid sphere")
         for name, mark in (("constant", "o"), ("epsd", "x")):
-            axes[1].plot(flat, found[name], mark, markerfacecolor="none", label=f"{name} torque, 0.1")
+            axes[1].plot(flat, found[name], mark, markerfacecolor="none", label=f"{LABELS[name]}, 0.1")
         for panel in axes:
             panel.set(xlabel="Incline (degrees)", ylabel="Acceleration (m/s$^2$)")
             panel.legend()
@@ -101,8 +102,9 @@ def decay(bench: Bench) -> Row:
                                1e-6 if name == "epsd" else 1e-3))
 
     def draw(axes) -> None:
-        for name, (time, spin) in curves.items():
-            axes[0].plot(1e3 * time, spin, label=name)
+        # The first line is wide enough to be seen behind the second.
+        for width, (name, (time, spin)) in zip((3., 1.2), curves.items()):
+            axes[0].plot(1e3 * time, spin, linewidth=width, label=LABELS[name])
         axes[0].plot(1e3 * time, np.maximum(0., w0 - rate * time), "--", color="#777777", label="rigid sphere")
         axes[0].set(xlabel="Time (ms)", ylabel="Spin (rad/s)")
         axes[0].legend()
