@@ -111,6 +111,8 @@ def follow(rule: Rule, options: argparse.Namespace, revision: str) -> dict[str, 
         run(command, rule_folder, options)
     entries = {}
     for picture, made in rule.pictures.items():
+        if not (rule_folder / made).exists():
+            raise Failure(f"The commands of {rule.name} have not made {rule_folder / made}.")
         shutil.copyfile(rule_folder / made, options.pictures / picture)
         entries[picture] = Entry(rule.name, revision, digest(options.pictures / picture))
     return entries

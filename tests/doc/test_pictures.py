@@ -21,6 +21,7 @@ from eunoe_pictures.rules import Rule  # noqa: E402
 
 RULE = Rule("rule", "nothing", {"a.png": "drawn"},
             ('bash -c "echo computed >> {folder}/runs"',), ('cp {folder}/runs {folder}/drawn',))
+EMPTY = Rule("empty", "nothing", {"c.png": "drawn"}, ("true",))
 BROKEN = Rule("broken", "nothing", {"b.png": "drawn"}, ('bash -c "exit 3"',))
 
 
@@ -30,7 +31,7 @@ class Pictures(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
         self.make_program("abcdef012")
-        patch = mock.patch.object(pictures, "RULES", (RULE, BROKEN))
+        patch = mock.patch.object(pictures, "RULES", (RULE, EMPTY, BROKEN))
         patch.start()
         self.addCleanup(patch.stop)
 
@@ -63,7 +64,8 @@ class Pictures(unittest.TestCase):
         self.assertIn("holds runs of revision abcdef0, the program is of 1234567", message)
 
     def test_failures_are_sentences(self) -> None:
-        self.assertIn("There is no rule and no picture 'c.png'", self.make("c.png")[1])
+        self.assertIn("There is no rule and no picture 'd.png'", self.make("d.png")[1])
+        self.assertIn("The commands of empty have not made", self.make("empty")[1])
         for _ in range(2):  # a command that failed has not computed anything
             self.assertIn("ended with exit code 3", self.make("broken")[1])
         self.make_program("unknown")
