@@ -1,11 +1,13 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/messages.h>
+#include <eunoe/core/new_file.h>
 #include <eunoe/core/problems.h>
 
 #include <boost/algorithm/string.hpp>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,17 +16,6 @@
 namespace eunoe {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-bool is_first(MPI_Comm comm)
-{
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  return rank == 0;
-}
-
-} // namespace
 
 std::string broadcast(std::string text, MPI_Comm comm)
 {
@@ -40,7 +31,7 @@ std::string broadcast(std::string text, MPI_Comm comm)
 std::string read_file(const std::string &path, MPI_Comm comm)
 {
   std::string text, error;
-  if (is_first(comm)) {
+  if (is_first_rank(comm)) {
     std::ifstream stream(path, std::ios::binary);
     std::ostringstream all;
     if (fs::is_directory(path))
@@ -62,21 +53,35 @@ std::string read_file(const std::string &path, MPI_Comm comm)
   return broadcast(text, comm);
 }
 
-void write_file(const std::string &path, const std::string &text)
+void write_file(const std::string &path, const std::string &text, const bool sync)
 {
-  const std::string beside = path + ".new";
-  std::ofstream stream(beside, std::ios::binary);
-  stream << text;
-  stream.close();
-  std::error_code failure;
-  if (stream)
-    fs::rename(beside, path, failure);
-  if (!stream || failure) {
-    const std::string reason = failure ? failure.message() : std::strerror(errno);
-    fs::remove(beside, failure);
-    throw UserError(path + " cannot be written: " + reason +
-                    ". Check the folder's permissions and the free space.");
+  NewFile file(path);
+  file.write(text.data(), text.size());
+  file.complete(sync);
+}
+
+void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm comm)
+{
+  constexpr int tag_size = 331, tag_text = 332;
+  std::uint64_t size = mine.size();
+  if (!is_first_rank(comm)) {
+    MPI_Send(&size, 1, MPI_UINT64_T, 0, tag_size, comm);
+    send(mine.data(), size, 0, tag_text, comm);
   }
+  on_first_rank(comm, [&] {
+    int n_ranks;
+    MPI_Comm_size(comm, &n_ranks);
+    NewFile file(path);
+    file.write(mine.data(), mine.size());
+    std::string text;
+    for (int rank = 1; rank < n_ranks; ++rank) {
+      MPI_Recv(&size, 1, MPI_UINT64_T, rank, tag_size, comm, MPI_STATUS_IGNORE);
+      text.resize(size);
+      receive(text.data(), size, rank, tag_text, comm);
+      file.write(text.data(), size);
+    }
+    file.complete(false);
+  });
 }
 
 void remove_file(const std::string &path)
@@ -87,9 +92,9 @@ void remove_file(const std::string &path)
 
 void create_folder(const std::string &path, MPI_Comm comm)
 {
-  std::string error;
-  if (is_first(comm)) {
+  on_first_rank(comm, [&] {
     std::error_code failure;
+    std::string error;
     fs::create_directories(path, failure);
     const std::string probe = path + "/.eunoe-probe";
     if (failure)
@@ -97,11 +102,10 @@ void create_folder(const std::string &path, MPI_Comm comm)
     else if (!std::ofstream(probe))
       error = std::strerror(errno);
     fs::remove(probe, failure);
-  }
-  error = broadcast(error, comm);
-  if (!error.empty())
-    throw UserError("The folder " + path + " cannot be written to: " + error +
-                    ". Choose another folder, or mend the permissions.");
+    if (!error.empty())
+      throw UserError("The folder " + path + " cannot be written to: " + error +
+                      ". Choose another folder, or mend the permissions.");
+  });
 }
 
 int Table::column(const std::string &name) const

@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/discovery/study_folder.h>
@@ -19,10 +20,9 @@ const std::string identity_file = "study.json";
 /// The text of a file on the first rank, given to all; nothing if there is none.
 std::optional<nlohmann::ordered_json> read_json(const std::string &file, MPI_Comm comm)
 {
-  int rank;
-  MPI_Comm_rank(comm, &rank);
   std::error_code failure;
-  const std::string is_there = broadcast(rank == 0 && fs::exists(file, failure) ? "yes" : "", comm);
+  const std::string is_there =
+      broadcast(is_first_rank(comm) && fs::exists(file, failure) ? "yes" : "", comm);
   if (is_there.empty())
     return std::nullopt;
   try {
@@ -87,18 +87,7 @@ void StudyFolder::save(const std::string &stage, const nlohmann::ordered_json &t
 
 void StudyFolder::write(const std::string &name, const std::string &text) const
 {
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  std::string error;
-  if (rank == 0)
-    try {
-      write_file(file(name), text);
-    } catch (const UserError &failure) {
-      error = failure.what();
-    }
-  error = broadcast(error, comm);
-  if (!error.empty())
-    throw UserError(error);
+  on_first_rank(comm, [&] { write_file(file(name), text); });
 }
 
 std::string as_csv(const nlohmann::ordered_json &list)

@@ -1,15 +1,14 @@
 #include <eunoe/core/compat.h>
 #include <eunoe/core/files.h>
-#include <eunoe/core/problems.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/new_file.h>
 #include <eunoe/simulation/output.h>
 
 #include <deal.II/base/data_out_base.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
+#include <sstream>
 #include <tuple>
 
 namespace eunoe {
@@ -112,21 +111,25 @@ std::vector<Patch<2, 3>> solid_patches(const std::vector<Solid> &solids)
   return patches;
 }
 
-bool is_first(MPI_Comm comm)
+/// What this rank contributes to a .vtu file of all ranks: @p whole is its own complete file.
+std::string part_of(const std::string &whole, const dealii::DataOutBase::VtkFlags &flags,
+                    MPI_Comm comm)
 {
-  int rank;
+  std::ostringstream header, footer;
+  dealii::DataOutBase::write_vtu_header(header, flags);
+  dealii::DataOutBase::write_vtu_footer(footer);
+  const std::size_t begin = header.str().size(), end = whole.size() - footer.str().size();
+  int rank, n_ranks;
   MPI_Comm_rank(comm, &rank);
-  return rank == 0;
-}
-
-/// Tells all ranks whether the first one managed to write; throws on all of them if not.
-void agree_on_success(bool written, const std::string &path, MPI_Comm comm)
-{
-  int ok = written ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &ok, 1, MPI_INT, MPI_MIN, comm);
-  if (ok == 0)
-    throw UserError(path + " cannot be written. Check the folder's permissions and the free "
-                           "space.");
+  MPI_Comm_size(comm, &n_ranks);
+  std::string part = whole.substr(begin, end - begin);
+  const bool is_empty = part.substr(0, 100).find("NumberOfPoints=\"0\"") != std::string::npos;
+  int has_points = is_empty ? 0 : 1, any = 0;
+  MPI_Allreduce(&has_points, &any, 1, MPI_INT, MPI_MAX, comm);
+  // ParaView cannot read a file that begins with a part without points, unless it is the only one.
+  if (has_points == 0 && (any != 0 || rank > 0))
+    part.clear();
+  return (rank == 0 ? header.str() : "") + part + (rank == n_ranks - 1 ? footer.str() : "");
 }
 
 } // namespace
@@ -149,20 +152,20 @@ void PictureSeries::write_index() const
     text += line + ("part=\"0\" file=\"" + file + "\"/>\n");
   }
   text += "  </Collection>\n</VTKFile>\n";
-  write_file(folder + "/" + name + ".pvd", text);
+  on_first_rank(comm, [&] { write_file(folder + "/" + name + ".pvd", text); });
+}
+
+void PictureSeries::sync()
+{
+  for (; n_synced < files.size(); ++n_synced)
+    sync_file(folder + "/" + files[n_synced].second);
 }
 
 void PictureSeries::resume(const Files &earlier)
 {
   files = earlier;
-  bool written = true;
-  if (is_first(comm))
-    try {
-      write_index();
-    } catch (const UserError &) {
-      written = false;
-    }
-  agree_on_success(written, folder + "/" + name + ".pvd", comm);
+  n_synced = files.size();
+  write_index();
 }
 
 template <int dim>
@@ -171,16 +174,12 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
   if (folder.empty())
     return;
   const std::string path = folder + "/" + next_file(time);
-  data.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
-  bool written = true;
-  try {
-    data.write_vtu_in_parallel(path, comm);
-    if (is_first(comm))
-      write_index();
-  } catch (const std::exception &) {
-    written = false;
-  }
-  agree_on_success(written, path, comm);
+  const auto flags = compat::vtu_flags(time, static_cast<unsigned int>(files.size()));
+  data.set_flags(flags);
+  std::ostringstream whole;
+  data.write_vtu(whole);
+  write_in_turn(path, part_of(whole.str(), flags, comm), comm);
+  write_index();
 }
 
 void PictureSeries::write(const double time, const ParticleArrays &particles,
@@ -207,20 +206,14 @@ void PictureSeries::write(const double time, const std::vector<Solid> &solids)
       std::none_of(solids.begin(), solids.end(), [](const Solid &s) { return s.output; }))
     return;
   const std::string path = folder + "/" + next_file(time);
-  bool written = true;
-  if (is_first(comm))
-    try {
-      std::ofstream stream(path, std::ios::binary);
-      dealii::DataOutBase::write_vtu(
-          solid_patches(solids), {"solid"}, {},
-          compat::vtu_flags(time, static_cast<unsigned int>(files.size())), stream);
-      stream.close();
-      written = static_cast<bool>(stream);
-      write_index();
-    } catch (const std::exception &) {
-      written = false;
-    }
-  agree_on_success(written, path, comm);
+  on_first_rank(comm, [&] {
+    std::ostringstream text;
+    dealii::DataOutBase::write_vtu(solid_patches(solids), {"solid"}, {},
+                                   compat::vtu_flags(time, static_cast<unsigned int>(files.size())),
+                                   text);
+    write_file(path, text.str());
+  });
+  write_index();
 }
 
 } // namespace eunoe

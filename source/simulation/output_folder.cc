@@ -1,5 +1,7 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/new_file.h>
 #include <eunoe/simulation/output_folder.h>
 
 #include <nlohmann/json.hpp>
@@ -14,10 +16,8 @@ void OutputFolder::open()
 
 void OutputFolder::write(const std::string &name, const std::string &text) const
 {
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  if (opened && rank == 0)
-    write_file(file(name), text);
+  if (opened)
+    on_first_rank(comm, [&] { write_file(file(name), text); });
 }
 
 std::shared_ptr<CsvFile> OutputFolder::table(const std::string &name,
@@ -49,6 +49,19 @@ nlohmann::ordered_json OutputFolder::save() const
     if (!pictures->get_files().empty())
       saved["pictures"][name] = pictures->get_files();
   return saved;
+}
+
+void OutputFolder::sync()
+{
+  if (!opened)
+    return;
+  on_first_rank(comm, [&] {
+    for (const auto &[name, table] : tables)
+      table->sync();
+    for (const auto &[name, pictures] : series)
+      pictures->sync();
+    sync_folder_of(file(""));
+  });
 }
 
 void OutputFolder::resume(const nlohmann::ordered_json &saved)

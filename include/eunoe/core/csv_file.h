@@ -9,8 +9,8 @@
 
 namespace eunoe {
 
-/// A table that grows row by row, written by the first rank of a communicator; every row is on
-/// disk when `write` returns. Without a path it goes nowhere.
+/// A table that grows row by row, written by the first rank of a communicator; every row can be
+/// read when `write` returns. Without a path it goes nowhere.
 class CsvFile
 {
 public:
@@ -28,12 +28,18 @@ public:
   /// Bytes written, on the first rank.
   std::uint64_t size() const;
 
+  /// Waits until they would outlive a crash of the machine. To be called by the first rank, throws
+  /// a UserError there.
+  void sync() const;
+
 private:
-  void check(bool ok, const std::string &what) const;
+  /// To be called by the first rank.
+  void append(const std::string &line);
 
   const std::string path;
   MPI_Comm comm;
-  std::FILE *file = nullptr;
+  std::FILE *file = nullptr;  ///< on the first rank
+  std::uint64_t complete = 0; ///< bytes of complete rows
 };
 
 } // namespace eunoe

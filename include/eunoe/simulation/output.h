@@ -35,7 +35,8 @@ public:
   {
   }
 
-  /// Writes the owned particles of all ranks; collective.
+  /// Writes the owned particles of all ranks; collective. Throws a UserError on every rank if a
+  /// file cannot be written, like all that follows.
   /// @param fields names of the extra doubles
   /// @param more further data of the particles
   void write(double time, const ParticleArrays &particles,
@@ -53,6 +54,9 @@ public:
   /// Times (s) and names of the files so far.
   using Files = std::vector<std::pair<double, std::string>>;
   const Files &get_files() const { return files; }
+  /// Waits until the files since the last time would outlive a crash of the machine. To be called
+  /// by the first rank, throws a UserError there.
+  void sync();
   /// Goes on behind the files of an interrupted run; later ones disappear from the .pvd file.
   void resume(const Files &earlier);
 
@@ -65,6 +69,7 @@ private:
   const std::string folder, name;
   MPI_Comm comm;
   Files files;
+  std::size_t n_synced = 0;
 };
 
 } // namespace eunoe

@@ -27,7 +27,8 @@ public:
 
   std::string file(const std::string &name) const { return path + "/" + name; }
 
-  /// Writes the file "name" at once, on the first rank. Throws a UserError there.
+  /// Writes the file "name" at once, the first rank's text. Throws a UserError on every rank;
+  /// collective.
   void write(const std::string &name, const std::string &text) const;
 
   /// A table "name", new or continued. Throws a UserError on every rank; collective.
@@ -35,6 +36,10 @@ public:
 
   /// A series of pictures, likewise.
   std::shared_ptr<PictureSeries> pictures(const std::string &name);
+
+  /// Waits until all tables and pictures would outlive a crash of the machine, which a checkpoint
+  /// that knows them relies on. Throws a UserError on every rank; collective.
+  void sync();
 
   /// How far tables and series have come.
   nlohmann::ordered_json save() const;
