@@ -31,7 +31,6 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
   if (const auto code = answer(line, program, !line.print_parameters, comm))
     return *code;
   Log log(comm, line.quiet);
-  Log errors(comm);
   Problems problems;
   Parameters parameters;
   std::unique_ptr<Simulation> simulation;
@@ -56,8 +55,7 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     }
     simulation->open_output();
   } catch (const UserError &error) {
-    errors.error(error.what());
-    return exit_bad_input;
+    throw RefusedInput(error);
   }
   const bool complete = simulation->run();
   if (!dump.empty())

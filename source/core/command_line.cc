@@ -1,10 +1,11 @@
 #include <eunoe/core/command_line.h>
+#include <eunoe/core/departure.h>
 #include <eunoe/core/log.h>
-#include <eunoe/core/problems.h>
 #include <eunoe/core/version.h>
 
 #include <boost/program_options.hpp>
 
+#include <csignal>
 #include <iostream>
 #include <sstream>
 
@@ -77,13 +78,20 @@ std::optional<ExitCode> answer(const CommandLine &line, const ProgramText &progr
   return std::nullopt;
 }
 
-int guarded(MPI_Comm comm, const std::function<int()> &body)
+int guarded(MPI_Comm comm, const std::function<int()> &body, const double patience)
 {
+#ifdef SIGXFSZ
+  // Where the size of files is limited, writing shall fail with a sentence instead.
+  std::signal(SIGXFSZ, SIG_IGN);
+#endif
+  const Departure departure(comm);
   try {
     return body();
+  } catch (const RefusedInput &error) {
+    departure.leave(error.what(), patience);
+    return exit_bad_input;
   } catch (const UserError &error) {
-    // Thrown on every rank alike, so all can leave in good order.
-    Log(comm).error(error.what());
+    departure.leave(error.what(), patience);
     return exit_failure;
   } catch (const std::exception &error) {
     // Only this rank knows, and the others wait for it.

@@ -144,7 +144,7 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
   const bool only_lists = wishes.list_observables || wishes.list_effects || line.print_parameters;
   if (const auto code = answer(line, program, !only_lists && !makes_twin, comm))
     return *code;
-  Log log(comm, line.quiet), errors(comm);
+  Log log(comm, line.quiet);
   StudyInput study;
   try {
     Problems problems;
@@ -182,8 +182,7 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
       return exit_success;
     }
   } catch (const UserError &error) {
-    errors.error(error.what());
-    return exit_bad_input;
+    throw RefusedInput(error);
   }
   if (!makes_twin)
     return make_study(study, comm, log);

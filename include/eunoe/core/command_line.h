@@ -2,6 +2,7 @@
 #define eunoe_core_command_line_h
 
 #include <eunoe/application.h>
+#include <eunoe/core/problems.h>
 
 #include <functional>
 #include <optional>
@@ -47,8 +48,17 @@ CommandLine parse_command_line(int argc, char **argv, const ProgramText &program
 std::optional<ExitCode> answer(const CommandLine &line, const ProgramText &program,
                                bool needs_input, MPI_Comm comm);
 
-/// Runs the body of a program and turns what it throws into a sentence and an exit code.
-int guarded(MPI_Comm comm, const std::function<int()> &body);
+/// Thrown by the body of a program where the input is refused before anything is run.
+class RefusedInput : public UserError
+{
+public:
+  explicit RefusedInput(const UserError &error) : UserError(error) {}
+};
+
+/// Runs the body of a program and turns what it throws into a sentence and an exit code. A rank
+/// that throws while others go on ends them all.
+/// @param patience how long it waits for the others (s)
+int guarded(MPI_Comm comm, const std::function<int()> &body, double patience = 10.);
 
 } // namespace eunoe
 

@@ -1,0 +1,35 @@
+#ifndef eunoe_core_departure_h
+#define eunoe_core_departure_h
+
+#include <mpi.h>
+#include <string>
+
+namespace eunoe {
+
+/// The way out of a program for ranks that cannot go on. Most errors are known to all ranks, who
+/// leave in good order; where one rank alone has an error, the others would wait for it for ever.
+class Departure
+{
+public:
+  /// Collective, like the destructor.
+  explicit Departure(MPI_Comm comm);
+  ~Departure();
+  Departure(const Departure &) = delete;
+  Departure &operator=(const Departure &) = delete;
+
+  /// Says why, once. Waits until all ranks are here; if some do not come, ends them, too.
+  /// @param patience how long it waits (s)
+  void leave(const std::string &sentence, double patience) const;
+
+private:
+  /// Whether all ranks come in time.
+  bool meet(double patience) const;
+  /// Whether a rank before this one is here, too.
+  bool is_preceded() const;
+
+  MPI_Comm comm; ///< of its own, as others may have messages on their way
+};
+
+} // namespace eunoe
+
+#endif
