@@ -1,3 +1,5 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
@@ -111,7 +113,9 @@ DemLaboratory::Case DemLaboratory::make_case(const RunRequest &request) const
     const std::string input = one.experiment->make(one.overrides, problems).as_input_file();
     if (!problems.empty())
       throw UserError(problems);
-    one.key = sha256(std::string(engine_digest()) + named_files(input) + input);
+    // Another rank may see other files.
+    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
+    one.key = sha256(std::string(engine_digest()) + files + input);
   } catch (const UserError &error) {
     one.problem = error.what();
     one.key = sha256(std::string(engine_digest()) + one.problem + words(request));
