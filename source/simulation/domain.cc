@@ -46,7 +46,7 @@ public:
 void refine(Triangulation &triangulation, const RefinementParameters::Region &region)
 {
   dealii::Triangulation<3> mesh;
-  create_mesh(mesh, region.mesh);
+  create_mesh(mesh, region.mesh, triangulation.get_communicator());
   const auto box = dealii::GridTools::compute_bounding_box(mesh).get_boundary_points();
   const double tolerance = 1e-9 * box.first.distance(box.second);
   for (unsigned int time = 0; time < region.additional; ++time) {
@@ -76,7 +76,7 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
     : comm(comm), mesh_data(std::make_unique<Mesh>(comm)), motion(background.motion)
 {
   Triangulation &triangulation = mesh_data->triangulation;
-  create_mesh(triangulation, background.mesh);
+  create_mesh(triangulation, background.mesh, comm);
   const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
   lower_corner = to_vec3(bounding_box.get_boundary_points().first);
   upper_corner = to_vec3(bounding_box.get_boundary_points().second);

@@ -31,8 +31,14 @@ struct Domain::Mesh
 /// Most cells of a mesh.
 constexpr double most_cells = 1e9;
 
-/// Makes the mesh before its refinement. Throws a UserError that says why it cannot be made.
-void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh);
+/// Makes the mesh before its refinement; collective. Throws a UserError on every rank that says why
+/// it cannot be made.
+void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh,
+                 MPI_Comm comm);
+
+/// The text of a file of Gmsh that holds hexahedra; collective. Throws a UserError on every rank
+/// for any other.
+std::string read_background_mesh(const MeshParameters &mesh, MPI_Comm comm);
 
 /// Makes one of Lethe's cylinders along x around the origin; the side has the boundary id 0, the
 /// ends at the lower and the upper x have 1 and 2.

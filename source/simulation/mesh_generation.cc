@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <set>
 #include <sstream>
 
@@ -126,15 +125,12 @@ void place(dealii::Triangulation<3> &triangulation, const Placement &placement)
 
 } // namespace
 
-void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh)
+void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh, MPI_Comm comm)
 {
   check_size(mesh, count_coarse_cells(mesh), mesh.has_target ? 0 : mesh.refinement);
   try {
     if (mesh.type == "gmsh") {
-      std::ifstream stream(mesh.file);
-      if (!stream)
-        throw UserError(describe(mesh.path, "file name") + ": " + mesh.file +
-                        " cannot be read. Check the name and the permissions.");
+      std::istringstream stream(read_background_mesh(mesh, comm));
       dealii::GridIn<3> reader;
       reader.attach_triangulation(triangulation);
       reader.read_msh(stream);
@@ -149,7 +145,7 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
     throw UserError(describe(mesh.path, "") + ": the mesh cannot be made (" +
                     deal_ii_message(error) + "). Check " +
                     (mesh.type == "gmsh"
-                         ? "that " + mesh.file + " is a Gmsh file of hexahedra."
+                         ? "that the hexahedra of " + mesh.file + " fit together."
                          : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));
   }
   place(triangulation, mesh.placement);
