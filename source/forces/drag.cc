@@ -1,5 +1,5 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/forces/load.h>
-#include <eunoe/particles/physical_properties.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,12 +38,35 @@ private:
   const double viscosity, density;
 };
 
-const LoadRegistry::Registration registration(
-    loads(), "drag", [](const PhysicalProperties &physics) {
-      return physics.gas_viscosity > 0.
-                 ? std::make_unique<Drag>(physics.gas_viscosity, physics.gas_density)
-                 : nullptr;
-    });
+/// `subsection model parameters / drag`.
+class DragSection : public LoadSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("model parameters");
+    prm.enter_subsection("drag");
+    declare::positive(prm, "dynamic viscosity", viscosity,
+                      "Dynamic viscosity of the still gas around the particles (Pa s), 1.8e-5 for "
+                      "air; 0: no drag.");
+    declare::positive(prm, "density", density,
+                      "Density of that gas (kg/m3), 1.2 for air. 0: Stokes's drag; else that of "
+                      "Schiller and Naumann.");
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  std::unique_ptr<Load> make(const PhysicalProperties &) const override
+  {
+    return viscosity > 0. ? std::make_unique<Drag>(viscosity, density) : nullptr;
+  }
+
+private:
+  double viscosity = 0., density = 0.;
+};
+
+const LoadRegistry::Registration registration(loads(), "drag",
+                                              [] { return std::make_unique<DragSection>(); });
 
 } // namespace
 } // namespace eunoe

@@ -31,10 +31,17 @@ private:
   const Vec3 g;
 };
 
-const LoadRegistry::Registration registration(
-    loads(), "gravity", [](const PhysicalProperties &physics) {
-      return norm(physics.gravity) > 0. ? std::make_unique<Gravity>(physics.gravity) : nullptr;
-    });
+class GravitySection : public LoadSection
+{
+public:
+  std::unique_ptr<Load> make(const PhysicalProperties &physics) const override
+  {
+    return norm(physics.gravity) > 0. ? std::make_unique<Gravity>(physics.gravity) : nullptr;
+  }
+};
+
+const LoadRegistry::Registration registration(loads(), "gravity",
+                                              [] { return std::make_unique<GravitySection>(); });
 
 } // namespace
 } // namespace eunoe

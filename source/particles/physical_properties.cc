@@ -205,11 +205,6 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     declare_wall_material(prm, wall_materials[k]);
     prm.leave_subsection();
   }
-  declare::positive(prm, "dynamic viscosity gas", gas_viscosity,
-                    "Dynamic viscosity of the still gas around the particles (Pa s); 0: no drag.");
-  declare::positive(prm, "density gas", gas_density,
-                    "Density of that gas (kg/m3). 0: Stokes's drag; else that of Schiller and "
-                    "Naumann.");
   prm.leave_subsection();
 }
 

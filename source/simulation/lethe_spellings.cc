@@ -167,6 +167,10 @@ const std::vector<Ignored> &ignored()
         "thermal conductivity gas", "specific heat gas", "specific heats ratio gas",
         "molecular mean free path gas"},
        of_heat},
+      {properties,
+       {"dynamic viscosity gas"},
+       "is for heat between particles, not for drag, which has its own in 'model parameters / "
+       "drag'."},
       {{"solid objects", "solid surfaces", "solid object *"}, {"thermal boundary type"}, of_heat},
       {{"solid objects", "solid surfaces", "solid object *", "temperature"}, {}, of_heat},
       {{"solid objects", "solid volumes"}, {}, "has no effect, as in Lethe."},

@@ -58,6 +58,8 @@ Parameters::Parameters(const SectionCounts &counts)
 {
   for (const std::string &name : process_kinds().list())
     processes[name] = process_kinds().make(name);
+  for (const std::string &name : eunoe::loads().list())
+    loads[name] = eunoe::loads().make(name);
   for (const std::string &name : eunoe::observables().list())
     observables[name] = eunoe::observables().make(name);
 }
@@ -67,6 +69,8 @@ std::vector<ParameterSection *> Parameters::sections()
   std::vector<ParameterSection *> all = {&control,        &mesh,    &refinement, &grid_motion,
                                          &boundaries,     &physics, &insertion,  &model,
                                          &floating_walls, &solids,  &restart};
+  for (auto &[name, load] : loads)
+    all.push_back(load.get());
   for (auto &[name, observable] : observables)
     all.push_back(observable.get());
   for (auto &[name, process] : processes)

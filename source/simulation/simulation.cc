@@ -92,8 +92,8 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
   if (!problems.empty())
     throw UserError(problems);
   solid_loads.resize(solids.size());
-  for (const std::string &name : eunoe::loads().list())
-    if (auto load = eunoe::loads().make(name, parameters.physics))
+  for (const auto &[name, section] : parameters.loads)
+    if (auto load = section->make(parameters.physics))
       loads.push_back(std::move(load));
   // A trial without a folder finds what is wrong with them before anything is written.
   for (const auto &[name, section] : parameters.observables)

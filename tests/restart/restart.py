@@ -43,7 +43,7 @@ ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
             "model parameters/capillary bridges/surface tension = 0.01",
             "model parameters/electrostatic charge/cut-off share = 0.2",
             PHYSICS + "particle type 0/surface charge density particles = 2e-5",
-            PHYSICS + "dynamic viscosity gas = 1e-3", PHYSICS + "density gas = 10")
+            "model parameters/drag/dynamic viscosity = 1e-3", "model parameters/drag/density = 10")
 # A background mesh that moves and pours out what is in it.
 DRUM = str(Path(__file__).with_name("drum.prm"))
 BOUNDARY = "DEM boundary conditions/boundary condition 0/"

@@ -15,9 +15,9 @@ Scene scene(double viscosity, double density)
   s.spheres[0].diameter = 50e-6;
   s.half_width = 0.2;
   s.density = 4000.;
-  s.more = "subsection lagrangian physical properties\n" +
-           Scene::entry("dynamic viscosity gas", viscosity) + Scene::entry("density gas", density) +
-           "end\n";
+  s.more = "subsection model parameters\nsubsection drag\n" +
+           Scene::entry("dynamic viscosity", viscosity) + Scene::entry("density", density) +
+           "end\nend\n";
   return s;
 }
 

@@ -123,8 +123,6 @@ const char *const all_laws = R"(
       subsection particle type 1
         set surface charge density particles = -1e-5
       end
-      set dynamic viscosity gas = 1e-3
-      set density gas = 10
     end
     subsection model parameters
       set particle particle contact force method = JKR
@@ -135,6 +133,10 @@ const char *const all_laws = R"(
       end
       subsection electrostatic charge
         set cut-off share = 0.2
+      end
+      subsection drag
+        set dynamic viscosity = 1e-3
+        set density = 10
       end
     end
 )";

@@ -27,9 +27,17 @@ public:
 };
 bool Tilt::acts = false;
 
-const LoadRegistry::Registration registration(loads(), "tilt", [](const PhysicalProperties &) {
-  return Tilt::acts ? std::make_unique<Tilt>() : nullptr;
-});
+class TiltSection : public LoadSection
+{
+public:
+  std::unique_ptr<Load> make(const PhysicalProperties &) const override
+  {
+    return Tilt::acts ? std::make_unique<Tilt>() : nullptr;
+  }
+};
+
+const LoadRegistry::Registration registration(loads(), "tilt",
+                                              [] { return std::make_unique<TiltSection>(); });
 
 /// About 130 particles rain on a plate in a trough that is periodic in z.
 /// @param stone velocity upwards of a large particle that starts over the bed; 0: none

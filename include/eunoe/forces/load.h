@@ -1,6 +1,7 @@
 #ifndef eunoe_forces_load_h
 #define eunoe_forces_load_h
 
+#include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/particles/particle_arrays.h>
 
@@ -25,8 +26,17 @@ public:
   virtual bool changes(double /*begin*/, double /*end*/) const { return false; }
 };
 
-/// Loads by name; a maker returns null where its load does not act.
-using LoadRegistry = Registry<std::unique_ptr<Load>, const PhysicalProperties &>;
+/// What the input file says of a load, in entries that the load's own file declares, if it has any.
+class LoadSection : public ParameterSection
+{
+public:
+  void declare(dealii::ParameterHandler &) override {}
+
+  /// Null where the load does not act.
+  virtual std::unique_ptr<Load> make(const PhysicalProperties &physics) const = 0;
+};
+
+using LoadRegistry = Registry<std::unique_ptr<LoadSection>>;
 LoadRegistry &loads();
 
 } // namespace eunoe

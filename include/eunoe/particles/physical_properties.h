@@ -36,8 +36,6 @@ struct PhysicalProperties : public ParameterSection
   std::vector<ParticleType> types;
   Material wall;
   std::vector<WallMaterial> wall_materials;
-  double gas_viscosity = 0.; ///< of the still gas around the particles (Pa s); 0: no drag
-  double gas_density = 0.;   ///< (kg/m3)
   /// Materials of walls that differ, which a process may add: rows behind all others.
   std::vector<Material> other_walls;
 

@@ -3,6 +3,7 @@
 
 #include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/contact/model_parameters.h>
+#include <eunoe/forces/load.h>
 #include <eunoe/observables/observable.h>
 #include <eunoe/particles/insertion.h>
 #include <eunoe/particles/physical_properties.h>
@@ -64,6 +65,7 @@ public:
   RestartParameters restart;
   std::string process_name = "none";
   std::map<std::string, std::unique_ptr<Process>> processes;
+  std::map<std::string, std::unique_ptr<LoadSection>> loads;
   std::map<std::string, std::unique_ptr<ObservableSection>> observables;
 
 private:
