@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Installs what Eunoe needs and this machine lacks, from Debian's packages. Every dependency is
 # named here, once.
-# Usage: contrib/install_dependencies.sh [fuzzing]    with what contrib/fuzzing/run.sh needs, too
+# Usage: contrib/install_dependencies.sh [fuzzing] [benchmarks]
+#   fuzzing     with what contrib/fuzzing/run.sh needs, too
+#   benchmarks  with the programs that contrib/benchmarks/run.py compares with, too
 set -euo pipefail
 
 build=(
@@ -26,11 +28,22 @@ fuzzing=(
   clang              # compiler with libFuzzer
   libclang-rt-14-dev # run-time libraries of the sanitizers and of libFuzzer
 )
+benchmarks=(
+  lammps
+  liggghts
+)
 
 wanted=("${build[@]}" "${report[@]}" "${checks[@]}")
-if [ "${1:-}" = fuzzing ]; then
-  wanted+=("${fuzzing[@]}")
-fi
+for more in "$@"; do
+  case $more in
+    fuzzing) wanted+=("${fuzzing[@]}") ;;
+    benchmarks) wanted+=("${benchmarks[@]}") ;;
+    *)
+      echo "There is nothing called '$more' to install. Give 'fuzzing', 'benchmarks', both or neither." >&2
+      exit 2
+      ;;
+  esac
+done
 missing=()
 for package in "${wanted[@]}"; do
   if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then

@@ -5,8 +5,8 @@ Usage: contrib/benchmarks/run.py [--program build/release/eunoe-particles] [--ca
            [--ranks 1,2] [--repeats 5] [--steps N] [--peers lammps,liggghts|none]
            [--shares] [--memory] [--json FILE] [--markdown FILE]
 
-doc/performance.md tells what is compared and how to read it. A peer that is not installed is left
-out. The speed is that of the time loop alone, in million particle-steps/s: median (least to most);
+doc/performance.md tells what is compared and how to read it. Of a peer that is not installed all
+results say so; `contrib/install_dependencies.sh benchmarks` installs both. The speed is that of the time loop alone, in million particle-steps/s: median (least to most);
 the ratio is Eunoe's median over that of the faster peer.
 
 --shares  adds how much of its time Eunoe spends in each part of a step
@@ -67,15 +67,19 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def installed_peers(names: list[str]) -> list:
-    peers = []
-    for name in names:
-        peer = PEERS[name]()
-        if peer.path is None:
-            print(f"{peer.name} is not installed (no program '{peer.executable}'): left out.")
-        else:
-            peers.append(peer)
-    return peers
+def find_peers(names: list[str]) -> tuple[list, list]:
+    """Peers that are installed, and those that are missing."""
+    peers = [PEERS[name]() for name in names]
+    return [peer for peer in peers if peer.path], [peer for peer in peers if not peer.path]
+
+
+def complaint(missing: list) -> str:
+    """What all results say of peers that were asked for and are not there; empty if all are."""
+    if not missing:
+        return ""
+    which = " and ".join(f"{peer.name} (no program '{peer.executable}')" for peer in missing)
+    return (f"WARNING: NOT COMPARED with {which}, which {'is' if len(missing) == 1 else 'are'} not "
+            "installed. Run 'contrib/install_dependencies.sh benchmarks', or leave out with --peers.")
 
 
 def measure(case: Case, ranks: int, steps: int, repeats: int,
@@ -114,9 +118,13 @@ def main() -> int:
     if options.repeats < 1:
         raise Failure("--repeats must be at least 1.")
     names = [] if options.peers == "none" else chosen(options.peers, list(PEERS), "peer")
-    peers = installed_peers(names)
+    peers, missing = find_peers(names)
     programs = [eunoe, *peers]
     facts = machine.facts(programs, eunoe.path)
+    facts.update({peer.name: "MISSING" for peer in missing})
+    warning = complaint(missing)
+    if warning:
+        print(warning, file=sys.stderr, flush=True)
     print("\n".join(f"{name}: {value}" for name, value in facts.items()), "\n", sep="")
 
     rows, share_rows, memory_rows = [], [], []
@@ -133,7 +141,8 @@ def main() -> int:
                 memory_rows.append(memory_row(case, ranks, ours, eunoe))
 
     tables = {"Million particle-steps/s, median (least to most)":
-              table.cells(rows, [program.name for program in programs])}
+              table.cells(rows, [program.name for program in programs],
+                          [peer.name for peer in missing])}
     if options.shares:
         tables["Shares of Eunoe's time loop"] = table.share_cells(share_rows)
     if options.memory:
@@ -143,13 +152,16 @@ def main() -> int:
     print()
     for title, content in tables.items():
         print(f"{title}\n{table.as_text(content)}\n")
+    if warning:
+        print(warning, file=sys.stderr)
     if options.json:
         options.json.write_text(json.dumps(
-            {"machine": facts, "speeds": [{**asdict(row), "ratio": row.ratio()} for row in rows],
+            {"machine": facts, "missing_peers": [peer.name for peer in missing], "speeds": [{**asdict(row), "ratio": row.ratio()} for row in rows],
              "summaries": [{"case": c, "ranks": r, "runs": s} for c, r, s in share_rows],
              "tables": tables}, indent=2) + "\n", encoding="utf-8")
     if options.markdown:
-        text = [f"- {name}: {value}" for name, value in facts.items()]
+        text = [f"**{warning}**", ""] if warning else []
+        text += [f"- {name}: {value}" for name, value in facts.items()]
         for title, content in tables.items():
             text += ["", f"{title}:", "", table.as_markdown(content)]
         options.markdown.write_text("\n".join(text) + "\n", encoding="utf-8")

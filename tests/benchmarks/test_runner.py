@@ -54,6 +54,12 @@ class Tables(unittest.TestCase):
         self.assertEqual(table.as_markdown(cells[:1]).splitlines()[1], "|---|---|---|---|---|---|")
         self.assertEqual(len(table.as_text(cells).splitlines()), 2)
 
+    def test_a_missing_peer_has_a_column_that_says_so(self):
+        row = table.Row("bed", 1, {"Eunoe": [9e6], "LAMMPS": [3e6]})
+        cells = table.cells([row], ["Eunoe", "LAMMPS"], ["LIGGGHTS"])
+        self.assertEqual(cells[0], ["case", "ranks", "Eunoe", "LAMMPS", "LIGGGHTS", "ratio"])
+        self.assertEqual(cells[1][4:], ["MISSING", "3.00"])
+
     def test_shares_add_up(self):
         shares = table.shares(SUMMARY)
         self.assertAlmostEqual(sum(shares.values()), 1.)
@@ -124,8 +130,8 @@ class Bed(unittest.TestCase):
 
 @unittest.skipIf(PROGRAM is None, "no program is given")
 class Runs(unittest.TestCase):
-    def run_it(self, *arguments):
-        environment = dict(os.environ)
+    def run_it(self, *arguments, **changes):
+        environment = {**os.environ, **changes}
         return subprocess.run([sys.executable, "-B", str(FOLDER / "run.py"), "--program", PROGRAM,
                                *arguments], capture_output=True, text=True, check=False,
                               env=environment)
@@ -140,6 +146,7 @@ class Runs(unittest.TestCase):
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             data = json.loads(results.read_text())
             self.assertIn("| case | ranks | Eunoe |", page.read_text())
+            self.assertEqual("NOT COMPARED" in page.read_text(), bool(data["missing_peers"]))
         installed = {peer.name for peer in (Lammps(), Liggghts()) if peer.path}
         self.assertEqual(len(data["speeds"]), 3)
         for row in data["speeds"]:
@@ -148,6 +155,26 @@ class Runs(unittest.TestCase):
             self.assertTrue(all(speed > 0. for values in row["speeds"].values() for speed in values))
         self.assertEqual(data["summaries"][0]["runs"][0]["particles"], 20000)
         self.assertEqual(data["summaries"][0]["runs"][0]["steps"], 3)
+
+    def test_missing_peers_are_told_everywhere(self):
+        with tempfile.TemporaryDirectory() as folder:
+            results, page = Path(folder) / "results.json", Path(folder) / "results.md"
+            done = self.run_it("--cases", "bed_20k", "--ranks", "1", "--repeats", "1", "--steps", "1",
+                               "--json", str(results), "--markdown", str(page), PATH=folder)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            data, text = json.loads(results.read_text()), page.read_text()
+        self.assertEqual(data["missing_peers"], ["LAMMPS", "LIGGGHTS"])
+        self.assertEqual(data["machine"]["LAMMPS"], "MISSING")
+        for said in (done.stderr, text):
+            self.assertIn("NOT COMPARED with LAMMPS (no program 'lmp') and LIGGGHTS", said)
+            self.assertIn("contrib/install_dependencies.sh benchmarks", said)
+        self.assertIn("| MISSING | MISSING | - |", text)
+
+    def test_what_the_installer_does_not_know_is_refused(self):
+        done = subprocess.run([FOLDER.parent / "install_dependencies.sh", "benchmark"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("'benchmarks'", done.stderr)
 
     def test_bad_arguments_are_answered_with_a_sentence(self):
         for arguments, what in ((["--cases", "bedd"], "There is no case 'bedd'."),

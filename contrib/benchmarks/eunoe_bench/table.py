@@ -32,13 +32,14 @@ def cell(speeds: list[float]) -> str:
     return f"{middle:.2f} ({low:.2f} to {high:.2f})"
 
 
-def cells(rows: list[Row], names: list[str]) -> list[list[str]]:
-    """Head and rows of the table of speeds."""
-    table = [["case", "ranks", *names, "ratio"]]
+def cells(rows: list[Row], names: list[str], missing: list[str] | None = None) -> list[list[str]]:
+    """Head and rows of the table of speeds; a peer that is missing has a column that says so."""
+    missing = missing or []
+    table = [["case", "ranks", *names, *missing, "ratio"]]
     for row in rows:
         ratio = row.ratio()
         table.append([row.title, str(row.ranks), *(cell(row.speeds.get(n, [])) for n in names),
-                      "-" if ratio is None else f"{ratio:.2f}"])
+                      *("MISSING" for _ in missing), "-" if ratio is None else f"{ratio:.2f}"])
     return table
 
 
