@@ -9,7 +9,7 @@ The disc and the tube have the same diameter (mm); the fill ratio is the powder 
 degrees. A run that has finished is not run again, one that was interrupted continues from its
 checkpoint. heap_size.csv in the folder has a row for each finished run, heap_size.md means and standard
 deviations over the seeds, and the share of the powder that stayed on the disc: where that is close to 1, the
-powder stands as a column and the angle tells the filling.
+powder stands as a column and the angle says only how much was filled in.
 """
 
 from __future__ import annotations

@@ -51,8 +51,8 @@ def _column_notice(run: Run, views: Views) -> str:
     if inserted <= 0. or views.mass_on_disc < COLUMN_SHARE * inserted:
         return ""
     return (f"{percent(views.mass_on_disc / inserted, 0)} of the powder stayed on the disc: cohesion "
-            "holds it up as a column, and the angle tells the filling. Fill in more, or take a wider disc "
-            "and tube.")
+            "holds it up as a column, and the angle says only how much was filled in. Fill in more, or "
+            "take a wider disc and tube.")
 
 
 def _read_particles(page: Page, run: Run) -> dict[str, np.ndarray] | None:
