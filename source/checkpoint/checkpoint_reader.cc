@@ -1,5 +1,8 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/messages.h>
 
 #include "format.h"
 
@@ -9,7 +12,6 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
-#include <stdexcept>
 
 namespace eunoe {
 
@@ -32,7 +34,7 @@ struct Checkpoint::File
 
   [[noreturn]] void refuse(const std::string &what) const
   {
-    throw UserError("The checkpoint " + path + " " + what);
+    throw DamagedCheckpoint("The checkpoint " + path + " " + what);
   }
 
   void read(void *data, std::uint64_t n)
@@ -44,32 +46,40 @@ struct Checkpoint::File
   /// @return the head
   std::string open()
   {
-    if (stream == nullptr)
-      refuse("cannot be read: " + std::string(std::strerror(errno)) +
-             ". Check the name, or start anew with 'restart = false'.");
+    if (stream == nullptr) {
+      const bool is_missing = errno == ENOENT;
+      const std::string text = "cannot be read: " + std::string(std::strerror(errno)) + ".";
+      if (is_missing)
+        refuse(text);
+      throw UserError("The checkpoint " + path + " " + text + " Mend its permissions.");
+    }
     std::error_code failure;
     size = std::filesystem::file_size(path, failure);
-    const std::string mend = " Take an older checkpoint, or start anew with 'restart = false'.";
+    if (failure || size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
+      refuse("is cut short: it has " + std::to_string(size) + " bytes.");
+    const bool is_whole = has_its_checksum();
     std::string title(format_name.size(), ' ');
-    if (failure || size < title.size() + 2 + 2 * sizeof(std::uint64_t))
-      refuse("is cut short: it has " + std::to_string(size) + " bytes." + mend);
+    std::fseek(stream, 0, SEEK_SET);
     read(title.data(), title.size());
     if (title != format_name)
-      refuse("is no checkpoint of Eunoe. Name another file.");
+      refuse("is no checkpoint of Eunoe.");
     std::string version;
     for (int c = std::fgetc(stream); c != '\n' && version.size() < 20; c = std::fgetc(stream))
       version += c >= ' ' && c <= '~' ? static_cast<char>(c) : '?';
-    if (version != format_version)
-      refuse("has version " + version + " of the format, and this program reads version " +
-             format_version + ". Use the program that wrote it, or start anew.");
+    if (version != format_version) {
+      const std::string text = "The checkpoint " + path + " has version " + version +
+                               " of the format, and this program reads version " + format_version;
+      if (is_whole)
+        throw UserError(text + ". Use the program that wrote it, or start anew.");
+      throw DamagedCheckpoint(text + ", or it is damaged.");
+    }
+    if (!is_whole)
+      refuse("is cut short or damaged: its checksum does not fit.");
     std::uint64_t length;
     read(&length, sizeof length);
-    verify(mend);
     if (length > size - title.size() - version.size() - 1 - 2 * sizeof(std::uint64_t))
-      refuse("is damaged: its head does not fit into it." + mend);
+      refuse("is damaged: its head does not fit into it.");
     std::string text(length, ' ');
-    std::fseek(stream, static_cast<long>(title.size() + version.size() + 1 + sizeof length),
-               SEEK_SET);
     read(text.data(), length);
     return text;
   }
@@ -91,11 +101,10 @@ struct Checkpoint::File
       refuse("is damaged: its sections do not fill it.");
   }
 
-  /// Reads everything once for the checksum.
-  void verify(const std::string &mend)
+  /// Reads everything once.
+  bool has_its_checksum()
   {
     Checksum checksum;
-    std::fseek(stream, 0, SEEK_SET);
     std::vector<char> part(1u << 20);
     std::uint64_t left = size - sizeof(std::uint64_t);
     while (left > 0) {
@@ -106,8 +115,7 @@ struct Checkpoint::File
     }
     std::uint64_t sum;
     read(&sum, sizeof sum);
-    if (sum != checksum.checksum())
-      refuse("is cut short or damaged: its checksum does not fit." + mend);
+    return sum == checksum.checksum();
   }
 
   const std::string path;
@@ -119,32 +127,39 @@ struct Checkpoint::File
 Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm) : path(path), comm(comm)
 {
   std::string text, error;
-  if (rank_in(comm) == 0)
+  int is_damaged = 0;
+  if (is_first_rank(comm))
     try {
       file = std::make_unique<File>(path);
       text = file->open();
       const auto begin = static_cast<std::uint64_t>(std::ftell(file->stream));
       file->find_sections(nlohmann::ordered_json::parse(text).at("sections"), begin);
+    } catch (const DamagedCheckpoint &problem) {
+      error = problem.what();
+      is_damaged = 1;
     } catch (const UserError &problem) {
       error = problem.what();
     } catch (const std::exception &) {
       // Of JSON, or of a value in it.
-      error = damaged("its head is not understood.").what();
+      error = "The checkpoint " + path + " is damaged: its head is not understood.";
+      is_damaged = 1;
     }
-  agree(error, comm);
-  std::uint64_t length = text.size();
-  MPI_Bcast(&length, 1, MPI_UINT64_T, 0, comm);
-  text.resize(length);
-  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, 0, comm);
-  head = nlohmann::ordered_json::parse(text);
+  MPI_Bcast(&is_damaged, 1, MPI_INT, 0, comm);
+  error = broadcast(error, comm);
+  if (is_damaged != 0)
+    throw DamagedCheckpoint(error);
+  if (!error.empty())
+    throw UserError(error);
+  head = nlohmann::ordered_json::parse(broadcast(text, comm));
 }
 
 Checkpoint::~Checkpoint() = default;
 
 UserError Checkpoint::damaged(const std::string &what) const
 {
-  return UserError("The checkpoint " + path + " is damaged: " + what +
-                   " Take an older checkpoint, or start anew with 'restart = false'.");
+  return UserError(
+      "The checkpoint " + path + " is damaged: " + what +
+      " Move it away to go on from an older one, or start anew with 'restart = false'.");
 }
 
 void Checkpoint::require(const bool ok, const std::string &what) const
@@ -166,58 +181,52 @@ Rows Checkpoint::rows(const std::string &name) const
     return first_of(n_rows, r + 1, n_ranks) - first_of(n_rows, r, n_ranks);
   };
 
-  std::string error;
-  bool agreed = false;
-  Rows mine;
-  const auto keep = [&mine](const std::vector<std::uint32_t> &lengths, std::vector<double> values) {
-    mine.starts.assign(lengths.size() + 1, 0);
-    std::partial_sum(lengths.begin(), lengths.end(), mine.starts.begin() + 1,
+  const auto take = [](const std::vector<std::uint32_t> &lengths, std::vector<double> values) {
+    Rows rows;
+    rows.starts.assign(lengths.size() + 1, 0);
+    std::partial_sum(lengths.begin(), lengths.end(), rows.starts.begin() + 1,
                      [](std::size_t sum, std::uint32_t n) { return sum + n; });
-    mine.values = std::move(values);
+    rows.values = std::move(values);
+    return rows;
   };
-  if (rank == 0) {
-    try {
-      const File::Section &section = file->sections.at(name);
-      std::vector<std::vector<std::uint32_t>> lengths(n_ranks);
-      std::fseek(file->stream, static_cast<long>(section.begin), SEEK_SET);
-      std::uint64_t sum = 0;
-      std::vector<std::uint64_t> n_values(n_ranks, 0);
-      for (int r = 0; r < n_ranks; ++r) {
-        lengths[r].resize(share(r));
-        file->read(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t));
-        n_values[r] = std::accumulate(lengths[r].begin(), lengths[r].end(), std::uint64_t(0));
-        sum += n_values[r];
-      }
-      if (sum != section.n_values)
-        file->refuse("is damaged: the rows of '" + name + "' do not fill their section.");
-      agree("", comm);
-      agreed = true;
-      for (int r = 0; r < n_ranks; ++r) {
-        std::vector<double> values(n_values[r]);
-        file->read(values.data(), values.size() * sizeof(double));
-        if (r == 0) {
-          keep(lengths[0], std::move(values));
-          continue;
-        }
-        send(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t), r, tag_lengths, comm);
-        send(values.data(), values.size() * sizeof(double), r, tag_values, comm);
-      }
-      return mine;
-    } catch (const std::out_of_range &) {
-      error = "The checkpoint " + path + " has no section '" + name + "'.";
-    } catch (const UserError &problem) {
-      if (agreed)
-        // The others wait for data that will not come.
-        throw std::runtime_error(problem.what());
-      error = problem.what();
+  const auto number_of_values = [](const std::vector<std::uint32_t> &lengths) {
+    return std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0));
+  };
+
+  std::vector<std::vector<std::uint32_t>> lengths(n_ranks);
+  on_first_rank(comm, [&] {
+    const auto section = file->sections.find(name);
+    if (section == file->sections.end())
+      throw UserError("The checkpoint " + path + " has no section '" + name + "'.");
+    std::fseek(file->stream, static_cast<long>(section->second.begin), SEEK_SET);
+    std::uint64_t sum = 0;
+    for (int r = 0; r < n_ranks; ++r) {
+      lengths[r].resize(share(r));
+      file->read(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t));
+      sum += number_of_values(lengths[r]);
     }
+    if (sum != section->second.n_values)
+      file->refuse("is damaged: the rows of '" + name + "' do not fill their section.");
+  });
+  if (rank > 0) {
+    lengths[rank].resize(share(rank));
+    receive(lengths[rank].data(), lengths[rank].size() * sizeof(std::uint32_t), 0, tag_lengths,
+            comm);
+    std::vector<double> values(number_of_values(lengths[rank]));
+    receive(values.data(), values.size() * sizeof(double), 0, tag_values, comm);
+    return take(lengths[rank], std::move(values));
   }
-  agree(error, comm);
-  std::vector<std::uint32_t> lengths(share(rank));
-  receive(lengths.data(), lengths.size() * sizeof(std::uint32_t), 0, tag_lengths, comm);
-  std::vector<double> values(std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0)));
-  receive(values.data(), values.size() * sizeof(double), 0, tag_values, comm);
-  keep(lengths, std::move(values));
+  Rows mine;
+  for (int r = 0; r < n_ranks; ++r) {
+    std::vector<double> values(number_of_values(lengths[r]));
+    file->read(values.data(), values.size() * sizeof(double));
+    if (r == 0) {
+      mine = take(lengths[0], std::move(values));
+      continue;
+    }
+    send(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t), r, tag_lengths, comm);
+    send(values.data(), values.size() * sizeof(double), r, tag_values, comm);
+  }
   return mine;
 }
 

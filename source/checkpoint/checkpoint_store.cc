@@ -1,10 +1,13 @@
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/core/files.h>
-#include <eunoe/core/problems.h>
+#include <eunoe/core/first_rank.h>
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <sstream>
 
 namespace eunoe {
 
@@ -14,60 +17,122 @@ namespace {
 
 const std::string ending = ".checkpoint";
 
-bool is_first(MPI_Comm comm)
+/// When a file was written, for people; collective.
+std::string time_of(const std::string &path, MPI_Comm comm)
 {
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  return rank == 0;
+  std::string text;
+  if (is_first_rank(comm)) {
+    std::error_code failure;
+    const auto age = fs::file_time_type::clock::now() - fs::last_write_time(path, failure);
+    const std::time_t written =
+        std::time(nullptr) -
+        static_cast<std::time_t>(std::chrono::duration_cast<std::chrono::seconds>(age).count());
+    char time[32];
+    std::strftime(time, sizeof time, "%Y-%m-%d %H:%M:%S", std::localtime(&written));
+    text = time;
+  }
+  return broadcast(text, comm);
 }
 
 } // namespace
 
+bool CheckpointStore::is_ours(const std::string &file) const
+{
+  const std::size_t digits = name.size() + 1;
+  return file.size() > digits + ending.size() && file.compare(0, digits, name + "_") == 0 &&
+         file.compare(file.size() - ending.size(), ending.size(), ending) == 0 &&
+         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(digits),
+                     file.end() - static_cast<std::ptrdiff_t>(ending.size()),
+                     [](char c) { return c >= '0' && c <= '9'; });
+}
+
 std::vector<std::string> CheckpointStore::listed() const
 {
+  std::ifstream stream(index(), std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  std::istringstream lines(text);
   std::vector<std::string> names;
-  std::ifstream stream(index());
-  for (std::string line; std::getline(stream, line);)
-    if (!line.empty() && line.find('/') == std::string::npos)
-      names.push_back(line);
+  for (std::string line; std::getline(lines, line);)
+    names.push_back(line);
+  // What is not as it was written may have lost any of its lines.
+  const bool is_in_order = !text.empty() && text.back() == '\n' &&
+                           std::all_of(names.begin(), names.end(),
+                                       [this](const std::string &file) { return is_ours(file); });
+  return is_in_order ? names : std::vector<std::string>();
+}
+
+std::vector<std::string> CheckpointStore::present() const
+{
+  std::vector<std::string> names;
+  std::error_code failure;
+  for (const auto &entry : fs::directory_iterator(folder, failure))
+    if (is_ours(entry.path().filename().string()))
+      names.push_back(entry.path().filename().string());
+  // Numbers of steps have leading zeros, and a longer one is larger.
+  std::sort(names.begin(), names.end(), [](const std::string &a, const std::string &b) {
+    return a.size() != b.size() ? a.size() > b.size() : a > b;
+  });
   return names;
 }
 
-std::string CheckpointStore::latest() const
+std::vector<std::string> CheckpointStore::find(std::string &defect)
 {
-  std::string path;
-  if (is_first(comm)) {
-    const std::vector<std::string> names = listed();
-    if (!names.empty())
-      path = folder + "/" + names.front();
+  std::string names, problem;
+  if (is_first_rank(comm)) {
+    std::vector<std::string> found = listed();
+    std::error_code failure;
+    const std::vector<std::string> all = present();
+    if (found.empty() && fs::exists(index(), failure))
+      problem = index() + " is empty or damaged.";
+    else if (found.empty() && !all.empty())
+      problem = index() + ", which names the checkpoints, is missing.";
+    for (const std::string &file : all)
+      if (std::find(found.begin(), found.end(), file) == found.end())
+        found.push_back(file);
+    for (const std::string &file : found)
+      names += file + "\n";
   }
-  int size = static_cast<int>(path.size());
-  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-  path.resize(size);
-  MPI_Bcast(path.data(), size, MPI_CHAR, 0, comm);
-  return path;
+  defect = broadcast(problem, comm);
+  std::istringstream lines(broadcast(names, comm));
+  std::vector<std::string> found;
+  for (std::string line; std::getline(lines, line);)
+    found.push_back(line);
+  return found;
+}
+
+std::unique_ptr<Checkpoint> CheckpointStore::open_newest(std::vector<std::string> &defects)
+{
+  std::string defect;
+  earlier = find(defect);
+  if (!defect.empty())
+    defects.push_back(defect);
+  while (!earlier.empty()) {
+    const std::string path = folder + "/" + earlier.front();
+    try {
+      auto checkpoint = std::make_unique<Checkpoint>(path, comm);
+      if (!defects.empty())
+        defects.push_back("The newest checkpoint that is whole is " + path + ", written on " +
+                          time_of(path, comm) + "; the run continues from there.");
+      return checkpoint;
+    } catch (const DamagedCheckpoint &error) {
+      defects.push_back(error.what());
+      earlier.erase(earlier.begin());
+    }
+  }
+  if (defects.empty())
+    return nullptr;
+  std::string text;
+  for (const std::string &each : defects)
+    text += each + " ";
+  throw UserError(
+      text + "So " + folder + " holds no checkpoint '" + name +
+      "' that is whole, and nothing in it was touched. Put one back, or start anew with "
+      "'restart = false'.");
 }
 
 void CheckpointStore::go_on()
 {
-  files = listed();
-}
-
-void CheckpointStore::remove_all_but(const std::vector<std::string> &names) const
-{
-  std::error_code failure;
-  for (const auto &entry : fs::directory_iterator(folder, failure)) {
-    const std::string file = entry.path().filename().string();
-    const std::size_t digits = name.size() + 1;
-    const bool is_ours = file.size() > digits + ending.size() &&
-                         file.compare(0, digits, name + "_") == 0 &&
-                         file.compare(file.size() - ending.size(), ending.size(), ending) == 0 &&
-                         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(digits),
-                                     file.end() - static_cast<std::ptrdiff_t>(ending.size()),
-                                     [](char c) { return c >= '0' && c <= '9'; });
-    if (is_ours && std::find(names.begin(), names.end(), file) == names.end())
-      remove_file(entry.path().string());
-  }
+  files = earlier;
 }
 
 std::string CheckpointStore::write(CheckpointWriter &writer, const unsigned long long step)
@@ -76,8 +141,7 @@ std::string CheckpointStore::write(CheckpointWriter &writer, const unsigned long
   std::snprintf(number, sizeof number, "_%012llu", step);
   const std::string file = name + number + ending;
   writer.write(folder + "/" + file);
-  int ok = 1;
-  if (is_first(comm)) {
+  on_first_rank(comm, [&] {
     files.erase(std::remove(files.begin(), files.end(), file), files.end());
     files.insert(files.begin(), file);
     if (files.size() > keep)
@@ -85,17 +149,11 @@ std::string CheckpointStore::write(CheckpointWriter &writer, const unsigned long
     std::string text;
     for (const std::string &each : files)
       text += each + "\n";
-    try {
-      write_file(index(), text);
-      remove_all_but(files);
-    } catch (const UserError &) {
-      ok = 0;
-    }
-  }
-  MPI_Bcast(&ok, 1, MPI_INT, 0, comm);
-  if (ok == 0)
-    throw UserError(index() + " cannot be written. Check the folder's permissions and the free "
-                              "space.");
+    write_file(index(), text, true);
+    for (const std::string &each : present())
+      if (std::find(files.begin(), files.end(), each) == files.end())
+        remove_file(folder + "/" + each);
+  });
   return folder + "/" + file;
 }
 

@@ -74,8 +74,9 @@ void Simulation::find_checkpoint(Problems &problems)
   const RestartParameters &p = parameters.restart;
   if (p.restart == "false")
     return;
-  const std::string path = checkpoints.latest();
-  if (path.empty()) {
+  std::vector<std::string> defects;
+  checkpoint = checkpoints.open_newest(defects);
+  if (!checkpoint) {
     if (p.restart == "true")
       problems.add("subsection 'restart' / entry 'restart'",
                    "is true, but " + parameters.control.output_path + " holds no checkpoint '" +
@@ -84,11 +85,12 @@ void Simulation::find_checkpoint(Problems &problems)
                    "there is none.");
     return;
   }
-  checkpoint = std::make_unique<Checkpoint>(path, comm);
+  for (const std::string &defect : defects)
+    log.warning(defect);
   const Json &head = checkpoint->head;
   if (!head.contains("input") || !head["input"].is_string())
     throw checkpoint->damaged("it does not hold the input of its run.");
-  find_input_differences(parameters.as_input_file(), head["input"], path, problems);
+  find_input_differences(parameters.as_input_file(), head["input"], checkpoint->path, problems);
 }
 
 void Simulation::save(CheckpointWriter &writer)
@@ -223,6 +225,7 @@ void Simulation::checkpoint_if_due()
   }
   // After the observables, which may have held rows back.
   writer.head["output"] = output.save();
+  output.sync();
   const std::string path = checkpoints.write(writer, step);
   last_checkpoint = MPI_Wtime();
   if (stopped)

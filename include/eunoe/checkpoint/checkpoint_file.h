@@ -44,16 +44,27 @@ private:
     Rows part; ///< this rank's part of the rows in the order of the keys
   };
 
+  void send_sections() const;
+  template <typename Sink>
+  void write_section(const Section &section, Sink &sink) const;
+
   MPI_Comm comm;
   std::vector<Section> sections;
+};
+
+/// Thrown for a checkpoint that is missing, cut short or damaged, so that an older one has to do.
+class DamagedCheckpoint : public UserError
+{
+  using UserError::UserError;
 };
 
 /// A checkpoint that has been read and found whole.
 class Checkpoint
 {
 public:
-  /// Reads the head and verifies the whole file; collective. Throws a UserError on every rank for
-  /// a file that is missing, of another format, cut short or damaged.
+  /// Reads the head and verifies the whole file; collective. Throws a DamagedCheckpoint on every
+  /// rank, or a UserError for a file that may be whole but cannot be read, as one of another
+  /// version.
   Checkpoint(const std::string &path, MPI_Comm comm);
   ~Checkpoint();
 

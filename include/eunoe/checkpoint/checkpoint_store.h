@@ -6,7 +6,8 @@
 namespace eunoe {
 
 /// The checkpoints of a run in its output folder: "<name>_<step>.checkpoint", and "<name>.latest"
-/// with their names, the newest first, which is renewed when a checkpoint is complete.
+/// with their names, the newest first, which is renewed when a checkpoint is complete and on the
+/// disk. Only then the oldest goes.
 class CheckpointStore
 {
 public:
@@ -17,11 +18,14 @@ public:
   {
   }
 
-  /// Path of the newest checkpoint, empty if there is none; the same on every rank. Collective.
-  std::string latest() const;
+  /// Opens the newest checkpoint that is whole, null if there never was one; collective. Those that
+  /// the index names come first, newer ones before older ones, then all others. Throws a UserError
+  /// on every rank if none is whole, or if the newest may be whole and cannot be read.
+  /// @param defects gets what is wrong with newer ones, and what was taken instead
+  std::unique_ptr<Checkpoint> open_newest(std::vector<std::string> &defects);
 
-  /// Goes on behind the checkpoints that are there; without it they are dropped as soon as the
-  /// first new one is complete.
+  /// Goes on behind the one that was opened; without it those that are there are dropped as soon as
+  /// the first new one is complete.
   void go_on();
 
   /// Writes a checkpoint and drops the oldest; collective. Throws like CheckpointWriter::write.
@@ -29,14 +33,20 @@ public:
   std::string write(CheckpointWriter &writer, unsigned long long step);
 
 private:
+  bool is_ours(const std::string &file) const;
+  /// What the index names; nothing if it is not in order.
   std::vector<std::string> listed() const;
-  void remove_all_but(const std::vector<std::string> &names) const;
+  /// All that are there, by their steps, the last first.
+  std::vector<std::string> present() const;
+  /// All, in the order in which they are tried; collective.
+  std::vector<std::string> find(std::string &defect);
   std::string index() const { return folder + "/" + name + ".latest"; }
 
   const std::string folder, name;
   const unsigned int keep;
   MPI_Comm comm;
-  std::vector<std::string> files; ///< names, the newest first; on the first rank
+  std::vector<std::string> files;   ///< names, the newest first
+  std::vector<std::string> earlier; ///< the one that was opened and those after it
 };
 
 } // namespace eunoe

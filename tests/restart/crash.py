@@ -1,0 +1,188 @@
+"""What a crash of the machine may leave of checkpoints: `restart = auto` continues from the newest one
+that is whole, with the same bits as a run left alone, and says so; good ones stay. Where none is
+whole it says so and touches nothing.
+
+Usage: crash.py path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Callable
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
+from kill_and_restart import Case, Failure, compare  # noqa: E402
+
+CASE = str(Path(__file__).with_name("stirred.prm"))
+LAST = "simulation control/iteration end = 3000"
+EVERY = ("restart/checkpoint = true", "restart/frequency = 700", "restart/number of checkpoints = 2")
+AUTO = (*EVERY, "restart/restart = auto")
+NEWEST, OLDER = "restart_000000002100.checkpoint", "restart_000000001400.checkpoint"
+INDEX = "restart.latest"
+Change = Callable[[Path], None]
+failures = []
+
+
+def cut(name: str, share: float) -> Change:
+    """Only the first part is there; a negative share counts bytes from the end."""
+    def change(results: Path) -> None:
+        data = (results / name).read_bytes()
+        (results / name).write_bytes(data[:int(share) if share < 0 else int(share * len(data))])
+    return change
+
+
+def zero_tail(name: str, length: int) -> Change:
+    """As a file system leaves a file whose length it knew and whose contents it had not written."""
+    def change(results: Path) -> None:
+        data = (results / name).read_bytes()
+        kept = max(0, len(data) - length)
+        (results / name).write_bytes(data[:kept] + bytes(len(data) - kept))
+    return change
+
+
+def flip(name: str, place: int) -> Change:
+    def change(results: Path) -> None:
+        data = bytearray((results / name).read_bytes())
+        data[place] ^= 1
+        (results / name).write_bytes(data)
+    return change
+
+
+def write(name: str, text: bytes) -> Change:
+    return lambda results: (results / name).write_bytes(text) and None
+
+
+def remove(name: str) -> Change:
+    return lambda results: (results / name).unlink()
+
+
+def both(*changes: Change) -> Change:
+    def change(results: Path) -> None:
+        for each in changes:
+            each(results)
+    return change
+
+
+INDICES = {
+    "empty index": write(INDEX, b""), "missing index": remove(INDEX),
+    "garbage in the index": write(INDEX, bytes(range(256))),
+    "zeros in the index": write(INDEX, bytes(66)),
+    "half an index": cut(INDEX, 0.4),
+    "index of half a name": write(INDEX, b"restart_0000\n" + OLDER.encode() + b"\n"),
+}
+POINTING = {"index that names a missing file": write(INDEX, b"restart_000000009900.checkpoint\n")}
+DAMAGES = {
+    "missing": remove(NEWEST), "empty": cut(NEWEST, 0.), "10 bytes": write(NEWEST, b"Eunoe chec"),
+    "half": cut(NEWEST, 0.5), "without its last byte": cut(NEWEST, -1),
+    "without its checksum": cut(NEWEST, -8), "zeros": zero_tail(NEWEST, 1 << 40),
+    "zeros behind 4096": lambda results: zero_tail(
+        NEWEST, (results / NEWEST).stat().st_size - 4096)(results),
+    "zeros at the end": zero_tail(NEWEST, 512), "one bit of the title": flip(NEWEST, 3),
+    "one bit of the version": flip(NEWEST, 17), "one bit of the head": flip(NEWEST, 300),
+    "one bit of the particles": flip(NEWEST, -3000), "one bit of the checksum": flip(NEWEST, -1),
+}
+HOPELESS = {
+    "both cut short": both(cut(NEWEST, 0.5), cut(OLDER, -1)),
+    "both cut short, index missing": both(cut(NEWEST, 0.5), cut(OLDER, -1), remove(INDEX)),
+    "both empty": both(cut(NEWEST, 0.), cut(OLDER, 0.)),
+    "both missing": both(remove(NEWEST), remove(OLDER)),
+    "both missing, index empty": both(remove(NEWEST), remove(OLDER), write(INDEX, b"")),
+}
+
+
+def crashed(stopped: Case, folder: Path, change: Change) -> Case:
+    case = Case(stopped.program, CASE, folder, [])
+    shutil.copytree(stopped.results, case.results)
+    change(case.results)
+    return case
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def goes_on(reference: Case, stopped: Case, folder: Path, change: Change, ranks: int, step: int) -> None:
+    case = crashed(stopped, folder, change)
+    # Before the first new checkpoint is complete, the old ones that are whole must stay.
+    before = contents(case.results)
+    short = subprocess.run(case.command(ranks, *AUTO, "simulation control/iteration end = 2110"),
+                           text=True, check=False, capture_output=True)
+    if short.returncode != 0:
+        raise Failure(f"exit code {short.returncode}\n{short.stdout}{short.stderr}")
+    if f"Continuing from {case.results / f'restart_{step:012}.checkpoint'}: step {step}," not in short.stdout:
+        raise Failure(f"it did not continue from step {step}:\n{short.stdout}")
+    said = re.search(r"Warning: The newest checkpoint that is whole is .*"
+                     rf"{step:012}\.checkpoint, written on \d{{4}}-\d\d-\d\d \d\d:", short.stdout)
+    if not said:
+        raise Failure(f"it does not say so:\n{short.stdout}")
+    if contents(case.results).get(OLDER) != before[OLDER]:
+        raise Failure("a good checkpoint is gone")
+    case.run(ranks, *AUTO, LAST)
+    compare(reference, case, "continued")
+
+
+def stays_as_it_is(stopped: Case, folder: Path, change: Change, ranks: int) -> None:
+    case = crashed(stopped, folder, change)
+    before = contents(case.results)
+    run = subprocess.run(case.command(ranks, *AUTO, LAST), text=True, check=False, capture_output=True)
+    if run.returncode != 2 or run.stderr.count("that is whole, and nothing in it was touched.") != 1:
+        raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
+    if contents(case.results) != before:
+        raise Failure("files were changed")
+
+
+def spoilt_table(stopped: Case, folder: Path, change: Change, sentence: str) -> None:
+    case = crashed(stopped, folder, change)
+    run = subprocess.run(case.command(1, *AUTO, LAST), text=True, check=False, capture_output=True)
+    sentence = f"{case.results / 'energies.csv'} cannot be continued: {sentence}"
+    if run.returncode != 2 or run.stderr.count(sentence) != 1 or "Put it back as it was" not in run.stderr:
+        raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
+    if not (case.results / NEWEST).is_file() or not (case.results / OLDER).is_file():
+        raise Failure("a good checkpoint is gone")
+
+
+def attempt(name: str, action, *arguments) -> None:
+    try:
+        action(*arguments)
+    except Failure as failure:
+        failures.append(f"{name}: {failure}")
+
+
+def main(program: str, folder: Path) -> int:
+    reference = Case(program, CASE, folder / "reference", [LAST])
+    reference.run(1)
+    stopped = Case(program, CASE, folder / "stopped", [])
+    stopped.run(1, *EVERY, "simulation control/iteration end = 2200")
+    work = []
+    for number, (name, change) in enumerate((INDICES | POINTING).items()):
+        work.append((name, goes_on, reference, stopped, folder / name, change, 2 if number % 4 == 1 else 1, 2100))
+    for number, (name, change) in enumerate(DAMAGES.items()):
+        work.append((name, goes_on, reference, stopped, folder / name, change, 2 if number % 4 == 1 else 1, 1400))
+    for index, damage in (("missing index", "half"), ("garbage in the index", "zeros at the end"),
+                          ("empty index", "one bit of the head")):
+        name = f"{index}, {damage}"
+        work.append((name, goes_on, reference, stopped, folder / name,
+                     both(INDICES[index], DAMAGES[damage]), 1, 1400))
+    for number, (name, change) in enumerate(HOPELESS.items()):
+        work.append((name, stays_as_it_is, stopped, folder / name, change, 2 if number % 4 == 1 else 1))
+    table = "energies.csv"
+    work += [("shorter table", spoilt_table, stopped, folder / "shorter", cut(table, 0.5),
+              "it has "),
+             ("missing table", spoilt_table, stopped, folder / "gone", remove(table), "No such file"),
+             ("edited table", spoilt_table, stopped, folder / "edited",
+              lambda results: write(table, b"x" + (results / table).read_bytes())(results),
+              "no row ends after its first ")]
+    with ThreadPoolExecutor(4) as pool:
+        for waiting in [pool.submit(attempt, *what) for what in work]:
+            waiting.result()
+    print(*failures, sep="\n")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))

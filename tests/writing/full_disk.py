@@ -1,0 +1,135 @@
+"""A disk that is full, at the start or while a run writes tables, pictures and checkpoints: one sentence
+that says what could not be written, an exit code on all ranks, and results from which the run
+continues with the same bits when there is space.
+
+A file that is a link to /dev/full cannot be written, and neither can one that reaches the limit for
+the size of files; both need no special rights.
+
+Usage: full_disk.py path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import resource
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
+from kill_and_restart import Case, Failure, compare, kill_all  # noqa: E402
+
+TESTS = Path(__file__).resolve().parents[1]
+STIRRED = str(TESTS / "restart" / "stirred.prm")
+LAST = 3000
+SETTINGS = [f"simulation control/iteration end = {LAST}", "simulation control/output frequency = 600",
+            "post-processing/final state/calculation = true"]
+EVERY = ("restart/checkpoint = true", "restart/frequency = 700")
+FULL = "cannot be written: No space left on device"
+# What cannot be written, and the step of the last checkpoint before.
+FILES = {
+    "used.prm.new": 0, "out_00000.vtu.new": 0, "out.pvd.new": 0, "out_solids.pvd.new": 0,
+    "restart_000000000700.checkpoint.new": 0, "restart.latest.new": 0,
+    "out_00002.vtu.new": 700, "out_solids_00003.vtu.new": 1400, "out_cells_00003.vtu.new": 1400,
+    "out_force_chains_00004.vtu.new": 2100, "restart_000000002100.checkpoint.new": 1400,
+    "measurements.csv.new": 2800, "particles.csv.new": 2800, "summary.json.new": 2800,
+}
+# Tables that cannot even be begun, and files of processes.
+AT_START = {"energies.csv": STIRRED, "force_0.csv": STIRRED,
+            "apparatus.json.new": str(TESTS / "spreading" / "tiny.prm"),
+            "layers.csv": str(TESTS / "spreading" / "tiny.prm"),
+            "heap.csv": str(TESTS / "heap" / "tiny.prm")}
+failures = []
+
+
+def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None:
+    """Runs on two ranks, which must say that @p what is full, once."""
+    try:
+        run = subprocess.run(case.command(2, *settings), text=True, check=False, capture_output=True,
+                             timeout=60)
+    except subprocess.TimeoutExpired:
+        raise Failure("it hangs") from None
+    if run.returncode not in codes:
+        raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
+    sentence = f"{case.results / what} {FULL}"
+    if run.stderr.count(sentence) != 1:
+        raise Failure(f"not one '{sentence}' in\n{run.stderr}")
+
+
+def file_is_full(reference: Case, folder: Path, link: str, step: int) -> None:
+    case = Case(reference.program, STIRRED, folder, SETTINGS)
+    case.results.mkdir()
+    (case.results / link).symlink_to("/dev/full")
+    fails(case, link.removesuffix(".new"), (1,), *EVERY)
+    if case.last_step() != step:
+        raise Failure(f"the newest checkpoint is of step {case.last_step()}, not {step}")
+    if list(case.results.glob("*.new")):
+        raise Failure("it left a file that is not complete")
+    case.run(1, *EVERY, "restart/restart = auto")
+    compare(reference, case, "continued")
+
+
+def start_is_full(program: str, folder: Path, link: str, prm: str) -> None:
+    case = Case(program, prm, folder, [])
+    case.results.mkdir()
+    (case.results / link).symlink_to("/dev/full")
+    fails(case, link.removesuffix(".new"), (1, 2))
+
+
+def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
+    """No table can grow any more."""
+    case = Case(program, STIRRED, folder, [*settings, "simulation control/output frequency = 0"])
+    table = case.results / "energies.csv"
+    process = case.start(2, "restart/checkpoint = true", "restart/frequency = 3000",
+                         "simulation control/iteration end = 10000000")
+    end = time.monotonic() + 60
+    while case.last_step() == 0 and time.monotonic() < end:
+        time.sleep(0.01)
+    limit = table.stat().st_size + 100
+    for number in case.processes():
+        resource.prlimit(number, resource.RLIMIT_FSIZE, (limit, limit))
+    try:
+        output = process.communicate(timeout=60)[0]
+    except subprocess.TimeoutExpired:
+        kill_all(case, process)
+        raise Failure("it hangs") from None
+    sentence = f"{table} cannot be written: File too large."
+    if process.returncode != 1 or output.count(sentence) != 1:
+        raise Failure(f"exit code {process.returncode}, '{sentence}' wanted in\n{output}")
+    if not table.read_text().endswith("\n"):
+        raise Failure("the table ends with a part of a row")
+    step = case.last_step()
+    last = f"simulation control/iteration end = {step + 500}"
+    case.run(2, last, "restart/restart = true")
+    alone = Case(program, STIRRED, folder.with_name(folder.name + "_alone"), case.settings)
+    alone.run(1, last)
+    compare(alone, case, f"continued from step {step}")
+
+
+def attempt(name: str, action, *arguments) -> None:
+    try:
+        action(*arguments)
+    except Failure as failure:
+        failures.append(f"{name}: {failure}")
+
+
+def main(program: str, folder: Path) -> int:
+    reference = Case(program, STIRRED, folder / "reference", SETTINGS)
+    reference.run(1)
+    every_step = "post-processing/energies/output frequency = 1"
+    work = [(f"{link}", file_is_full, reference, folder / link, link, step)
+            for link, step in FILES.items()]
+    work += [(f"{link} at the start", start_is_full, program, folder / ("start_" + link), link, prm)
+             for link, prm in AT_START.items()]
+    work.append(("tables", disk_fills, program, folder / "tables", [every_step]))
+    # A launcher takes seconds to notice that its ranks have failed, in which the others can work.
+    with ThreadPoolExecutor(4) as pool:
+        for waiting in [pool.submit(attempt, *what) for what in work]:
+            waiting.result()
+    print(*failures, sep="\n")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))

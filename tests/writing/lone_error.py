@@ -1,0 +1,89 @@
+"""Ranks that cannot go on end those that wait for them, and one of them says why; and no rank but the
+first needs to see the files of a case.
+
+Usage: lone_error.py path/to/lone-error path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
+if os.geteuid() == 0:
+    MPIRUN.append("--allow-run-as-root")
+SENTENCE = "The file is not here."
+BOX = Path(__file__).resolve().parents[1] / "meshes" / "gmsh" / "hexahedra.msh"
+CASE = """subsection simulation control
+  set time step = 1e-5
+  set time end = 1e-3
+  set output path = results
+end
+subsection mesh
+  set type = gmsh
+  set file name = hexahedra.msh
+end
+subsection insertion info
+  set insertion method = list
+  set list x = 0.5
+  set list y = 0.5
+  set list z = 0.5
+end
+"""
+failures = 0
+
+
+def fail(text: str) -> None:
+    global failures
+    failures += 1
+    print(text)
+
+
+def lone_error(program: str) -> None:
+    for ranks in ("0", "1", "1 2", "0 1 2"):
+        place = f"Error on rank(s) {ranks} of 3"
+        try:
+            run = subprocess.run([*MPIRUN, "-np", "3", program, *ranks.split()], timeout=60, text=True,
+                                 capture_output=True, check=False)
+        except subprocess.TimeoutExpired:
+            fail(f"{place}: it hangs")
+            continue
+        if run.returncode != 1:
+            fail(f"{place}: exit code {run.returncode}")
+        if run.stderr.count(SENTENCE) != 1:
+            fail(f"{place}: not one '{SENTENCE}' in\n{run.stderr}")
+
+
+def one_sees_the_files(program: str, folder: Path) -> None:
+    """As on nodes that share no folder."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for name in ("first", "second"):
+        (folder / name).mkdir(parents=True)
+    shutil.copy(BOX, folder / "first")
+    (folder / "first" / "case.prm").write_text(CASE)
+    command = [*MPIRUN]
+    for name in ("first", "second"):
+        command += [*([":"] if name == "second" else []), "-np", "1", "--wdir", str(folder / name), program,
+                    "case.prm"]
+    try:
+        run = subprocess.run(command, timeout=60, text=True, capture_output=True, check=False)
+    except subprocess.TimeoutExpired:
+        fail("A mesh that one rank sees: it hangs")
+        return
+    if run.returncode != 0 or not (folder / "first" / "results" / "summary.json").is_file():
+        fail(f"A mesh that one rank sees: exit code {run.returncode}\n{run.stdout}{run.stderr}")
+    if any((folder / "second").iterdir()):
+        fail("A rank that does not write has left files.")
+
+
+def main(program: str, particles: str, folder: Path) -> int:
+    lone_error(program)
+    one_sees_the_files(str(Path(particles).resolve()), folder)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], sys.argv[2], Path(sys.argv[3])))
