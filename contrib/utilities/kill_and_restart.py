@@ -92,25 +92,49 @@ def compare(reference: Case, other: Case, what: str) -> None:
             raise Failure(f"{what}: {name} differs from that of the run left alone.")
 
 
-def kill_all(case: Case, process: subprocess.Popen) -> None:
-    """Kills the launcher and every rank, which the launcher puts into groups of their own."""
+def kill_all(case: Case, process: subprocess.Popen) -> str:
+    """Kills the launcher and every rank, which the launcher puts into groups of their own.
+
+    @return what the run has printed"""
     os.killpg(process.pid, signal.SIGKILL)
     while case.processes():
         for number in case.processes():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(number, signal.SIGKILL)
         time.sleep(0.01)
-    process.communicate()
+    return process.communicate()[0]
+
+
+def reached_step(output: str) -> int:
+    """The last step that a run has reported, 0 if none."""
+    steps = re.findall(r" %  step (\d+)  t = .*", output)
+    return int(steps[-1]) if steps else 0
+
+
+def check_loss(case: Case, output: str, before: int, frequency: int, what: str) -> int:
+    """No more than an interval is lost.
+
+    @return how many steps are"""
+    left = case.last_step()
+    if left < before:
+        raise Failure(f"{what} the newest checkpoint is of step {left}, and it had been of step {before}.")
+    lost = reached_step(output) - left
+    if lost > frequency:
+        raise Failure(f"{what} the newest checkpoint is of step {left}, and the run had come to step "
+                      f"{left + lost}: more than an interval of {frequency} steps is lost.")
+    return lost
 
 
 def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills: int,
-                     frequency: int, draw: random.Random) -> tuple[int, int]:
-    """@return numbers of restarts from a checkpoint, and of ends that were compared"""
+                     frequency: int, draw: random.Random) -> tuple[int, int, int]:
+    """@return numbers of restarts from a checkpoint, of ends that were compared, and the most steps
+    that a kill has cost"""
     began = time.monotonic()
     case.run(rank_numbers[0])
     duration = time.monotonic() - began
-    checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}")
-    done, restarts, ends, fresh = 0, 0, 0, True
+    checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}",
+                   f"simulation control/log frequency = {max(1, frequency // 20)}")
+    done, restarts, ends, most_lost, fresh = 0, 0, 0, 0, True
     while done < kills or not fresh:
         mode = "restart/restart = " + ("false" if fresh else "auto")
         if fresh:
@@ -123,11 +147,9 @@ def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills
             output = process.communicate(
                 timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
         except subprocess.TimeoutExpired:
-            kill_all(case, process)
+            output = kill_all(case, process)
             done += 1
-            if case.last_step() < before:
-                raise Failure(f"After kill {done} the newest checkpoint is of step "
-                              f"{case.last_step()}, and it had been of step {before}.") from None
+            most_lost = max(most_lost, check_loss(case, output, before, frequency, f"After kill {done}"))
             fresh = False
             continue
         if process.returncode != 0:
@@ -138,7 +160,7 @@ def kill_and_restart(reference: Case, case: Case, rank_numbers: list[int], kills
         compare(reference, case, f"After kill {done}")
         ends += 1
         fresh = True
-    return restarts, ends
+    return restarts, ends, most_lost
 
 
 def main(arguments: list[str]) -> int:
@@ -158,13 +180,14 @@ def main(arguments: list[str]) -> int:
     killed = Case(program, options.case, options.folder / "killed", options.settings)
     try:
         reference.run(rank_numbers[0])
-        restarts, ends = kill_and_restart(reference, killed, rank_numbers, options.kills, options.frequency,
-                                random.Random(options.seed))
+        restarts, ends, lost = kill_and_restart(reference, killed, rank_numbers, options.kills,
+                                                options.frequency, random.Random(options.seed))
     except Failure as failure:
         print(failure)
         return 1
-    print(f"{options.kills} kills, {restarts} restarts, each from the last checkpoint; {ends} runs came "
-          "to their end, with the same bits.")
+    print(f"{options.kills} kills, {restarts} restarts, each from the last checkpoint; a kill cost at most "
+          f"{lost} steps of an interval of {options.frequency}; {ends} runs came to their end, with the same "
+          "bits.")
     return 0
 
 

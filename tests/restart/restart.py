@@ -182,10 +182,12 @@ def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 100000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
     alone.run(1)
-    restarts, _ = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
+    restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
                                    random.Random(3))
     if restarts == 0:
         raise Failure("No kill came after a checkpoint, so nothing was tried.")
+    if lost == 0:
+        raise Failure("No kill cost a step as far as the log tells, so nothing was tried.")
 
 
 def main(program: str, folder: Path) -> int:
