@@ -1,7 +1,10 @@
 // Particles that go wrong: what is found, what is said, and what is done, on any number of ranks.
 
+#include <eunoe/checkpoint/checkpoint_file.h>
+
 #include "../tests.h"
 
+#include <fstream>
 #include <limits>
 
 using namespace test;
@@ -42,6 +45,51 @@ void expect(const std::string &name, const std::string &message,
     check(name, message.find(part) != std::string::npos, "got '" + message + "'");
 }
 
+/// The checkpoint of the fault holds the state that the sentence names, and the ones before it
+/// stay: the run continues from them to the same fault, or past it where that is allowed.
+void examine_checkpoints()
+{
+  const auto text = [](const std::string &overlap, const std::string &restart) {
+    return input("-12", model(" set largest overlap = " + overlap) +
+                            "subsection restart\n set checkpoint = true\n set frequency = 50\n"
+                            " set restart = " +
+                            restart + "\nend\n");
+  };
+  const std::string message = failure(text("0.05", "false"));
+  expect("fault", message, {"(step ", " The state is in results/restart_fault.checkpoint."});
+  const unsigned long long step =
+      std::strtoull(message.substr(message.find("(step ") + 6).c_str(), nullptr, 10);
+  check("the fault comes after checkpoints", step > 100 && step < 150, std::to_string(step));
+
+  const Checkpoint fault("results/restart_fault.checkpoint", MPI_COMM_WORLD);
+  check("step of the fault", fault.head.at("step") == step);
+  const Rows rows = fault.rows("particles");
+  std::vector<std::string> named;
+  constexpr unsigned int place = 7; // of the position in a row, behind what does not change
+  for (std::size_t row = 0; row < rows.size(); ++row)
+    named.push_back("particle " + format(rows[row][0]) + " at (" + format(rows[row][place]) + ", " +
+                    format(rows[row][place + 1]) + ", " + format(rows[row][place + 2]) + ") m");
+  unsigned int n_particles = 0, n_named = 0;
+  for (const auto &part : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, named))
+    for (const std::string &name : part) {
+      ++n_particles;
+      n_named += message.find(name) != std::string::npos ? 1 : 0;
+    }
+  check("state at the fault", n_particles == 3 && n_named == 1);
+
+  std::ifstream index("results/restart.latest");
+  std::string newest;
+  std::getline(index, newest);
+  check("earlier checkpoints", newest == "restart_000000000100.checkpoint", newest);
+  check("the same fault again", failure(text("0.05", "true")) == message);
+  Case past(text("0", "true"));
+  past.run();
+  const auto continued = particle_table(*past);
+  Case alone(text("0", "false"));
+  alone.run();
+  check("past the fault", continued == particle_table(*alone) && continued.size() == 3);
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -76,4 +124,5 @@ int main(int argc, char **argv)
     check(action, particle_table(*test_case).size() == 2 && lost.number == 1 &&
                       lost.mass.value() == sphere_mass(0.5e-3, 1000.));
   }
+  examine_checkpoints();
 }
