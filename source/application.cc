@@ -68,13 +68,18 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
 int run_particles(int argc, char **argv, MPI_Comm comm)
 {
   return guarded(comm, [&] {
-    std::string dump;
-    const CommandLine line = parse_command_line(
+    std::string dump, seed;
+    CommandLine line = parse_command_line(
         argc, argv, program,
         {{"dump",
           "at the end, write the complete state to this file, which is the same on any number of "
           "ranks",
-          nullptr, &dump}});
+          nullptr, &dump},
+         {"seed",
+          "seed of all random numbers, as the entry 'seed' in subsection 'simulation control'",
+          nullptr, &seed}});
+    if (!seed.empty())
+      line.overrides.push_back("simulation control/seed = " + seed);
     return run(line, dump, comm);
   });
 }

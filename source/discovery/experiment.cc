@@ -2,8 +2,6 @@
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
-#include <boost/algorithm/string.hpp>
-
 #include <algorithm>
 
 namespace eunoe::discovery {
@@ -74,21 +72,12 @@ std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factor
 
 std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
 {
-  std::vector<std::string> list = {"simulation control/output path = unused",
-                                   "simulation control/output control = iteration",
-                                   "simulation control/output frequency = 0",
-                                   "simulation control/log frequency = 0",
-                                   "restart/checkpoint = false",
-                                   "restart/restart = false"};
-  // Entries hold numbers of 31 bits.
-  const std::string number = std::to_string(seed & 0x7fffffff);
-  for (const auto &[place, value] : base)
-    // A process refuses what it does itself.
-    if (process != "none" && !place.first.empty() && place.first.front() == "insertion info")
-      continue;
-    else if (place.second == "seed" || boost::ends_with(place.second, " seed"))
-      list.push_back(boost::join(place.first, "/") + "/" + place.second + " = " + number);
-  return list;
+  return {"simulation control/output path = unused",
+          "simulation control/output control = iteration",
+          "simulation control/output frequency = 0", "simulation control/log frequency = 0",
+          "restart/checkpoint = false", "restart/restart = false",
+          // Entries hold numbers of 31 bits.
+          "simulation control/seed = " + std::to_string(seed & 0x7fffffff)};
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const

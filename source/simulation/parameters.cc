@@ -3,6 +3,8 @@
 #include <eunoe/simulation/lethe_spellings.h>
 #include <eunoe/simulation/parameters.h>
 
+#include "general_seed.h"
+
 #include <algorithm>
 
 namespace eunoe {
@@ -95,6 +97,11 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   for (const Repeated &r : repeated_sections())
     repeated.push_back(r.sections);
   complete_input = set_entries(prm, entries, repeated, problems);
+  if (control.seed < 0)
+    return;
+  std::vector<InputEntry> seeds = turned_seeds(control.seed, values_in(complete_input), entries,
+                                               process_name != "none", problems);
+  complete_input = set_entries(prm, seeds, repeated, problems);
 }
 
 ContactModel Parameters::contact_model(const double largest_diameter) const

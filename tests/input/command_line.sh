@@ -84,6 +84,11 @@ expect "values as used" 0 "= 1e-5" grep -rh "set time step" results/used.prm
 expect "used.prm can be run" 0 "The case is in order" "$program" results/used.prm --check
 "$program" "$cases/spreading/quickstart.prm" --print-parameters >all.prm
 expect "parameters of a process as input" 0 "The case is in order" "$program" all.prm --check
+"$program" fine.prm --seed 2 --print-parameters >option.prm
+"$program" fine.prm --set "simulation control/seed = 2" --print-parameters >entry.prm
+expect "--seed is the entry" 0 "" cmp option.prm entry.prm
+expect "it turns the others" 0 "5" grep -c "prn seed *= 2\|set seed *= 2" option.prm
+expect "no seed" 2 "Give a whole number" "$program" fine.prm --check --seed two
 expect "run on two ranks" 0 "Results are in results" "${launch[@]}" "$program" fine.prm
 touch file
 expect "unwritable folder" 2 "cannot be written to" \

@@ -19,6 +19,7 @@ struct ControlParameters : public ParameterSection
   double output_time = 1.;
   std::vector<double> output_window = {0., 1e308}; ///< first and last moment of pictures (s)
   unsigned long long log_frequency = 1000;
+  int seed = -1; ///< of all random numbers; -1: each entry's own
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
