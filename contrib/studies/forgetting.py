@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a packing loses when its contacts forget: runs the micro heap, the micro spreading and a pile that is
 watched at rest with several intervals after which every contact loses its slip and its rolling, and several
-seeds, and makes a table of what has finished.
+seeds, which draw sizes and places anew, and makes a table of what has finished.
 
 Usage: contrib/studies/forgetting.py path/to/eunoe-particles folder [--intervals 0 100000 10000 1000 100]
        [--seeds 1 2 3 4 5] [--jobs 1] [--table-only] [--picture FILE.png]
@@ -34,21 +34,19 @@ WATCHED_FROM, MEAN_DIAMETER = 0.8, 1e-3
 class Experiment:
     title: str
     case: str
-    seed: str  # entry
     observables: tuple[tuple[str, str, float, str], ...]  # observable/index, label, factor, format
 
 
 SPREADING = tuple((f"{name}/{layer}", f"{name} of layer {layer}", 1., ".3f")
                   for name, layer in (("LRD", 1), ("LRD", 2), ("LRD", 3), ("CRD", 2), ("CRD", 3)))
 EXPERIMENTS = {
-    "heap": Experiment("Heap", "discovery/micro_heap.prm", "heap/seed", (
+    "heap": Experiment("Heap", "discovery/micro_heap.prm", (
         ("base_angle/0", "base angle (degrees)", 1., ".2f"),
         ("height/0", "height (um)", 1e6, ".1f"),
         ("mass_on_disc/0", "mass on the disc (mg)", 1e6, ".4f"),
         ("rest", "comes to rest at (ms)", 1e3, ".1f"))),
-    "spreading": Experiment("Spreading", "discovery/micro_spreading.prm", "powder spreading/seed",
-                            SPREADING),
-    "pile": Experiment("Pile", "verification/pile.prm", "insertion info/insertion prn seed", (
+    "spreading": Experiment("Spreading", "discovery/micro_spreading.prm", SPREADING),
+    "pile": Experiment("Pile", "verification/pile.prm", (
         ("height", "centre of mass in the end (mm)", 1e3, ".3f"),
         ("sinks", "sinks while it is watched (1/1000 diameter)", 1e3, ".3f"),
         ("speed", "rms speed in the end (um/s)", 1e6, ".3f"))),
@@ -77,13 +75,11 @@ class Run:
     def command(self, program: str, folder: Path) -> list[str]:
         experiment = EXPERIMENTS[self.experiment]
         settings = {
-            experiment.seed: self.seed,
-            "lagrangian physical properties/particle type 0/distribution prn seed": self.seed,
             "model parameters/contact history/forget interval": self.interval,
             "simulation control/output path": folder / self.name,
         }
-        return [program, str(CASES / experiment.case), *(word for entry, value in settings.items()
-                                                         for word in ("--set", f"{entry} = {value}"))]
+        return [program, str(CASES / experiment.case), "--seed", str(self.seed),
+                *(word for entry, value in settings.items() for word in ("--set", f"{entry} = {value}"))]
 
     def results(self, folder: Path) -> dict[str, float] | None:
         """Values by observable and index; None if the run has not finished."""

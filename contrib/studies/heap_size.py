@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """How the base angle of a heap depends on the size of its disc: runs the reduced heap cases with discs
-of several sizes and several seeds, and makes a table of what has finished.
+of several sizes and several seeds, which draw sizes and places anew, and makes a table of what has finished.
 
 Usage: contrib/studies/heap_size.py path/to/eunoe-particles folder [--discs 2 3] [--fill-ratios 12]
        [--sets PS1 PS2 PS3] [--seeds 1 2 3] [--ranks 1] [--table-only]
@@ -52,8 +52,6 @@ class Run:
             "heap/tube inner diameter": f"{self.disc}e-3",
             "heap/disc diameter": f"{self.disc}e-3",
             "heap/fill ratio": self.fill_ratio,
-            "heap/seed": self.seed,
-            "lagrangian physical properties/particle type 0/distribution prn seed": self.seed,
             "simulation control/output path": folder / self.name,
             "restart/restart": "auto",
             "restart/checkpoint": "true",
@@ -62,7 +60,8 @@ class Run:
         launch = ["mpirun", "-np", str(ranks)] if ranks > 1 else []
         options = [word for entry, value in settings.items()
                    for word in ("--set", f"{entry} = {value}")]
-        return [*launch, program, str(CASES / f"{self.properties}_small.prm"), *options]
+        return [*launch, program, str(CASES / f"{self.properties}_small.prm"), "--seed", str(self.seed),
+                *options]
 
 
 def result(folder: Path) -> dict | None:

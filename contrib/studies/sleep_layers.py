@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Whether sleeping particles change the densities of layers: runs a spreading case with and without
-adaptive sparse contacts for several seeds and compares.
+adaptive sparse contacts for several seeds, which draw sizes and places anew, and compares.
 
 Usage: contrib/studies/sleep_layers.py path/to/eunoe-particles folder [--case CASE.prm] [--layers 21]
        [--seeds 1 2 3 4] [--jobs 1] [--ranks 1] [--set ENTRY=VALUE ...] [--table-only]
@@ -39,15 +39,13 @@ class Run:
     def command(self, options: argparse.Namespace) -> list[str]:
         settings = [
             f"{SLEEP}/enable adaptive sparse contacts = {'true' if self.sleep else 'false'}",
-            f"powder spreading/seed = {self.seed}",
-            f"lagrangian physical properties/particle type 0/distribution prn seed = {self.seed}",
             f"powder spreading/number of layers = {options.layers}",
             "powder spreading/layer pictures = false",
             f"simulation control/output path = {options.folder / self.name}",
             "restart/restart = auto", "restart/checkpoint = true", "restart/wall time interval = 5",
             *options.set]
         launch = ["mpirun", "-np", str(options.ranks)] if options.ranks > 1 else []
-        return [*launch, options.program, str(options.case),
+        return [*launch, options.program, str(options.case), "--seed", str(self.seed),
                 *(word for setting in settings for word in ("--set", setting))]
 
 
