@@ -15,6 +15,7 @@ build=(
   libboost-program-options-dev # command line
   nlohmann-json3-dev           # summary.json
   libeigen3-dev                # linear algebra of discovery
+  zlib1g-dev                   # compression of pictures
 )
 report=(
   python3-numpy

@@ -44,24 +44,26 @@ public:
     const Vec3 end = begin + contact.distance * contact.normal;
     patch.vertices[0] = {begin.x, begin.y, begin.z};
     patch.vertices[1] = {end.x, end.y, end.z};
-    const double values[] = {contact.normal_force,
-                             norm(contact.tangential_force),
-                             contact.overlap,
-                             static_cast<double>(p.id[contact.first]),
-                             contact.second < 0 ? -1. : static_cast<double>(p.id[contact.second]),
+    const double values[] = {contact.normal_force, norm(contact.tangential_force), contact.overlap,
                              static_cast<double>(contact.solid)};
     const unsigned int n = std::size(values);
     patch.data.reinit(n, 2);
     for (unsigned int c = 0; c < n; ++c)
       patch.data(c, 0) = patch.data(c, 1) = static_cast<float>(values[c]);
     patches.push_back(patch);
+    ids[0].values.insert(ids[0].values.end(), 2, p.id[contact.first]);
+    ids[1].values.insert(ids[1].values.end(), 2,
+                         contact.second < 0 ? -1 : std::int64_t(p.id[contact.second]));
   }
+
+  /// Of the particles of every contact, at both ends of its line.
+  std::vector<PictureIntegers> ids = {{"first", {}}, {"second", {}}};
 
 private:
   const std::vector<Patch<1, 3>> &get_patches() const override { return patches; }
   std::vector<std::string> get_dataset_names() const override
   {
-    return {"normal_force", "tangential_force", "overlap", "first", "second", "solid"};
+    return {"normal_force", "tangential_force", "overlap", "solid"};
   }
   Ranges get_nonscalar_data_ranges() const override { return {}; }
 
@@ -98,7 +100,7 @@ public:
     for (const ContactForce &contact : contacts)
       if (is_drawn(contact))
         lines.add(contact, p);
-    pictures->write(simulation.time(), lines);
+    pictures->write(simulation.time(), lines, lines.ids);
   }
 
 private:

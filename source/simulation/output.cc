@@ -6,6 +6,8 @@
 
 #include <deal.II/base/data_out_base.h>
 
+#include "vtu_text.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
@@ -34,7 +36,7 @@ public:
         ranges.emplace_back(first, first + 2, name,
                             dealii::DataComponentInterpretation::component_is_part_of_vector);
     };
-    for (const char *const name : {"ID", "type", "diameter", "mass"})
+    for (const char *const name : {"type", "diameter", "mass"})
       add(name, 1);
     add("velocity", 3);
     add("omega", 3);
@@ -54,16 +56,8 @@ public:
       patch.vertices[0] = dealii::Point<3>(x.x, x.y, x.z);
       patch.patch_index = static_cast<unsigned int>(k);
       patch.data.reinit(static_cast<unsigned int>(names.size()), 1);
-      const double values[] = {static_cast<double>(p.id[k]),
-                               static_cast<double>(p.type[k]),
-                               2. * x.w,
-                               v.w,
-                               v.x,
-                               v.y,
-                               v.z,
-                               w.x,
-                               w.y,
-                               w.z};
+      const double values[] = {
+          static_cast<double>(p.type[k]), 2. * x.w, v.w, v.x, v.y, v.z, w.x, w.y, w.z};
       unsigned int c = 0;
       for (const double value : values)
         patch.data(c++, 0) = static_cast<float>(value);
@@ -111,27 +105,6 @@ std::vector<Patch<2, 3>> solid_patches(const std::vector<Solid> &solids)
   return patches;
 }
 
-/// What this rank contributes to a .vtu file of all ranks: @p whole is its own complete file.
-std::string part_of(const std::string &whole, const dealii::DataOutBase::VtkFlags &flags,
-                    MPI_Comm comm)
-{
-  std::ostringstream header, footer;
-  dealii::DataOutBase::write_vtu_header(header, flags);
-  dealii::DataOutBase::write_vtu_footer(footer);
-  const std::size_t begin = header.str().size(), end = whole.size() - footer.str().size();
-  int rank, n_ranks;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &n_ranks);
-  std::string part = whole.substr(begin, end - begin);
-  const bool is_empty = part.substr(0, 100).find("NumberOfPoints=\"0\"") != std::string::npos;
-  int has_points = is_empty ? 0 : 1, any = 0;
-  MPI_Allreduce(&has_points, &any, 1, MPI_INT, MPI_MAX, comm);
-  // ParaView cannot read a file that begins with a part without points, unless it is the only one.
-  if (has_points == 0 && (any != 0 || rank > 0))
-    part.clear();
-  return (rank == 0 ? header.str() : "") + part + (rank == n_ranks - 1 ? footer.str() : "");
-}
-
 } // namespace
 
 std::string PictureSeries::next_file(const double time)
@@ -169,16 +142,28 @@ void PictureSeries::resume(const Files &earlier)
 }
 
 template <int dim>
-void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterface<dim, 3> &data)
+void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterface<dim, 3> &data,
+                                      const std::vector<PictureIntegers> &integers)
 {
   if (folder.empty())
     return;
   const std::string path = folder + "/" + next_file(time);
-  const auto flags = compat::vtu_flags(time, static_cast<unsigned int>(files.size()));
-  data.set_flags(flags);
-  std::ostringstream whole;
-  data.write_vtu(whole);
-  write_in_turn(path, part_of(whole.str(), flags, comm), comm);
+  data.set_flags(compat::vtu_flags(time, static_cast<unsigned int>(files.size())));
+  std::ostringstream stream;
+  data.write_vtu(stream);
+  VtuText text(stream.str());
+  for (auto array = integers.rbegin(); array != integers.rend(); ++array)
+    text.add(*array);
+  int rank, n_ranks, has_points = text.has_points() ? 1 : 0, any_has_points;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &n_ranks);
+  MPI_Allreduce(&has_points, &any_has_points, 1, MPI_INT, MPI_MAX, comm);
+  // ParaView wants a piece, but none without points in front of others.
+  const bool has_piece = has_points != 0 || (any_has_points == 0 && rank == 0);
+  write_in_turn(path,
+                (rank == 0 ? text.head : std::string()) + (has_piece ? text.piece : std::string()) +
+                    (rank == n_ranks - 1 ? text.tail : std::string()),
+                comm);
   write_index();
 }
 
@@ -187,17 +172,21 @@ void PictureSeries::write(const double time, const ParticleArrays &particles,
                           const std::vector<PictureField> &more)
 {
   ParticlePatches patches(particles, fields, more);
-  write_in_parallel(time, patches);
+  PictureIntegers ids{"ID", {}};
+  ids.values.assign(particles.id.begin(),
+                    particles.id.begin() + static_cast<std::ptrdiff_t>(particles.n_owned));
+  write_in_parallel(time, patches, {ids});
 }
 
 void PictureSeries::write(const double time, dealii::DataOutInterface<3, 3> &cells)
 {
-  write_in_parallel(time, cells);
+  write_in_parallel(time, cells, {});
 }
 
-void PictureSeries::write(const double time, dealii::DataOutInterface<1, 3> &lines)
+void PictureSeries::write(const double time, dealii::DataOutInterface<1, 3> &lines,
+                          const std::vector<PictureIntegers> &integers)
 {
-  write_in_parallel(time, lines);
+  write_in_parallel(time, lines, integers);
 }
 
 void PictureSeries::write(const double time, const std::vector<Solid> &solids)

@@ -5,6 +5,7 @@
 #include <eunoe/processes/process.h>
 #include <eunoe/solids/solid.h>
 
+#include <cstdint>
 #include <mpi.h>
 #include <string>
 #include <vector>
@@ -22,6 +23,13 @@ struct PictureField
   std::string name;
   unsigned int n_components;  ///< 3 for a vector
   std::vector<double> values; ///< `[particle * n_components + component]`, of owned particles
+};
+
+/// Whole numbers for one picture, such as ids, which its single precision would round.
+struct PictureIntegers
+{
+  std::string name;
+  std::vector<std::int64_t> values; ///< one a point of this rank
 };
 
 /// A series of .vtu files with their exact times in a .pvd file, for ParaView. Without a folder it
@@ -45,7 +53,8 @@ public:
   /// Writes what all ranks together draw with deal.II, cells or lines; collective.
   ///@{
   void write(double time, dealii::DataOutInterface<3, 3> &cells);
-  void write(double time, dealii::DataOutInterface<1, 3> &lines);
+  void write(double time, dealii::DataOutInterface<1, 3> &lines,
+             const std::vector<PictureIntegers> &integers = {});
   ///@}
 
   /// Writes the surfaces of those solids that are drawn; collective.
@@ -62,7 +71,8 @@ public:
 
 private:
   template <int dim>
-  void write_in_parallel(double time, dealii::DataOutInterface<dim, 3> &data);
+  void write_in_parallel(double time, dealii::DataOutInterface<dim, 3> &data,
+                         const std::vector<PictureIntegers> &integers);
   std::string next_file(double time);
   void write_index() const;
 
