@@ -13,8 +13,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   try {
     const auto insertion = eunoe::insertion_methods().make(
         parameters.method, parameters, eunoe::PhysicalProperties(1), MPI_COMM_WORLD);
-    eunoe::ParticleId next_id = 0;
-    insertion->next(next_id);
+    eunoe::ParticleIds ids;
+    insertion->next(ids);
   } catch (const eunoe::UserError &) {
   }
   return 0;

@@ -55,7 +55,7 @@ void Simulation::insert_if_due()
       }
   insertion->survey({domain, system.particles, leaving, solids, present_time});
   Delivery delivery;
-  delivery.particles = insertion->next(next_id);
+  delivery.particles = insertion->next(ids);
   exchange(delivery, removed);
   ++n_insertions;
 }

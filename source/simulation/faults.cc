@@ -24,24 +24,25 @@ std::vector<std::size_t> Simulation::inspect()
 
   // The one with the smallest id is named, whichever rank it is on.
   const std::vector<Fault> &list = numbers[0] > 0 ? grave : faults.lost;
-  struct
-  {
-    int id = std::numeric_limits<int>::max(), rank = 0;
-  } mine, first;
-  MPI_Comm_rank(comm, &mine.rank);
+  ParticleId mine = std::numeric_limits<ParticleId>::max();
   std::string text;
   for (const Fault &fault : list) {
-    const auto id = static_cast<int>(system.particles.id[fault.row]);
-    if (id < mine.id) {
-      mine.id = id;
+    const ParticleId id = system.particles.id[fault.row];
+    if (id < mine) {
+      mine = id;
       text = system.describe(fault.row, solids) + " " + fault.what;
     }
   }
-  MPI_Allreduce(&mine, &first, 1, MPI_2INT, MPI_MINLOC, comm);
+  ParticleId smallest = mine;
+  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_UINT32_T, MPI_MIN, comm);
+  int first = std::numeric_limits<int>::max();
+  if (mine == smallest)
+    MPI_Comm_rank(comm, &first);
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
   int length = static_cast<int>(text.size());
-  MPI_Bcast(&length, 1, MPI_INT, first.rank, comm);
+  MPI_Bcast(&length, 1, MPI_INT, first, comm);
   text.resize(length);
-  MPI_Bcast(text.data(), length, MPI_CHAR, first.rank, comm);
+  MPI_Bcast(text.data(), length, MPI_CHAR, first, comm);
 
   if (numbers[0] > 0)
     stop_for(text, numbers[0]);

@@ -98,7 +98,7 @@ void Simulation::save(CheckpointWriter &writer)
   complete_step();
   Json &head = writer.head;
   head["step"] = step;
-  head["next_id"] = next_id;
+  head["next_id"] = ids.next();
   head["next_output"] = next_output;
   head["insertions"] = n_insertions;
   head["inserted"] = to_json(ledger.inserted.global(comm));
@@ -159,7 +159,7 @@ void Simulation::take_over(const Json &head)
                     ", and the run ends at step " + std::to_string(last) +
                     ". Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
   present_time = static_cast<double>(step) * parameters.control.time_step;
-  next_id = count_in<ParticleId>(head.at("next_id"));
+  ids.go_on_from(count_in<ParticleId>(head.at("next_id")));
   next_output = number_in(head.at("next_output"));
   n_insertions = count_in(head.at("insertions"));
   balanced_once = head.at("balanced_once");
@@ -170,8 +170,7 @@ void Simulation::take_over(const Json &head)
   for (std::size_t o = 0; o < ledger.through_outlet.size(); ++o)
     ledger.through_outlet[o] = to_tally(head.at("through_outlet").at(o), comm);
   if (insertion)
-    // Ids are given one after another from 1.
-    insertion->skip(n_insertions, next_id - 1);
+    insertion->skip(n_insertions, count_in(head.at("inserted").at("number")));
 
   if (domain.moves())
     domain.set_earlier_pose(to_state(head.at("mesh_at_search")));

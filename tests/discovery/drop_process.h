@@ -62,11 +62,12 @@ public:
   {
     const ParticleType &type = simulation.get_parameters().physics.types[0];
     const auto sizes = type.sizes.make();
+    const ParticleId first = simulation.particle_ids().take(n_particles);
     const auto [begin, end] = share_of(n_particles, simulation.communicator());
     Delivery delivery;
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle;
-      particle.id = simulation.next_id + static_cast<ParticleId>(k);
+      particle.id = first + static_cast<ParticleId>(k);
       particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
       particle.mass = sphere_mass(particle.radius, type.density);
       const auto place = [&](const std::size_t cell, const std::uint32_t d) {
@@ -77,7 +78,6 @@ public:
                            -5e-3 + place(k / 4 % 4, 2)};
       delivery.particles.push_back(particle);
     }
-    simulation.next_id += n_particles;
     simulation.exchange(delivery, {});
   }
 

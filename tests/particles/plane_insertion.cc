@@ -108,7 +108,7 @@ void test_events()
   bool renewed = true;
   emptied.run([&](Simulation &simulation) {
     if (simulation.step_number() == 20)
-      renewed = particle_table(simulation).size() == 16 && simulation.next_id == 25;
+      renewed = particle_table(simulation).size() == 16 && simulation.particle_ids().next() == 25;
   });
   check("room that was made", renewed);
 }

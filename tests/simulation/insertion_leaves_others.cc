@@ -35,7 +35,7 @@ int main(int argc, char **argv)
     if (simulation.step_number() != 50)
       return;
     NewParticle guest;
-    guest.id = simulation.next_id++;
+    guest.id = simulation.particle_ids().take(1);
     guest.radius = 0.5e-3;
     guest.mass = sphere_mass(guest.radius, scene.density);
     guest.position = {5e-3, 5e-3, 5e-3};

@@ -69,7 +69,7 @@ int main(int argc, char **argv)
       if (simulation.step_number() == 0) {
         Delivery delivery;
         delivery.particles = {guest};
-        delivery.particles[0].id = simulation.next_id++;
+        delivery.particles[0].id = simulation.particle_ids().take(1);
         delivery.particles[0].position = start[1].x;
         delivery.particles[0].velocity = start[1].v;
         simulation.exchange(delivery, {});

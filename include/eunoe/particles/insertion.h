@@ -4,6 +4,7 @@
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/particles/new_particle.h>
+#include <eunoe/particles/particle_ids.h>
 #include <eunoe/particles/physical_properties.h>
 
 #include <functional>
@@ -69,8 +70,8 @@ public:
 
   /// This rank's share of the particles of the next event; the shares of all ranks together are
   /// the same for any number of ranks.
-  /// @param next_id first free id, raised by the number of particles of all ranks
-  virtual std::vector<NewParticle> next(ParticleId &next_id) = 0;
+  /// @param ids from which the particles of all ranks take theirs; throws as they do
+  virtual std::vector<NewParticle> next(ParticleIds &ids) = 0;
 
   /// Places of this rank's share of the particles, where they are known beforehand (m).
   virtual std::vector<Vec3> known_places() const { return {}; }

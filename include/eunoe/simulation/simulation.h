@@ -5,6 +5,7 @@
 #include <eunoe/core/log.h>
 #include <eunoe/forces/load.h>
 #include <eunoe/observables/observable.h>
+#include <eunoe/particles/particle_ids.h>
 #include <eunoe/simulation/integrator.h>
 #include <eunoe/simulation/output_folder.h>
 #include <eunoe/simulation/parameters.h>
@@ -73,8 +74,8 @@ public:
   void exchange(const Delivery &delivery, const std::vector<std::size_t> &removed);
   /// Takes note that the motion of a solid was changed at the present time.
   void renew_solids() { move_solids(); }
-  /// First id that has never been used.
-  ParticleId next_id = 1;
+  /// From which new particles take theirs.
+  ParticleIds &particle_ids() { return ids; }
 
   /// Force and torque on every solid, of all ranks; only after a step for which it was wanted.
   std::vector<SolidLoad> global_solid_loads() const;
@@ -167,6 +168,7 @@ private:
   unsigned long long first_step = 0; ///< of this part of the run
   double last_checkpoint = 0.;       ///< by the wall clock (s)
   bool stopped = false, warned_of_stiffness = false;
+  ParticleIds ids;
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;

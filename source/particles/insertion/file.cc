@@ -52,14 +52,14 @@ public:
 
   bool finished() const override { return !repeats && n_events > 0; }
 
-  std::vector<NewParticle> next(ParticleId &next_id) override
+  std::vector<NewParticle> next(ParticleIds &ids) override
   {
     Contents &file = files[n_events++ % files.size()];
+    const ParticleId first = ids.take(file.n);
     // A file that is not needed again is not kept.
     std::vector<NewParticle> particles = repeats ? file.share : std::move(file.share);
     for (NewParticle &particle : particles)
-      particle.id += next_id;
-    next_id += static_cast<ParticleId>(file.n);
+      particle.id += first;
     return particles;
   }
 

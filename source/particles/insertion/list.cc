@@ -37,16 +37,17 @@ public:
 
   bool finished() const override { return done; }
 
-  std::vector<NewParticle> next(ParticleId &next_id) override
+  std::vector<NewParticle> next(ParticleIds &ids) override
   {
     const auto value = [](const std::vector<double> &list, std::size_t k) {
       return list.empty() ? 0. : list[k];
     };
+    const ParticleId first = ids.take(p.list_x.size());
     const auto [begin, end] = share_of(p.list_x.size(), comm);
     std::vector<NewParticle> particles;
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle;
-      particle.id = next_id + static_cast<ParticleId>(k);
+      particle.id = first + static_cast<ParticleId>(k);
       const double diameter =
           p.list_diameters.empty() || p.list_diameters[k] <= 0.
               ? sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id))
@@ -58,7 +59,6 @@ public:
       particle.spin = {value(p.list_wx, k), value(p.list_wy, k), value(p.list_wz, k)};
       particles.push_back(particle);
     }
-    next_id += static_cast<ParticleId>(p.list_x.size());
     done = true;
     return particles;
   }

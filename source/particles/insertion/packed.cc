@@ -315,12 +315,13 @@ public:
     }
   }
 
-  std::vector<NewParticle> next(ParticleId &next_id) override
+  std::vector<NewParticle> next(ParticleIds &ids) override
   {
     const std::size_t n = particles.n_remaining();
     std::vector<NewParticle> share;
     if (n == 0)
       return share;
+    const ParticleId first = ids.take(n);
     // A wrong text has been refused when the parameters were checked.
     const Expressions acceptance(parameters.acceptance, parameters.acceptance_constants, 1);
     const bool takes_all = parameters.acceptance == "1";
@@ -328,16 +329,15 @@ public:
         parameters.box_lower, parameters.box_upper, periods,
         [&](const Vec3 &x) { return takes_all ? 1. : acceptance.value(0, x, 0.); },
         [this](const Vec3 &x) { return domain->contains(x); }, solids, comm);
-    const std::vector<Vec3> places = packing.pack(radii(next_id), parameters.seed, next_id);
+    const std::vector<Vec3> places = packing.pack(radii(first), parameters.seed, first);
     const auto [begin, end] = share_of(n, comm);
     for (std::size_t k = begin; k < end; ++k) {
-      NewParticle particle = particles.particle(k, next_id + static_cast<ParticleId>(k));
+      NewParticle particle = particles.particle(k, first + static_cast<ParticleId>(k));
       particle.position = places[k];
       particle.velocity = parameters.velocity;
       particle.spin = parameters.spin;
       share.push_back(particle);
     }
-    next_id += static_cast<ParticleId>(n);
     particles.take(n);
     return share;
   }

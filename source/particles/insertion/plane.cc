@@ -59,22 +59,22 @@ public:
     find_free(surroundings);
   }
 
-  std::vector<NewParticle> next(ParticleId &next_id) override
+  std::vector<NewParticle> next(ParticleIds &ids) override
   {
     std::vector<Cell> free;
     std::copy_if(cells.begin(), cells.end(), std::back_inserter(free),
                  [](const Cell &cell) { return cell.is_free; });
     const std::size_t n = std::min(free.size(), particles.n_remaining());
+    const ParticleId first = ids.take(n);
     const auto [begin, end] = share_of(n, comm);
     std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; ++k) {
-      NewParticle particle = particles.particle(k, next_id + static_cast<ParticleId>(k));
+      NewParticle particle = particles.particle(k, first + static_cast<ParticleId>(k));
       particle.position = free[k].place;
       particle.velocity = parameters.velocity;
       particle.spin = parameters.spin;
       share.push_back(particle);
     }
-    next_id += static_cast<ParticleId>(n);
     particles.take(n);
     ++n_events;
     return share;

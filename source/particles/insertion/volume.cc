@@ -111,19 +111,19 @@ public:
 
   bool finished() const override { return particles.n_remaining() == 0; }
 
-  std::vector<NewParticle> next(ParticleId &next_id) override
+  std::vector<NewParticle> next(ParticleIds &ids) override
   {
     const std::size_t n = std::min(of_next_event(), grid.capacity());
+    const ParticleId first = ids.take(n);
     const auto [begin, end] = share_of(n, comm);
     std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; ++k) {
-      NewParticle p = particles.particle(k, next_id + static_cast<ParticleId>(k));
+      NewParticle p = particles.particle(k, first + static_cast<ParticleId>(k));
       p.position = grid.point(k, parameters.seed, p.id);
       p.velocity = parameters.velocity;
       p.spin = parameters.spin;
       share.push_back(p);
     }
-    next_id += static_cast<ParticleId>(n);
     particles.take(n);
     return share;
   }

@@ -11,18 +11,18 @@ void Heap::fill(Simulation &simulation)
 {
   const ParticleType &type = simulation.get_parameters().physics.types[0];
   const auto sizes = type.sizes.make();
+  const ParticleId first = simulation.particle_ids().take(apparatus->n_particles);
   const auto [begin, end] = share_of(apparatus->n_particles, simulation.communicator());
   Delivery delivery;
   for (std::size_t k = begin; k < end; ++k) {
     NewParticle particle;
-    particle.id = simulation.next_id + static_cast<ParticleId>(k);
+    particle.id = first + static_cast<ParticleId>(k);
     particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
     particle.mass = sphere_mass(particle.radius, type.density);
     particle.position = apparatus->loose_place(k, particle.id);
     particle.velocity = {0., -p.insertion_speed, 0.};
     delivery.particles.push_back(particle);
   }
-  simulation.next_id += apparatus->n_particles;
   simulation.exchange(delivery, {});
 }
 

@@ -47,18 +47,18 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
       grid.capacity(),
       static_cast<std::size_t>(loose_excess * bed_particles(parameters, missing)) + 1);
 
+  const ParticleId first = simulation.particle_ids().take(n);
   const auto [begin, end] = share_of(n, simulation.communicator());
   Delivery delivery;
   for (std::size_t k = begin; k < end; ++k) {
     NewParticle particle;
-    particle.id = simulation.next_id + static_cast<ParticleId>(k);
+    particle.id = first + static_cast<ParticleId>(k);
     particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
     particle.mass = sphere_mass(particle.radius, type.density);
     particle.position = grid.point(k, p.seed, particle.id);
     particle.velocity = {0., -p.insertion_speed, 0.};
     delivery.particles.push_back(particle);
   }
-  simulation.next_id += static_cast<ParticleId>(n);
   simulation.exchange(delivery, {});
   phase_start = simulation.time();
   ++n_fillings;
