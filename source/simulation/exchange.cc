@@ -17,10 +17,11 @@ bool is_in_box(const Vec3 &x, const Vec3 &lower, const Vec3 &upper)
 void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_t> &removed)
 {
   complete_step();
+  const std::vector<std::size_t> lost = inspect();
   ParticleId first_new;
   {
     const Timers::Scope scope(timers, Section::search);
-    first_new = system.exchange(delivery, removed, solids);
+    first_new = system.exchange(delivery, removed, lost, solids);
     // The mesh was shared out before there were particles. This changes no result.
     const LoadBalancingParameters &balancing = parameters.model.load_balancing;
     if (step == 0 && system.imbalance(balancing) > balancing.threshold_at_start)

@@ -86,17 +86,29 @@ std::vector<double> ParticleSystem::work() const
   return work;
 }
 
-std::vector<std::size_t> ParticleSystem::find_leaving()
+std::vector<std::pair<std::size_t, int>> ParticleSystem::beyond_outlets() const
 {
-  std::vector<std::size_t> leaving;
+  std::vector<std::pair<std::size_t, int>> found;
   if (domain.outlets().empty())
-    return leaving;
+    return found;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     const int outlet =
         domain.passed_outlet(particles.reference[row], particles.position[row].vec());
-    if (outlet < 0)
-      continue;
+    if (outlet >= 0)
+      found.emplace_back(row, outlet);
+  }
+  return found;
+}
+
+std::vector<std::size_t> ParticleSystem::count_leaving(const std::vector<std::size_t> &lost)
+{
+  std::vector<std::size_t> leaving;
+  for (const auto &[row, outlet] : beyond_outlets()) {
     ledger.through_outlet[outlet].count(particles.velocity[row].w);
+    leaving.push_back(row);
+  }
+  for (const std::size_t row : lost) {
+    ledger.lost.count(particles.velocity[row].w);
     leaving.push_back(row);
   }
   return leaving;
@@ -108,22 +120,18 @@ void ParticleSystem::search(const std::vector<Solid> &solids,
 {
   rows.collect(particles, pairs, solid_contacts);
   store.write(particles, work());
-  std::vector<std::size_t> leaving = find_leaving();
-  for (const std::size_t row : lost) {
-    ledger.lost.count(particles.velocity[row].w);
-    leaving.push_back(row);
-  }
-  store.remove(leaving);
+  store.remove(count_leaving(lost));
   rebuild(solids, balance);
 }
 
 ParticleId ParticleSystem::exchange(const Delivery &delivery,
                                     const std::vector<std::size_t> &removed,
+                                    const std::vector<std::size_t> &lost,
                                     const std::vector<Solid> &solids)
 {
   rows.collect(particles, pairs, solid_contacts);
   store.write(particles, work());
-  std::vector<std::size_t> leaving = find_leaving();
+  std::vector<std::size_t> leaving = count_leaving(lost);
   std::vector<bool> has_left(particles.n_owned, false);
   for (const std::size_t row : leaving)
     has_left[row] = true;

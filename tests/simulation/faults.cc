@@ -90,6 +90,93 @@ void examine_checkpoints()
   check("past the fault", continued == particle_table(*alone) && continued.size() == 3);
 }
 
+/// Batches of four that leave the box at once through its wall. A search looks for them at every
+/// 50th step only, so that they are lost when the next batch comes, every ten steps.
+std::string batches(const std::string &action)
+{
+  return box_input(
+      1e-5, 2e-3,
+      "subsection lagrangian physical properties\n subsection particle type 0\n"
+      "  set diameter = 1e-3\n  set number of particles = 12\n end\nend\n"
+      "subsection insertion info\n"
+      " set inserted number of particles at each time step = 4\n"
+      " set insertion frequency = 10\n set initial velocity = 0, 0, -3000\n"
+      " set insertion box points coordinates = -9e-3, -9e-3, -9e-3 : 9e-3, 9e-3, 9e-3\n"
+      " set insertion distance threshold = 4\nend\n" +
+          model(" set lost particles = " + action +
+                "\n subsection contact detection\n  set frequency = 50\n end"));
+}
+
+void test_insertion()
+{
+  expect("lost when others come", failure(batches("stop")),
+         {"At t = 0.0001 s (step 10), particle 1 at (", "3 more have gone wrong.",
+          "has left the mesh, though not through an outlet.", "fault.checkpoint"});
+  for (const std::string action : {"remove", "ignore"}) {
+    Case test_case(batches(action));
+    std::vector<std::uint64_t> lost;
+    test_case.run([&](Simulation &simulation) {
+      const unsigned long long step = simulation.step_number();
+      if (step == 9 || step == 10 || step == 20 || step == 50)
+        lost.push_back(simulation.get_ledger().lost.global(simulation.communicator()).number);
+    });
+    check(action + " when others come", lost == std::vector<std::uint64_t>({0, 4, 8, 12}));
+    check(action + ": none is left", particle_table(*test_case).empty());
+  }
+}
+
+/// Inserts a particle with an id of more than 31 bits at step 10.
+void insert_late(Simulation &simulation, const Vec3 &velocity)
+{
+  ParticleIds &ids = simulation.particle_ids();
+  ids.take((1u << 31) + 5 - ids.next());
+  Delivery delivery;
+  NewParticle guest;
+  guest.id = ids.take(1);
+  guest.radius = 0.5e-3;
+  guest.mass = sphere_mass(guest.radius, 1000.);
+  guest.position = {0., 0., -5e-3};
+  guest.velocity = velocity;
+  if (is_first_rank())
+    delivery.particles.push_back(guest);
+  simulation.exchange(delivery, {});
+}
+
+void test_large_ids()
+{
+  const auto loses = [](double speed_of_second) {
+    return [speed_of_second](Simulation &simulation) {
+      if (simulation.step_number() != 10)
+        return;
+      insert_late(simulation, {0., 0., -3000.});
+      ParticleArrays &p = simulation.changeable_particles();
+      for (std::size_t row = 0; row < p.n_owned; ++row)
+        if (p.id[row] == 2)
+          p.velocity[row].z = speed_of_second;
+    };
+  };
+  expect("a large id", failure(input("0"), loses(0.)), {"particle 2147483653 at (0, 0, -"});
+  expect("the smallest id is named", failure(input("0"), loses(-3000.)),
+         {"particle 2 at (", "1 more have gone wrong."});
+
+  Case test_case(batches("remove"));
+  std::string message;
+  try {
+    test_case.run([](Simulation &simulation) {
+      ParticleIds &ids = simulation.particle_ids();
+      if (simulation.step_number() == 15)
+        ids.take(ParticleIds::last - ids.next() - 2);
+    });
+  } catch (const UserError &error) {
+    message = error.what();
+  }
+  expect("no ids are left", message,
+         {"4 particles are to be inserted, but of the 4294967294 ids",
+          "only 3 are left. Nothing was inserted,"});
+  check("nothing was inserted",
+        test_case->get_ledger().inserted.global(test_case->communicator()).number == 8);
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -125,4 +212,6 @@ int main(int argc, char **argv)
                       lost.mass.value() == sphere_mass(0.5e-3, 1000.));
   }
   examine_checkpoints();
+  test_insertion();
+  test_large_ids();
 }

@@ -60,9 +60,10 @@ public:
   /// Adds and removes particles, then searches. Those that stay keep their forces; the new ones
   /// have none yet. Collective.
   /// @param removed rows of owned particles
+  /// @param lost rows of those that are taken out and counted as lost
   /// @return the smallest id of the new particles of all ranks
   ParticleId exchange(const Delivery &delivery, const std::vector<std::size_t> &removed,
-                      const std::vector<Solid> &solids);
+                      const std::vector<std::size_t> &lost, const std::vector<Solid> &solids);
 
   /// Brings the ghosts up to date; collective.
   void update_ghosts() { halo.update(particles); }
@@ -121,7 +122,11 @@ private:
   /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
   std::vector<double> work() const;
   bool is_within_reach(std::size_t pair) const;
-  std::vector<std::size_t> find_leaving();
+  /// Owned particles that are beyond an outlet, and which one.
+  std::vector<std::pair<std::size_t, int>> beyond_outlets() const;
+  /// Counts those who leave through outlets, and those who are lost.
+  /// @return the rows of all of them
+  std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);

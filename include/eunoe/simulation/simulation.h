@@ -71,6 +71,7 @@ public:
   ParticleArrays &changeable_particles();
 
   /// Adds and removes particles at the present time; those that stay go on as if nothing had been.
+  /// Particles that have gone wrong are found and treated as before a search.
   void exchange(const Delivery &delivery, const std::vector<std::size_t> &removed);
   /// Takes note that the motion of a solid was changed at the present time.
   void renew_solids() { move_solids(); }
@@ -102,8 +103,8 @@ private:
   void ask_for_search(double moved2);
   /// Whether it is, once all ranks have answered.
   bool search_is_due();
-  /// Looks for particles with something wrong before a search; stops the run on all ranks, or
-  /// returns the rows of those to take out.
+  /// Looks for particles with something wrong before they are shared out anew; stops the run on all
+  /// ranks, or returns the rows of those to take out.
   std::vector<std::size_t> inspect();
   /// Says how the time step compares with what the contacts and the moving solids need.
   void judge_time_step();
