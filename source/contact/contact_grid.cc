@@ -169,7 +169,7 @@ private:
 
 ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
                          const double cell_size)
-    : lower(lower), box(box), axis({{0, 1, 2}})
+    : lower_from_centre(lower), lower(lower), box(box), axis({{0, 1, 2}})
 {
   const Vec3 extent = upper - lower;
   std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });

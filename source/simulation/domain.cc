@@ -86,7 +86,6 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
   for (const RefinementParameters::Region &region : background.refinement.regions)
     refine(triangulation, region);
   measure_cells();
-  find_swept_box(background.duration);
   boundary.refine(triangulation, periodic, box, moves());
   make_boundaries(boundaries, wall_material, boundary, periodic);
 }
@@ -97,25 +96,16 @@ void Domain::move_to(const double time)
     pose = motion->at(time);
 }
 
-void Domain::find_swept_box(const double duration)
+Box Domain::box_from_centre() const
 {
-  swept = {lower_corner, upper_corner};
-  if (!motion)
-    return;
-  const RigidState end = motion->at(duration);
-  if (motion->rotates()) {
-    // Whatever the axis, nothing is further from the centre than the furthest corner.
-    Vec3 most;
-    for (unsigned int d = 0; d < 3; ++d)
-      most[d] = std::max(std::abs(lower_corner[d]), std::abs(upper_corner[d]));
-    const double radius = norm(most);
-    swept = {{-radius, -radius, -radius}, {radius, radius, radius}};
-  }
-  const Box start = swept;
-  for (unsigned int d = 0; d < 3; ++d) {
-    swept.lower[d] = std::min(swept.lower[d], start.lower[d] + end.centre[d]);
-    swept.upper[d] = std::max(swept.upper[d], start.upper[d] + end.centre[d]);
-  }
+  if (!motion || !motion->rotates())
+    return {lower_corner, upper_corner};
+  // Whatever the axis, nothing is further from the centre than the furthest corner.
+  Vec3 most;
+  for (unsigned int d = 0; d < 3; ++d)
+    most[d] = std::max(std::abs(lower_corner[d]), std::abs(upper_corner[d]));
+  const double radius = norm(most);
+  return {{-radius, -radius, -radius}, {radius, radius, radius}};
 }
 
 void Domain::measure_cells()

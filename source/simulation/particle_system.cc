@@ -12,7 +12,7 @@ ParticleSystem::ParticleSystem(Domain &domain, const ContactModel &model,
                                const double largest_diameter, Ledger &ledger, Timers &timers)
     : domain(domain), model(model), skin(skin), ledger(ledger), timers(timers),
       store(domain, n_extra, asleep), halo(domain.communicator()),
-      grid(domain.swept_box().lower, domain.swept_box().upper, domain.periods(),
+      grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
            largest_diameter + skin + model.range()),
       pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
       extra_defaults(n_extra, 0.)
@@ -249,6 +249,7 @@ void ParticleSystem::make_room_for_contacts()
 std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids)
 {
   std::vector<Origin> origins;
+  grid.move_to(domain.centre());
   store.read(particles, grid, origins);
   halo.build(particles, store, grid, skin + model.range());
   pairs.clear(model.history_size());

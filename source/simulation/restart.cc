@@ -133,7 +133,7 @@ void Simulation::resume()
   checkpoints.go_on();
   understand(*checkpoint, [&](const Json &head) {
     take_over(head);
-    domain.move_to(present_time);
+    domain.return_to_earlier_pose();
     system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
     n_particles = system.n_global();
     if (Process *const process = parameters.process())

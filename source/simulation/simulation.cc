@@ -47,8 +47,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
       largest_diameter(insertion ? insertion->largest_diameter()
                                  : parameters.physics.largest_diameter()),
       skin(parameters.model.skin(largest_diameter)),
-      domain({parameters.mesh, parameters.refinement, parameters.grid_motion.make(),
-              parameters.control.time_step * static_cast<double>(parameters.control.n_steps())},
+      domain({parameters.mesh, parameters.refinement, parameters.grid_motion.make()},
              parameters.boundaries, parameters.physics.wall_material(), comm),
       model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),

@@ -15,9 +15,13 @@ namespace eunoe {
 class ContactGrid
 {
 public:
-  /// @param lower, upper corners of the domain (m); what lies outside counts to the border cells
+  /// @param lower, upper corners of the domain, from its centre (m); what lies outside counts to
+  ///                     the border cells
   /// @param cell_size smallest allowed width of a cell (m)
   ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box, double cell_size);
+
+  /// Takes the grid along with the domain, whose centre is at first the origin (m).
+  void move_to(const Vec3 &centre) { lower = lower_from_centre + centre; }
 
   /// Place of a position's cell in the order of all cells; near positions have near keys.
   std::uint64_t key(const Vec3 &x) const;
@@ -32,7 +36,7 @@ private:
 
   Cell cell(const Vec3 &x) const;
 
-  Vec3 lower;
+  Vec3 lower_from_centre, lower;
   Vec3 inverse_width;
   PeriodicBox box;
   Cell n;

@@ -104,7 +104,6 @@ struct Background
   const MeshParameters &mesh;
   const RefinementParameters &refinement;
   std::shared_ptr<const Motion> motion; ///< null: at rest
-  double duration;                      ///< of the motion (s)
 };
 
 /// The space in which particles live: the distributed background mesh, its periods, its walls and
@@ -122,8 +121,11 @@ public:
   /// Corners of the box around the mesh, at the beginning if it moves (m).
   const Vec3 &lower() const { return lower_corner; }
   const Vec3 &upper() const { return upper_corner; }
-  /// The box around all places to which the mesh comes.
-  const Box &swept_box() const { return swept; }
+  /// The box around the mesh however it turns, from its centre (m). It follows from the mesh alone,
+  /// not from how long the run is, on which nothing may depend.
+  Box box_from_centre() const;
+  /// Where the centre of the motion is (m), at first in the origin.
+  const Vec3 &centre() const { return pose.centre; }
 
   /// Takes the mesh to where it is at a time (s).
   void move_to(double time);
@@ -137,6 +139,8 @@ public:
   const RigidState &earlier_pose() const { return earlier; }
   void set_earlier_pose(const RigidState &state) { earlier = state; }
   void keep_pose() { earlier = pose; }
+  /// Takes the mesh back there.
+  void return_to_earlier_pose() { pose = earlier; }
   ///@}
 
   /// Whether a position lies in the mesh; in periodic directions every one does.
@@ -165,7 +169,6 @@ private:
     return motion ? frame.rotation.undo(x - frame.centre) : x;
   }
   void measure_cells();
-  void find_swept_box(double duration);
   void make_boundaries(const BoundaryParameters &boundaries, int wall_material,
                        const MeshBoundary &boundary, const std::set<unsigned int> &periodic);
   /// Makes the surfaces of a mesh that is not convex.
@@ -180,7 +183,6 @@ private:
   std::shared_ptr<const Motion> motion;
   RigidState pose, earlier;
   Vec3 lower_corner, upper_corner;
-  Box swept;
   double cell_width = 0.;
   /// A point and the inward normal of every side of a convex mesh that is not periodic.
   std::vector<std::pair<Vec3, Vec3>> sides;
