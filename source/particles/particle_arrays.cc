@@ -13,6 +13,7 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
   type.resize(size());
   awake.clear();
   awake_rows.clear();
+  sleepers_moved2 = 0.;
   reference.resize(owned);
   extra.resize(n_extra);
   for (auto &component : extra)

@@ -256,9 +256,12 @@ void Simulation::compute_forces(const double dt)
 }
 
 /// Asks how far particles have moved on any rank since the last search.
-/// @param moved2 square of the largest displacement on this one (m2)
-void Simulation::ask_for_search(const double moved2)
+/// @param moved2 square of the largest displacement of those who are awake on this one (m2)
+void Simulation::ask_for_search(double moved2)
 {
+  // Sleepers stay where they have drifted to. Where it is no number, it stays none.
+  if (moved2 < system.particles.sleepers_moved2)
+    moved2 = system.particles.sleepers_moved2;
   const ModelParameters &p = parameters.model;
   largest_displacement = 0.;
   if (step % p.detection_frequency != 0)

@@ -13,6 +13,7 @@ constexpr unsigned int n_rings = 2;
 void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
 {
   p.awake_rows.clear();
+  p.sleepers_moved2 = 0.;
   if (std::find(flags.begin(), flags.end(), 0) == flags.end()) {
     p.awake.clear();
     return;
@@ -21,6 +22,9 @@ void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
   for (std::size_t row = 0; row < p.n_owned; ++row)
     if (p.awake[row] != 0)
       p.awake_rows.push_back(static_cast<std::int32_t>(row));
+    else
+      p.sleepers_moved2 =
+          std::max(p.sleepers_moved2, norm_square(p.position[row].vec() - p.reference[row]));
 }
 
 } // namespace

@@ -30,6 +30,8 @@ struct ParticleArrays
   ///@{
   std::vector<std::uint8_t> awake;      ///< a flag each, ghosts too; empty while all are awake
   std::vector<std::int32_t> awake_rows; ///< of owned particles, ascending; empty while all are
+  /// Square of the largest distance of an owned sleeper from its reference position (m2).
+  double sleepers_moved2 = 0.;
   bool is_awake(std::size_t row) const { return awake.empty() || awake[row] != 0; }
   std::size_t n_awake() const { return awake.empty() ? n_owned : awake_rows.size(); }
   ///@}

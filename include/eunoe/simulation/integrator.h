@@ -20,8 +20,8 @@ public:
 
   /// Brings positions to the end of the step and sets forces and torques to zero.
   /// @param dt (s)
-  /// @return square of the largest distance of a particle from its reference position (m2), no
-  ///         number if one of them is none
+  /// @return square of the largest distance of a particle that is awake from its reference position
+  ///         (m2), no number if one of them is none
   virtual double begin_step(ParticleArrays &particles, double dt) = 0;
 
   /// To be called when the forces at the end of the step are complete.
