@@ -203,7 +203,8 @@ void Simulation::advance()
     moved2 = integrator->begin_step(system.particles, dt);
   }
   ask_for_search(moved2);
-  const bool look_is_due = sparse.is_enabled() && step % sparse.frequency() == 0;
+  const bool look_is_due =
+      sparse.is_enabled() && (step % sparse.frequency() == 0 || solid_starts());
   if (!look_is_due) {
     // While the answers of all ranks come; in vain if they want a search.
     const Timers::Scope scope(timers, Section::ghosts);

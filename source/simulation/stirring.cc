@@ -20,6 +20,20 @@ bool stirs(const Solid &solid, const RigidState &before, const double time_befor
 
 } // namespace
 
+bool Simulation::solid_starts() const
+{
+  // Near one that moved at the last look, all are awake. What it would do in up to a whole check
+  // frequency to those who rest on it and feel nothing would come all at once.
+  for (std::size_t s = 0; s < solids.size(); ++s) {
+    const RigidState &before = last_look.solids[s];
+    const bool was_at_rest =
+        norm_square(before.velocity) == 0. && norm_square(before.angular_velocity) == 0.;
+    if (was_at_rest && stirs(solids[s], before, last_look.time, present_time))
+      return true;
+  }
+  return false;
+}
+
 void Simulation::update_sleep(const bool wake_all)
 {
   const Timers::Scope scope(timers, Section::sleep);

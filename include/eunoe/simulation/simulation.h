@@ -115,6 +115,8 @@ private:
   void compare_time_step(double stiffest);
   [[noreturn]] void stop_for(const std::string &first, std::uint64_t number);
   const LoadBalancingParameters *balance_if_due();
+  /// Whether a solid has begun to move, has come or gone since the last look at who sleeps.
+  bool solid_starts() const;
   /// Looks at who sleeps from now on.
   void update_sleep(bool wake_all);
   void insert_if_due();
@@ -166,10 +168,10 @@ private:
   double next_output = 0.;
   bool balanced_once = false;
   std::size_t n_insertions = 0;
+  ParticleIds ids;
   unsigned long long first_step = 0; ///< of this part of the run
   double last_checkpoint = 0.;       ///< by the wall clock (s)
   bool stopped = false, warned_of_stiffness = false;
-  ParticleIds ids;
   unsigned long long last_reported_step = 0;
   unsigned long long last_balance = 0;
   std::uint64_t n_particles = 0;
