@@ -114,6 +114,19 @@ std::vector<std::size_t> ParticleSystem::count_leaving(const std::vector<std::si
   return leaving;
 }
 
+void ParticleSystem::stir_around_leaving(const SparseContacts &sparse,
+                                         const std::vector<std::size_t> &lost,
+                                         const unsigned long long step)
+{
+  std::vector<std::uint8_t> leaves(particles.size(), 0);
+  for (const std::size_t row : lost)
+    leaves[row] = 1;
+  for (const auto &[row, outlet] : beyond_outlets())
+    leaves[row] = 1;
+  halo.update(leaves);
+  sparse.stir_neighbours(particles, pairs, leaves, step);
+}
+
 void ParticleSystem::search(const std::vector<Solid> &solids,
                             const LoadBalancingParameters *balance,
                             const std::vector<std::size_t> &lost)

@@ -215,6 +215,8 @@ void Simulation::advance()
   if (searches) {
     const Timers::Scope scope(timers, Section::search);
     const std::vector<std::size_t> lost = inspect();
+    if (sparse.is_enabled())
+      system.stir_around_leaving(sparse, lost, step);
     system.search(solids, balance_if_due(), lost);
     for (std::size_t s = 0; s < solids.size(); ++s)
       solids_at_search[s] = solids[s].state;

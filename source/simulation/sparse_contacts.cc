@@ -89,6 +89,17 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
   set_awake(p, std::move(awake));
 }
 
+void SparseContacts::stir_neighbours(ParticleArrays &p, const PairList &pairs,
+                                     const std::vector<std::uint8_t> &flags,
+                                     const unsigned long long step) const
+{
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if ((flags[pairs.i[k]] | flags[pairs.j[k]]) != 0)
+      for (const std::int32_t row : {pairs.i[k], pairs.j[k]})
+        if (static_cast<std::size_t>(row) < p.n_owned)
+          p.extra[last_moved][row] = static_cast<double>(step);
+}
+
 void SparseContacts::recall(ParticleArrays &p, Halo &halo) const
 {
   std::vector<std::uint8_t> awake(p.size(), 1);

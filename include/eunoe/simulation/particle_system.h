@@ -70,6 +70,12 @@ public:
   /// Of this rank: those that are brought up to date.
   std::size_t n_paired_ghosts() const { return halo.n_ghosts(); }
 
+  /// Keeps awake those around particles that leave at the coming search, as what held them goes;
+  /// collective.
+  /// @param lost rows of owned particles
+  void stir_around_leaving(const SparseContacts &sparse, const std::vector<std::size_t> &lost,
+                           unsigned long long step);
+
   /// Puts to sleep and wakes, then brings the ghosts up to date; collective.
   void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
 

@@ -50,6 +50,11 @@ public:
   void update(ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids,
               Halo &halo, const Stirring &stirring) const;
 
+  /// Keeps awake the owned particles of all pairs with a flag.
+  /// @param flags one a particle, ghosts too
+  void stir_neighbours(ParticleArrays &particles, const PairList &pairs,
+                       const std::vector<std::uint8_t> &flags, unsigned long long step) const;
+
   /// Lets those sleep who slept when their fields were saved; collective.
   void recall(ParticleArrays &particles, Halo &halo) const;
 
