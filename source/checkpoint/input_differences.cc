@@ -1,5 +1,6 @@
 #include <eunoe/checkpoint/input_differences.h>
 #include <eunoe/core/input_file.h>
+#include <eunoe/core/quoted_text.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -61,8 +62,8 @@ void find_input_differences(const std::string &now, const std::string &then,
     if (before == entries_then.end())
       note(place, "is set, and was not known in the run that wrote " + checkpoint + ".");
     else if (!are_equal(value, before->second))
-      note(place, "is '" + value + "', and was '" + before->second + "' in the run that wrote " +
-                      checkpoint + ".");
+      note(place, "is '" + shortened(value) + "', and was '" + shortened(before->second) +
+                      "' in the run that wrote " + checkpoint + ".");
   }
   for (const auto &[place, value] : entries_then)
     if (entries_now.count(place) == 0)

@@ -1,5 +1,6 @@
 #include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/core/declare.h>
+#include <eunoe/core/quoted_text.h>
 
 namespace eunoe {
 
@@ -27,7 +28,7 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
 void RestartParameters::check(const ParameterCheck &check) const
 {
   check.require(!filename.empty() && filename.find('/') == std::string::npos, {section}, "filename",
-                "is '" + filename + "'.", "Give a name without '/'.");
+                "is '" + shortened(filename) + "'.", "Give a name without '/'.");
 }
 
 } // namespace eunoe

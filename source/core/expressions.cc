@@ -1,4 +1,5 @@
 #include <eunoe/core/expressions.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/silent_errors.h>
 
 #include <deal.II/base/function_parser.h>
@@ -29,7 +30,7 @@ std::map<std::string, double> values_of(const std::string &constants)
     if (parts.size() == 2)
       values[parts[0]] = std::strtod(parts[1].c_str(), &end);
     if (parts.size() != 2 || parts[1].empty() || *end != '\0')
-      throw std::invalid_argument("'" + definition + "' is no constant 'name=value'");
+      throw std::invalid_argument("'" + shortened(definition) + "' is no constant 'name=value'");
   }
   values["pi"] = M_PI;
   return values;
@@ -44,7 +45,7 @@ Expressions::Expressions(const std::string &text, const std::string &constants,
   const std::map<std::string, double> values = values_of(constants);
   const auto parts = dealii::Utilities::split_string_list(text, ';');
   if (parts.size() != n)
-    throw std::invalid_argument("'" + text + "' does not hold " +
+    throw std::invalid_argument("'" + shortened(text) + "' does not hold " +
                                 (n == 1   ? "one expression"
                                  : n == 3 ? "three expressions"
                                           : std::to_string(n) + " expressions"));
@@ -60,7 +61,7 @@ Expressions::Expressions(const std::string &text, const std::string &constants,
     }
   }
   if (!understood)
-    throw std::invalid_argument("'" + text + "' is not understood");
+    throw std::invalid_argument("'" + shortened(text) + "' is not understood");
 }
 
 Expressions::~Expressions() = default;

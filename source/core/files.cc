@@ -3,6 +3,7 @@
 #include <eunoe/core/messages.h>
 #include <eunoe/core/new_file.h>
 #include <eunoe/core/problems.h>
+#include <eunoe/core/quoted_text.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -49,7 +50,8 @@ std::string read_file(const std::string &path, MPI_Comm comm)
   }
   error = broadcast(error, comm);
   if (!error.empty())
-    throw UserError(path + " cannot be read: " + error + ". Check the name and the permissions.");
+    throw UserError(shortened(path) + " cannot be read: " + error +
+                    ". Check the name and the permissions.");
   return broadcast(text, comm);
 }
 
@@ -103,7 +105,7 @@ void create_folder(const std::string &path, MPI_Comm comm)
       error = std::strerror(errno);
     fs::remove(probe, failure);
     if (!error.empty())
-      throw UserError("The folder " + path + " cannot be written to: " + error +
+      throw UserError("The folder " + shortened(path) + " cannot be written to: " + error +
                       ". Choose another folder, or mend the permissions.");
   });
 }
@@ -121,6 +123,8 @@ Table parse_table(const std::string &text, const std::string &file)
   std::string line;
   unsigned int number = 0;
   char separator = ';';
+  if (text.compare(0, byte_order_mark.size(), byte_order_mark) == 0)
+    stream.ignore(static_cast<std::streamsize>(byte_order_mark.size()));
   while (std::getline(stream, line)) {
     ++number;
     boost::trim(line);

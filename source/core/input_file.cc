@@ -1,4 +1,5 @@
 #include <eunoe/core/input_file.h>
+#include <eunoe/core/quoted_text.h>
 
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
@@ -53,9 +54,9 @@ std::string describe(const std::vector<std::string> &path, const std::string &en
 {
   std::string text;
   for (const std::string &name : path)
-    text += "subsection '" + name + "' / ";
+    text += "subsection '" + shortened(name) + "' / ";
   return entry.empty() ? text.substr(0, text.size() - std::min<std::size_t>(3, text.size()))
-                       : text + "entry '" + entry + "'";
+                       : text + "entry '" + shortened(entry) + "'";
 }
 
 std::string nearest_name(const std::string &word, const std::vector<std::string> &candidates)
@@ -102,10 +103,21 @@ public:
     const std::size_t outer_depth = open_at_start;
     open_at_start = path.size();
     if (text.find('\0') != std::string::npos) {
-      problems.add(file + ":", "this is no text.", "Give an input file.");
+      const std::string start = text.substr(0, 2);
+      if (start == "\xFF\xFE" || start == "\xFE\xFF")
+        problems.add(file + ":", "this is written in UTF-16.",
+                     "Save the file in UTF-8, or keep to ASCII.");
+      else
+        problems.add(file + ":", "this is no text.", "Give an input file.");
       return;
     }
     std::istringstream stream(text);
+    if (text.compare(0, byte_order_mark.size(), byte_order_mark) == 0) {
+      problems.warn(
+          file + ":1:", "the file begins with a byte-order mark (U+FEFF), which is passed over.",
+          "Save the file in UTF-8 without one.");
+      stream.ignore(static_cast<std::streamsize>(byte_order_mark.size()));
+    }
     std::string line;
     unsigned int number = 0;
     while (std::getline(stream, line)) {
@@ -172,11 +184,16 @@ private:
       if (parse_assignment(statement.substr(word.size()), entry))
         entries.push_back(entry);
       else
-        problems.add(where + ":", "'" + statement + "' has no '='.", "Write 'set entry = value'.");
-    } else
-      problems.add(where + ":", "'" + statement.substr(0, 60) + "' is not understood.",
-                   "A line is 'set entry = value', 'subsection name', 'end', 'include file', or a "
-                   "comment after '#'.");
+        problems.add(where + ":", "'" + shortened(statement) + "' has no '='.",
+                     "Write 'set entry = value'.");
+    } else {
+      const std::string advice = advice_on_lookalikes(statement);
+      problems.add(where + ":", "'" + shortened(statement) + "' is not understood.",
+                   !advice.empty()
+                       ? advice
+                       : "A line is 'set entry = value', 'subsection name', 'end', 'include "
+                         "file', or a comment after '#'.");
+    }
   }
 
   void include(const std::string &name, const std::string &file, const std::string &where)
@@ -232,7 +249,7 @@ EntryValues values_in(const std::string &text)
 InputEntry parse_override(const std::string &text, Problems &problems)
 {
   InputEntry entry;
-  entry.where = "--set \"" + text + "\"";
+  entry.where = "--set \"" + shortened(text) + "\"";
   const std::size_t equals = text.find('=');
   if (!is_utf8(text)) {
     problems.add("--set:", not_utf8, mend_encoding);

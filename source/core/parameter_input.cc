@@ -1,4 +1,5 @@
 #include <eunoe/core/parameter_input.h>
+#include <eunoe/core/quoted_text.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -73,6 +75,10 @@ std::string in_words(const std::string &pattern)
     const std::string items = in_words(part[1]);
     if (items.empty())
       return "";
+    // Two points of three numbers each, as the corners of a box.
+    const bool of_points = part[1].str().compare(0, 6, "[List ") == 0;
+    if (of_points)
+      return part[2].str() + " points, 'x, y, z : x, y, z'";
     const std::string number = part[2] == part[3] ? part[2].str() + " values" : "a list of values";
     return number + ", each " + items;
   }
@@ -92,6 +98,49 @@ std::string in_words(const std::string &pattern)
       words += (is_bound(part[2]) ? " and at most " : " of at most ") + part[3].str();
     return words;
   }
+  return "";
+}
+
+bool is_number(const std::string &text)
+{
+  char *end;
+  std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0';
+}
+
+/// What is wrong with a value that is no number, or none of the wanted kind, as far as it is a
+/// usual mistake; empty otherwise.
+/// @param wanted in words
+std::string usual_mistake(const std::string &value, const std::string &wanted)
+{
+  const std::string lookalike = advice_on_lookalikes(value);
+  if (!lookalike.empty())
+    return lookalike;
+  const bool one = wanted.compare(0, 8, "a number") == 0;
+  const bool whole = wanted.compare(0, 14, "a whole number") == 0;
+  if (!one && !whole)
+    return "";
+  const std::size_t comma = value.find(',');
+  if (comma != std::string::npos && comma == value.rfind(',')) {
+    std::string with_point = value;
+    with_point[comma] = '.';
+    if (value.size() < 40 && is_number(with_point))
+      return "Decimals have a point: " + with_point + ".";
+  }
+  const std::size_t end = value.find_first_not_of("0123456789", value.find_first_of("+-") == 0);
+  if (whole && end == std::string::npos)
+    return "At most " + std::to_string(std::numeric_limits<int>::max()) + " is possible.";
+  if (whole && is_number(value))
+    return "Write it in digits alone, without point or exponent.";
+  if (one && is_number(value))
+    return "It must be finite, and below 1.8e308 in size.";
+  char *rest;
+  std::strtod(value.c_str(), &rest);
+  std::string unit = rest;
+  unit.erase(0, unit.find_first_not_of(' '));
+  if (rest != value.c_str() && unit.size() < 12 &&
+      std::isalpha(static_cast<unsigned char>(unit[0])))
+    return "Leave out '" + unit + "': numbers have no units and are in SI units.";
   return "";
 }
 
@@ -155,7 +204,9 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
         exists = false;
         if (!reported.insert(next).second)
           break;
-        std::string mend = suggestion(name, known_at(known).subsections);
+        std::string mend = advice_on_lookalikes(name);
+        if (mend.empty())
+          mend = suggestion(name, known_at(known).subsections);
         for (const RepeatedSections &r : repeated)
           if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
             mend = "Raise '" + r.entry + "', or remove the subsection.";
@@ -176,13 +227,20 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
       declared = false;
     } catch (const std::exception &error) {
       const std::string wanted = wanted_by(error.what());
-      problems.add(place, "is '" + entry.value + "', which does not fit.",
-                   wanted.empty() ? "" : "Give " + wanted + ".");
+      const std::string mistake = usual_mistake(entry.value, wanted);
+      problems.add(place,
+                   entry.value.empty() ? "has no value."
+                                       : "is '" + shortened(entry.value) + "', which does not fit.",
+                   (wanted.empty() ? "" : "Give " + wanted + ".") +
+                       (wanted.empty() || mistake.empty() ? "" : " ") + mistake);
     }
     for (std::size_t k = 0; k < entry.path.size(); ++k)
       prm.leave_subsection();
+    const std::string lookalike = declared ? "" : advice_on_lookalikes(entry.name);
     if (!declared)
-      problems.add(place, "is unknown.", suggestion(entry.name, known_at(entry.path).entries));
+      problems.add(place, "is unknown.",
+                   !lookalike.empty() ? lookalike
+                                      : suggestion(entry.name, known_at(entry.path).entries));
   }
   const std::string complete = complete_text(prm);
   const EntryValues before = values_in(default_input), after = values_in(complete);

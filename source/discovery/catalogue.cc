@@ -1,5 +1,6 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/parameter_input.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/catalogue.h>
 #include <eunoe/processes/process.h>
@@ -157,9 +158,9 @@ std::vector<Effect> select(const std::vector<Effect> &all, const std::vector<std
     for (const std::string &name : *list)
       if (!contains(names, name) && !(list == &wanted && name == "all")) {
         const std::string near = nearest_name(name, names);
-        problems.add(where, "names the effect '" + name + "', which is not in the catalogue.",
-                     near.empty() ? "See eunoe-discovery --list-effects."
-                                  : "Did you mean '" + near + "'?");
+        problems.add(
+            where, "names the effect '" + shortened(name) + "', which is not in the catalogue.",
+            near.empty() ? "See eunoe-discovery --list-effects." : "Did you mean '" + near + "'?");
       }
   const bool takes_all = contains(wanted, "all");
   std::vector<Effect> chosen;

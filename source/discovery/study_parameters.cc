@@ -1,5 +1,6 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/parameter_input.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/discovery/study_parameters.h>
 
 #include <deal.II/base/utilities.h>
@@ -137,10 +138,11 @@ bool is_plain_word(const std::string &name)
 void check_name(const ParameterCheck &check, const Path &path, const std::string &name,
                 std::set<std::string> &names)
 {
-  check.require(is_plain_word(name), path, "name", "is '" + name + "'.",
+  check.require(is_plain_word(name), path, "name", "is '" + shortened(name) + "'.",
                 "Give a word of letters, digits, '_' and '-'.");
   check.require(names.insert(name).second, path, "name",
-                "is '" + name + "', like that of another one.", "Give each its own name.");
+                "is '" + shortened(name) + "', like that of another one.",
+                "Give each its own name.");
 }
 
 /// A file that is named in an input file, or an empty name.

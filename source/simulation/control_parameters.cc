@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/simulation/control_parameters.h>
 
 #include <algorithm>
@@ -49,8 +50,14 @@ void ControlParameters::check(const ParameterCheck &check) const
   check.require(end_control != "iteration" || iteration_end > 0, {section}, "iteration end",
                 "is 0 while 'end control' is 'iteration'.", "Give the number of steps.");
   check.require(output_name.find('/') == std::string::npos && !output_name.empty(), {section},
-                "output name", "is '" + output_name + "'.",
+                "output name", "is '" + shortened(output_name) + "'.",
                 "Give a name without '/'; the folder belongs into 'output path'.");
+  check.require(!output_path.empty(), {section}, "output path", "is empty.",
+                "Name the folder of the results, '.' for the present one.");
+  check.require(output_window[0] <= output_window[1], {section}, "output time interval",
+                "ends at " + format(output_window[1]) + " s, before it begins at " +
+                    format(output_window[0]) + " s.",
+                "Give the beginning first.");
 }
 
 unsigned long long ControlParameters::n_steps() const

@@ -1,3 +1,4 @@
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/simulation/lethe_spellings.h>
 
 #include <algorithm>
@@ -328,7 +329,7 @@ private:
     for (const Refused &rule : refused())
       if (fits(entry.path, rule.path) && entry.name == rule.entry) {
         if (entry.value != rule.harmless)
-          problems.add(place(entry), "is '" + entry.value + "'.", rule.why);
+          problems.add(place(entry), "is '" + shortened(entry.value) + "'.", rule.why);
         return true;
       }
     for (const Ignored &rule : ignored()) {

@@ -1,3 +1,4 @@
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <boost/algorithm/string.hpp>
@@ -47,7 +48,7 @@ void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physic
       for (const Solid &solid : solids)
         all += (all.empty() ? "'" : ", '") + solid.name + "'";
       if (!found)
-        problems.add(place, "there is no wall or solid '" + name + "'.",
+        problems.add(place, "there is no wall or solid '" + shortened(name) + "'.",
                      all.empty() ? "The case has none." : "Name some of " + all + ".");
     }
   }

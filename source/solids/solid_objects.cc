@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/solids/expression_motion.h>
 #include <eunoe/solids/shapes.h>
 #include <eunoe/solids/solid_parameters.h>
@@ -109,7 +110,7 @@ void SolidObjectParameters::check(const ParameterCheck &check) const
     check.require(object.type != "gmsh" || object.file != "none", path, "file name",
                   "is missing while the type is 'gmsh'.", "Name the file, or set type = shape.");
     check.require(object.type != "shape" || named_shapes().has(object.shape), path, "grid type",
-                  "is '" + object.shape + "', which is no shape.",
+                  "is '" + shortened(object.shape) + "', which is no shape.",
                   "Give one of " + named_shapes().names() +
                       ", or set type = dealii for a generator of deal.II.");
     check.require(object.simplex, path, "simplex", "is false.",

@@ -1,4 +1,5 @@
 #include <eunoe/core/problems.h>
+#include <eunoe/core/quoted_text.h>
 
 #include "tabulated.h"
 
@@ -110,11 +111,12 @@ SizeTable read_table(const std::string &file)
 {
   std::ifstream stream(file);
   if (!stream)
-    throw std::invalid_argument("is " + file + ", which cannot be read.");
+    throw std::invalid_argument("is " + shortened(file) + ", which cannot be read.");
   SizeTable table;
   unsigned int number = 0;
   for (std::string line; std::getline(stream, line);) {
-    ++number;
+    if (++number == 1 && line.compare(0, byte_order_mark.size(), byte_order_mark) == 0)
+      line.erase(0, byte_order_mark.size());
     std::replace_if(
         line.begin(), line.end(), [](char c) { return c == ';' || c == ',' || c == '\r'; }, ' ');
     std::istringstream words(line);
@@ -127,11 +129,11 @@ SizeTable read_table(const std::string &file)
       table.diameters.push_back(diameter);
       table.shares.push_back(share);
     } else if (is_row || !table.diameters.empty())
-      throw std::invalid_argument("is " + file + ", whose line " + std::to_string(number) +
-                                  " is not a diameter and a probability.");
+      throw std::invalid_argument("is " + shortened(file) + ", whose line " +
+                                  std::to_string(number) + " is not a diameter and a probability.");
   }
   if (table.diameters.empty())
-    throw std::invalid_argument("is " + file + ", which has no row of numbers.");
+    throw std::invalid_argument("is " + shortened(file) + ", which has no row of numbers.");
   return table;
 }
 
@@ -196,10 +198,13 @@ void SizeDistributionParameters::check_custom(const ParameterCheck &check,
                 function_type == "CDF" ? "decreases, which no CDF does." : "has a negative value.",
                 "Correct the value.");
   const double sum = std::accumulate(read.shares.begin(), read.shares.end(), 0.);
+  const bool is_cdf = function_type == "CDF", in_percent = std::abs(sum - 100.) <= 1.;
   check.require(std::abs(sum - 1.) <= 1e-5, path, of_shares,
-                (function_type == "CDF" ? "ends at " : "sums to ") + format(sum) + ", not " +
-                    (function_type == "CDF" ? "at 1." : "to 1."),
-                "Divide each share by their sum, or correct the one that is wrong.");
+                (is_cdf ? "ends at " : "sums to ") + format(sum) + ", not " +
+                    (is_cdf ? "at 1." : "to 1."),
+                in_percent ? "Shares are no percent: divide each of them by 100."
+                : is_cdf   ? "Divide each share by the last one, or correct the one that is wrong."
+                           : "Divide each share by their sum, or correct the one that is wrong.");
   const auto [low, high] = range_of(*this);
   double within = 0.;
   for (std::size_t c = 0; c < n; ++c) {

@@ -1,3 +1,4 @@
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/solids/shapes.h>
 
 #include <boost/algorithm/string.hpp>
@@ -26,7 +27,7 @@ ShapeArguments::ShapeArguments(const std::string &text)
       char *end;
       groups.back().push_back(std::strtod(cell.c_str(), &end));
       if (cell.empty() || *end != '\0')
-        throw std::invalid_argument("'" + cell + "' is not a number");
+        throw std::invalid_argument("'" + shortened(cell) + "' is not a number");
     }
   }
 }
