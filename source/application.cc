@@ -12,18 +12,19 @@ const ProgramText program = {
     "read and check the case, say what would run (particles, memory, steps, core-hours), run "
     "nothing"};
 
-void print_check(const RunEstimate &estimate, const double time_step, Log &log)
+void print_check(const RunEstimate &estimate, const double time_step, const std::size_t n_warnings,
+                 Log &log)
 {
-  constexpr double bytes_per_particle = 1500.;
-  log.line("The case is in order. It would run with");
+  log.line("It would run with");
   log.line("  particles:  " + format(estimate.most_particles) + " at most, " +
            format(estimate.particles) + " on average");
-  log.line("  memory:     about " + format(estimate.most_particles * bytes_per_particle / 1e6) +
-           " MB for the particles, and 200 MB a rank");
   log.line("  steps:      " + format(estimate.steps) + " of " + format(time_step) + " s");
   log.line("  core-hours: about " + format(estimate.core_seconds() / 3600.) + " (" +
            format(estimate.particle_steps()) + " particle-steps at " +
            format(estimate.speed() / 1e6) + " million a second and core)");
+  log.line(n_warnings == 0
+               ? "The case is in order."
+               : "The case can be run. " + count_of_warnings(n_warnings) + ": see above.");
 }
 
 int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
@@ -48,9 +49,15 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     for (const Problem &warning : problems.warnings())
       log.warning(warning.text());
     // Building the parts finds what reading alone cannot; it writes nothing.
-    simulation = std::make_unique<Simulation>(parameters, comm, log);
+    simulation = std::make_unique<Simulation>(
+        parameters, comm, log, line.check ? Simulation::Purpose::check : Simulation::Purpose::run);
+    const Forecast forecast = simulation->foresee();
+    if (!forecast.problems.empty())
+      throw UserError(forecast.problems);
+    forecast.print(log);
     if (line.check) {
-      print_check(simulation->estimate(), simulation->time_step(), log);
+      print_check(simulation->estimate(), simulation->time_step(),
+                  problems.warnings().size() + forecast.problems.warnings().size(), log);
       return exit_success;
     }
     simulation->open_output();

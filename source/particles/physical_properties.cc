@@ -141,7 +141,13 @@ double PhysicalProperties::rayleigh_time(const double radius, const double densi
 
 double PhysicalProperties::shortest_contact_time(const ParticleType &type) const
 {
-  const double radius = 0.5 * type.sizes.make()->smallest(), overlap = 0.01 * radius;
+  return shortest_contact_time(type, 0.5 * type.sizes.make()->smallest());
+}
+
+double PhysicalProperties::shortest_contact_time(const ParticleType &type,
+                                                 const double radius) const
+{
+  const double overlap = 0.01 * radius;
   const double mass = sphere_mass(radius, type.density);
   const double with_its_like = hertz_tangent_stiffness(
       effective_young_modulus(type.material, type.material), 0.5 * radius, overlap);
@@ -210,6 +216,10 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
 
 void PhysicalProperties::check(const ParameterCheck &check) const
 {
+  check.advise(gravity.x != 0. || gravity.y != 0. || gravity.z != 0. ||
+                   check.is_written({section}, "g"),
+               {section}, "g", "is zero, so that nothing falls.",
+               "Set it, to 0, 0, -9.81 for example, or write 0, 0, 0 if that is meant.");
   for (unsigned int t = 0; t < types.size(); ++t) {
     const ParameterCheck::Path path = {section, type_section(t)};
     types[t].sizes.check(check, path);

@@ -46,7 +46,11 @@ void check_crossings(const std::vector<Solid> &solids, const std::size_t n_given
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
                   Problems &problems)
 {
-  const std::string cells = "subsection 'mesh':";
+  // A process makes its mesh so that only the skin can be to blame.
+  const bool is_own = parameters.process_name == "none";
+  const std::string cells = is_own ? "subsection 'mesh':"
+                                   : "subsection 'model parameters' / subsection 'contact "
+                                     "detection' / entry 'neighborhood threshold':";
   if (domain.smallest_cell_width() < reach)
     problems.add(
         cells,
@@ -54,8 +58,9 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
             format(reach) +
             " m that particles can reach (largest diameter, skin and range of cohesion), so "
             "more than one layer of ghost cells would be needed.",
-        "Use fewer or larger cells (8 to 10 particles a cell are best), or lower the "
-        "'neighborhood threshold'.");
+        is_own ? "Use fewer or larger cells (8 to 10 particles a cell are best), or lower the "
+                 "'neighborhood threshold'."
+               : "Lower the threshold, or make the apparatus larger.");
   for (unsigned int d = 0; d < 3; ++d)
     if (domain.periods().is_periodic(d) && domain.periods().length[d] < 2. * reach)
       problems.add("subsection 'DEM boundary conditions':",

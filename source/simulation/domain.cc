@@ -76,16 +76,23 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
     : comm(comm), mesh_data(std::make_unique<Mesh>(comm)), motion(background.motion)
 {
   Triangulation &triangulation = mesh_data->triangulation;
-  create_mesh(triangulation, background.mesh, comm);
+  check_mesh_size(background.mesh);
+  const auto sketch = background.is_only_looked_at && background.refinement.regions.empty()
+                          ? sketch_of(background.mesh)
+                          : std::nullopt;
+  const MeshParameters &mesh = sketch ? sketch->mesh : background.mesh;
+  create_mesh(triangulation, mesh, comm);
   const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
   lower_corner = to_vec3(bounding_box.get_boundary_points().first);
   upper_corner = to_vec3(bounding_box.get_boundary_points().second);
   MeshBoundary boundary(triangulation);
   const std::set<unsigned int> periodic = join_periodic_ends(boundaries, boundary.sides());
-  triangulation.refine_global(global_refinement(triangulation, background.mesh));
+  triangulation.refine_global(global_refinement(triangulation, mesh));
   for (const RefinementParameters::Region &region : background.refinement.regions)
     refine(triangulation, region);
   measure_cells();
+  if (sketch)
+    take_cells_of(*sketch);
   boundary.refine(triangulation, periodic, box, moves());
   make_boundaries(boundaries, wall_material, boundary, periodic);
 }
@@ -145,6 +152,16 @@ void Domain::measure_cells()
     mesh_data->mapping = std::make_unique<ParticleMapping>();
 }
 
+void Domain::take_cells_of(const BoxSketch &sketch)
+{
+  double number = 1.;
+  for (unsigned int d = 0; d < 3; ++d) {
+    number *= sketch.n_cells[d];
+    cell_width = std::min(cell_width, (upper_corner[d] - lower_corner[d]) / sketch.n_cells[d]);
+  }
+  sketched_cells = static_cast<std::uint64_t>(number);
+}
+
 Domain::~Domain() = default;
 
 bool Domain::contains(const Vec3 &x) const
@@ -167,7 +184,7 @@ int Domain::passed_outlet(const Vec3 &from, const Vec3 &x) const
 
 std::uint64_t Domain::n_cells() const
 {
-  return mesh_data->triangulation.n_global_active_cells();
+  return sketched_cells > 0 ? sketched_cells : mesh_data->triangulation.n_global_active_cells();
 }
 
 std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,

@@ -10,6 +10,7 @@
 #include <deal.II/fe/mapping.h>
 
 #include <memory>
+#include <optional>
 
 namespace eunoe {
 
@@ -39,6 +40,21 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
 /// The text of a file of Gmsh that holds hexahedra; collective. Throws a UserError on every rank
 /// for any other.
 std::string read_background_mesh(const MeshParameters &mesh, MPI_Comm comm);
+
+/// A mesh of equal boxes as a single cell, for those who look at it without particles, and the
+/// numbers of its cells along the axes.
+struct BoxSketch
+{
+  MeshParameters mesh;
+  double n_cells[3];
+};
+
+/// Empty for meshes that are not surely made of equal boxes along the axes.
+std::optional<BoxSketch> sketch_of(const MeshParameters &mesh);
+
+/// Refuses a mesh with too many cells, as far as their number can be known beforehand. Throws a
+/// UserError.
+void check_mesh_size(const MeshParameters &mesh);
 
 /// Makes one of Lethe's cylinders along x around the origin; the side has the boundary id 0, the
 /// ends at the lower and the upper x have 1 and 2.

@@ -1,6 +1,7 @@
 // The background mesh before its refinement: from deal.II's generators or from a file.
 
 #include <eunoe/core/problems.h>
+#include <eunoe/core/quoted_text.h>
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_in.h>
@@ -85,7 +86,7 @@ void create_lethe_mesh(dealii::Triangulation<3> &triangulation, const MeshParame
   const std::set<std::string> kinds = {"cylinder_classic", "cylinder_balanced", "cylinder_squared",
                                        "cylinder_regularized"};
   if (kinds.count(mesh.grid_type) == 0)
-    throw UserError(describe(mesh.path, "grid type") + ": '" + mesh.grid_type +
+    throw UserError(describe(mesh.path, "grid type") + ": '" + shortened(mesh.grid_type) +
                     "' is none of Lethe's own meshes that are known here. Give cylinder_classic, "
                     "cylinder_balanced, cylinder_squared or cylinder_regularized.");
   std::vector<double> numbers;
@@ -97,7 +98,8 @@ void create_lethe_mesh(dealii::Triangulation<3> &triangulation, const MeshParame
   }
   if (numbers.size() != 3 || !(numbers[0] >= 1.) || numbers[0] != std::floor(numbers[0]) ||
       !(numbers[1] > 0.) || !(numbers[2] > 0.))
-    throw UserError(describe(mesh.path, "grid arguments") + ": is '" + mesh.grid_arguments +
+    throw UserError(describe(mesh.path, "grid arguments") + ": is '" +
+                    shortened(mesh.grid_arguments) +
                     "'. Give layers of cells along x : radius : half the length, all positive.");
   create_cylinder(triangulation, mesh.grid_type, static_cast<unsigned int>(numbers[0]), numbers[1],
                   numbers[2]);
@@ -125,9 +127,19 @@ void place(dealii::Triangulation<3> &triangulation, const Placement &placement)
 
 } // namespace
 
-void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh, MPI_Comm comm)
+double expected_cells(const MeshParameters &mesh)
+{
+  return count_coarse_cells(mesh) * std::pow(8., mesh.has_target ? 0 : mesh.refinement);
+}
+
+void check_mesh_size(const MeshParameters &mesh)
 {
   check_size(mesh, count_coarse_cells(mesh), mesh.has_target ? 0 : mesh.refinement);
+}
+
+void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &mesh, MPI_Comm comm)
+{
+  check_mesh_size(mesh);
   try {
     if (mesh.type == "gmsh") {
       std::istringstream stream(read_background_mesh(mesh, comm));
@@ -145,7 +157,7 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
     throw UserError(describe(mesh.path, "") + ": the mesh cannot be made (" +
                     deal_ii_message(error) + "). Check " +
                     (mesh.type == "gmsh"
-                         ? "that the hexahedra of " + mesh.file + " fit together."
+                         ? "that the hexahedra of " + shortened(mesh.file) + " fit together."
                          : "'grid type' and 'grid arguments' against deal.II's GridGenerator."));
   }
   place(triangulation, mesh.placement);

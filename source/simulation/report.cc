@@ -40,10 +40,6 @@ void Simulation::print_overview()
   MPI_Comm_size(comm, &n_ranks);
   log.line("Eunoe " + std::string(version()) + " on " + std::to_string(n_ranks) +
            (n_ranks == 1 ? " rank" : " ranks"));
-  judge_time_step();
-  log.line("Domain: " + std::to_string(domain.n_cells()) + " cells of at least " +
-           format(1e6 * domain.smallest_cell_width()) + " um, " + std::to_string(solids.size()) +
-           " solids and walls, " + std::to_string(domain.outlets().size()) + " outlets");
   output.write("used.prm", parameters.as_input_file());
 }
 

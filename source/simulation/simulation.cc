@@ -2,6 +2,9 @@
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/simulation.h>
 
+#include "announcements.h"
+#include "judgements.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,24 +34,37 @@ std::vector<Process::Field> make_fields(const Parameters &parameters)
 }
 
 /// Null for a process, which makes its own.
-std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm comm)
+std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm comm, Log &log)
 {
   if (parameters.process_name != "none")
     return nullptr;
+  announce_insertion(parameters, log);
   return insertion_methods().make(parameters.insertion.method, parameters.insertion,
                                   parameters.physics, comm);
 }
 
+/// The mesh, with a word before it if its making takes long.
+/// @param is_check whether nothing will run in it
+Background background_of(const Parameters &parameters, const bool is_check, Log &log)
+{
+  Background background = {parameters.mesh, parameters.refinement, parameters.grid_motion.make()};
+  // Insertion by a plane counts the cells.
+  background.is_only_looked_at =
+      is_check && (parameters.process_name != "none" || parameters.insertion.method != "plane");
+  announce_mesh(background, log);
+  return background;
+}
+
 } // namespace
 
-Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log)
+Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const Purpose purpose)
     : parameters(prepare(parameters_)), comm(comm), log(log), start_of_run(MPI_Wtime()),
-      insertion(make_insertion(parameters, comm)),
+      insertion(make_insertion(parameters, comm, log)),
       largest_diameter(insertion ? insertion->largest_diameter()
                                  : parameters.physics.largest_diameter()),
       skin(parameters.model.skin(largest_diameter)),
-      domain({parameters.mesh, parameters.refinement, parameters.grid_motion.make()},
-             parameters.boundaries, parameters.physics.wall_material(), comm),
+      domain(background_of(parameters, purpose == Purpose::check, log), parameters.boundaries,
+             parameters.physics.wall_material(), comm),
       model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
       fields(make_fields(parameters)),
@@ -104,11 +120,8 @@ RunEstimate Simulation::estimate() const
   if (!insertion)
     return parameters.process()->estimate(parameters);
   RunEstimate estimate;
-  const unsigned long long n_steps = parameters.control.n_steps();
-  const unsigned int frequency = parameters.insertion.frequency;
-  estimate.steps = static_cast<double>(n_steps);
-  estimate.most_particles =
-      static_cast<double>(insertion->supply(frequency == 0 ? 1 : 1 + n_steps / frequency));
+  estimate.steps = static_cast<double>(parameters.control.n_steps());
+  estimate.most_particles = static_cast<double>(insertion->supply(number_of_events(parameters)));
   estimate.particles = estimate.most_particles;
   return estimate;
 }

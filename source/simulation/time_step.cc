@@ -1,6 +1,6 @@
 // Whether the time step is small enough for the contacts, and the solids slow enough for it.
 
-#include <eunoe/simulation/simulation.h>
+#include "judgements.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,42 +18,78 @@ constexpr double largest_jump = 0.1;
 /// Steps between two searches below which they cost more than the forces.
 constexpr double fewest_steps_between_searches = 20.;
 
+const std::string time_step_entry = "subsection 'simulation control' / entry 'time step':";
+
+/// The half period of a contact in words.
+std::string share_of_contact(const double steps)
+{
+  return steps >= 1. ? "1/" + format(std::floor(steps)) + " of the stiffest contact's time"
+                     : format(1. / steps) + " times the stiffest contact's time";
+}
+
 } // namespace
 
-void Simulation::judge_time_step()
+void judge_time_step(const Parameters &parameters, const std::vector<DiameterRange> &diameters,
+                     Forecast &forecast)
 {
   const double dt = parameters.control.time_step;
-  for (std::size_t t = 0; t < parameters.physics.types.size(); ++t) {
+  for (std::size_t t = 0; t < diameters.size(); ++t) {
     const ParticleType &type = parameters.physics.types[t];
-    const auto sizes = type.sizes.make();
+    const auto [smallest, largest] = diameters[t];
     const double rayleigh =
-        PhysicalProperties::rayleigh_time(0.5 * sizes->smallest(), type.density, type.material);
-    const double contact = parameters.physics.shortest_contact_time(type);
-    log.line("Particle type " + std::to_string(t) + ": diameters " +
-             format(1e6 * sizes->smallest()) + " to " + format(1e6 * sizes->largest()) +
-             " um; the time step of " + format(dt) + " s is " +
-             format(std::round(1e3 * dt / rayleigh) / 10.) + " % of the Rayleigh time and 1/" +
-             format(std::floor(contact / dt)) + " of the stiffest contact's time");
+        PhysicalProperties::rayleigh_time(0.5 * smallest, type.density, type.material);
+    const double contact = parameters.physics.shortest_contact_time(type, 0.5 * smallest);
+    forecast.facts.push_back("Particle type " + std::to_string(t) + ": diameters " +
+                             format(1e6 * smallest) + " to " + format(1e6 * largest) +
+                             " um; the time step of " + format(dt) + " s is " +
+                             format(std::round(1e3 * dt / rayleigh) / 10.) +
+                             " % of the Rayleigh time and " + share_of_contact(contact / dt));
     if (dt > largest_rayleigh_share * rayleigh)
-      log.warning("the time step exceeds 25 % of the Rayleigh time of particle type " +
-                  std::to_string(t) + "; contacts may gain energy. At most " +
-                  format(largest_rayleigh_share * rayleigh) + " s is advised.");
+      forecast.problems.warn(
+          time_step_entry,
+          "the time step exceeds 25 % of the Rayleigh time of particle type " + std::to_string(t) +
+              "; contacts may gain energy.",
+          "At most " +
+              format(std::min(largest_rayleigh_share * rayleigh, contact / steps_per_contact)) +
+              " s is advised.");
     else if (dt > contact / steps_per_contact)
-      log.warning("the stiffest contact of particle type " + std::to_string(t) + " takes " +
-                  format(contact) + " s, less than ten time steps; it may gain energy. At most " +
-                  format(contact / steps_per_contact) + " s is advised.");
+      forecast.problems.warn(time_step_entry,
+                             "the stiffest contact of particle type " + std::to_string(t) +
+                                 " takes " + format(contact) +
+                                 " s, less than ten time steps; it may gain energy.",
+                             "At most " + format(contact / steps_per_contact) + " s is advised.");
   }
-  const double fastest = fastest_solid();
-  if (fastest > 0.) {
-    // Particles may come towards the solid as fast as it goes.
-    const double steps = std::floor(allowed_displacement / (2. * fastest * dt));
-    log.line("The fastest solid moves at " + format(fastest) +
-             " m/s, for which contacts are searched every " + format(std::max(1., steps)) +
-             " steps");
-    if (steps < fewest_steps_between_searches)
-      log.warning("searches for contacts will take much of the time. A larger 'neighborhood "
-                  "threshold', a smaller time step or a slower solid helps.");
-  }
+}
+
+void judge_searches(const double fastest, const double allowed_displacement, const double time_step,
+                    Forecast &forecast)
+{
+  if (!(fastest > 0.))
+    return;
+  // Particles may come towards the solid as fast as it goes.
+  const double steps = std::floor(allowed_displacement / (2. * fastest * time_step));
+  forecast.facts.push_back("The fastest solid moves at " + format(fastest) +
+                           " m/s, for which contacts are searched every " +
+                           format(std::max(1., steps)) + " steps");
+  if (steps < fewest_steps_between_searches)
+    forecast.problems.warn("subsection 'model parameters' / subsection 'contact detection' / "
+                           "entry 'neighborhood threshold':",
+                           "searches for contacts will take much of the time.",
+                           "A larger 'neighborhood threshold', a smaller time step or a slower "
+                           "solid helps.");
+}
+
+void judge_jump(const double speed, const Parameters &parameters, const std::string &when,
+                Problems &problems)
+{
+  const double step = speed * parameters.control.time_step;
+  const double radius = 0.5 * parameters.physics.smallest_diameter();
+  if (step > largest_jump * radius)
+    problems.add(time_step_entry,
+                 "a solid moves by " + format(step) + " m in a time step" + when +
+                     ", more than a tenth of the " + format(radius) +
+                     " m of the smallest particle's radius, so that it would jump into particles.",
+                 "Lower the time step or the solid's velocity.");
 }
 
 double Simulation::fastest_solid() const
@@ -68,14 +104,7 @@ double Simulation::fastest_solid() const
 
 void Simulation::check_speeds(Problems &problems) const
 {
-  const double step = fastest_solid() * parameters.control.time_step;
-  const double radius = 0.5 * parameters.physics.smallest_diameter();
-  if (step > largest_jump * radius)
-    problems.add("subsection 'simulation control' / entry 'time step':",
-                 "a solid moves by " + format(step) +
-                     " m in a time step, more than a tenth of the " + format(radius) +
-                     " m of the smallest particle's radius, so that it would jump into particles.",
-                 "Lower the time step or the solid's velocity.");
+  judge_jump(fastest_solid(), parameters, "", problems);
 }
 
 void Simulation::compare_time_step(double stiffest)

@@ -36,6 +36,12 @@ public:
   /// Whether the user set an entry to something else than its default.
   bool is_changed(const Path &path, const std::string &entry) const;
 
+  /// Whether the user wrote an entry at all.
+  bool is_written(const Path &path, const std::string &entry) const
+  {
+    return find(path, entry) != nullptr;
+  }
+
   /// Whether the user changed any entry in a subsection of the top level.
   bool has_changes(const std::string &subsection) const;
 

@@ -76,6 +76,10 @@ public:
   /// Places of this rank's share of the particles, where they are known beforehand (m).
   virtual std::vector<Vec3> known_places() const { return {}; }
 
+  /// This rank's share of the particles of the first events, as far as they are known beforehand
+  /// and as they are inserted; of very many on a grid only some.
+  virtual std::vector<std::vector<NewParticle>> known_events() const { return {}; }
+
   /// Passes over the particles of the first events, which have been supplied already.
   /// @param n_particles that they supplied
   virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;

@@ -60,6 +60,8 @@ struct PhysicalProperties : public ParameterSection
   /// Half period of the stiffest contact that a type's smallest particle can have at an overlap of
   /// one hundredth of its radius, with its like or with any material of the case (s).
   double shortest_contact_time(const ParticleType &type) const;
+  /// Likewise of a particle of that type with another radius (m).
+  double shortest_contact_time(const ParticleType &type, double radius) const;
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;

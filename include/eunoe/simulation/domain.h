@@ -89,6 +89,7 @@ struct BoundaryParameters : public ParameterSection
 
 class Enclosure;
 class MeshBoundary;
+struct BoxSketch;
 struct Side;
 
 /// A part of the boundary at which particles leave.
@@ -104,7 +105,13 @@ struct Background
   const MeshParameters &mesh;
   const RefinementParameters &refinement;
   std::shared_ptr<const Motion> motion; ///< null: at rest
+  /// Whether nothing will run in the mesh, so that one of equal boxes need not be made: a single
+  /// cell has the same walls, periods and outlets.
+  bool is_only_looked_at = false;
 };
+
+/// Number of cells of a mesh as far as it can be known before it is made; at least 1.
+double expected_cells(const MeshParameters &mesh);
 
 /// The space in which particles live: the distributed background mesh, its periods, its walls and
 /// outlets.
@@ -169,6 +176,8 @@ private:
     return motion ? frame.rotation.undo(x - frame.centre) : x;
   }
   void measure_cells();
+  /// Number and width of the cells that a sketch stands for.
+  void take_cells_of(const BoxSketch &sketch);
   void make_boundaries(const BoundaryParameters &boundaries, int wall_material,
                        const MeshBoundary &boundary, const std::set<unsigned int> &periodic);
   /// Makes the surfaces of a mesh that is not convex.
@@ -184,6 +193,7 @@ private:
   RigidState pose, earlier;
   Vec3 lower_corner, upper_corner;
   double cell_width = 0.;
+  std::uint64_t sketched_cells = 0; ///< of a mesh that is sketched by a single one
   /// A point and the inward normal of every side of a convex mesh that is not periodic.
   std::vector<std::pair<Vec3, Vec3>> sides;
   std::unique_ptr<Enclosure> enclosure; ///< of any other mesh

@@ -6,6 +6,7 @@
 #include <eunoe/forces/load.h>
 #include <eunoe/observables/observable.h>
 #include <eunoe/particles/particle_ids.h>
+#include <eunoe/simulation/forecast.h>
 #include <eunoe/simulation/integrator.h>
 #include <eunoe/simulation/output_folder.h>
 #include <eunoe/simulation/parameters.h>
@@ -20,10 +21,21 @@ namespace eunoe {
 class Simulation
 {
 public:
+  /// What a simulation is made for.
+  enum class Purpose
+  {
+    run,
+    check ///< to be asked what it would do; a mesh of boxes is only sketched
+  };
+
   /// Builds all parts; writes nothing. Throws a UserError on every rank if the case makes no sense.
   /// Collective, like all that follows.
-  Simulation(Parameters &parameters, MPI_Comm comm, Log &log);
+  Simulation(Parameters &parameters, MPI_Comm comm, Log &log, Purpose purpose = Purpose::run);
   ~Simulation();
+
+  /// What the run would stumble over, and what else is known of it beforehand.
+  /// @param writes whether it would write pictures, tables and checkpoints
+  Forecast foresee(bool writes = true) const;
 
   /// What the run will cost, as far as it can be known.
   RunEstimate estimate() const;
@@ -106,8 +118,6 @@ private:
   /// Looks for particles with something wrong before they are shared out anew; stops the run on all
   /// ranks, or returns the rows of those to take out.
   std::vector<std::size_t> inspect();
-  /// Says how the time step compares with what the contacts and the moving solids need.
-  void judge_time_step();
   /// Largest speed of a solid, as far as it can be known (m/s).
   double fastest_solid() const;
   void check_speeds(Problems &problems) const;

@@ -48,6 +48,14 @@ public:
     return places;
   }
 
+  std::vector<std::vector<NewParticle>> known_events() const override
+  {
+    std::vector<std::vector<NewParticle>> events;
+    for (const Contents &file : files)
+      events.push_back(file.share);
+    return events;
+  }
+
   void skip(std::size_t n, std::size_t) override { n_events = n; }
 
   bool finished() const override { return !repeats && n_events > 0; }

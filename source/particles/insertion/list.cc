@@ -33,18 +33,27 @@ public:
     return places;
   }
 
+  std::vector<std::vector<NewParticle>> known_events() const override { return {particles(1)}; }
+
   void skip(std::size_t n_events, std::size_t) override { done = n_events > 0; }
 
   bool finished() const override { return done; }
 
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
+    done = true;
+    return particles(ids.take(p.list_x.size()));
+  }
+
+private:
+  /// This rank's share of all.
+  std::vector<NewParticle> particles(const ParticleId first) const
+  {
     const auto value = [](const std::vector<double> &list, std::size_t k) {
       return list.empty() ? 0. : list[k];
     };
-    const ParticleId first = ids.take(p.list_x.size());
     const auto [begin, end] = share_of(p.list_x.size(), comm);
-    std::vector<NewParticle> particles;
+    std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle;
       particle.id = first + static_cast<ParticleId>(k);
@@ -57,13 +66,11 @@ public:
       particle.position = {p.list_x[k], p.list_y[k], p.list_z[k]};
       particle.velocity = {value(p.list_vx, k), value(p.list_vy, k), value(p.list_vz, k)};
       particle.spin = {value(p.list_wx, k), value(p.list_wy, k), value(p.list_wz, k)};
-      particles.push_back(particle);
+      share.push_back(particle);
     }
-    done = true;
-    return particles;
+    return share;
   }
 
-private:
   const InsertionParameters p;
   const ParticleType type;
   const std::unique_ptr<SizeDistribution> sizes;

@@ -111,24 +111,38 @@ public:
 
   bool finished() const override { return particles.n_remaining() == 0; }
 
+  std::vector<std::vector<NewParticle>> known_events() const override
+  {
+    constexpr std::size_t most = 50000;
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
+    return {some(1, std::max<std::size_t>(1, n / most))};
+  }
+
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
     const std::size_t n = std::min(of_next_event(), grid.capacity());
-    const ParticleId first = ids.take(n);
-    const auto [begin, end] = share_of(n, comm);
-    std::vector<NewParticle> share;
-    for (std::size_t k = begin; k < end; ++k) {
-      NewParticle p = particles.particle(k, first + static_cast<ParticleId>(k));
-      p.position = grid.point(k, parameters.seed, p.id);
-      p.velocity = parameters.velocity;
-      p.spin = parameters.spin;
-      share.push_back(p);
-    }
+    const std::vector<NewParticle> share = some(ids.take(n), 1);
     particles.take(n);
     return share;
   }
 
 private:
+  /// Every so many of this rank's share of the next event.
+  std::vector<NewParticle> some(const ParticleId first_id, const std::size_t stride) const
+  {
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
+    const auto [begin, end] = share_of(n, comm);
+    std::vector<NewParticle> share;
+    for (std::size_t k = begin; k < end; k += stride) {
+      NewParticle p = particles.particle(k, first_id + static_cast<ParticleId>(k));
+      p.position = grid.point(k, parameters.seed, p.id);
+      p.velocity = parameters.velocity;
+      p.spin = parameters.spin;
+      share.push_back(p);
+    }
+    return share;
+  }
+
   void restrict_grid()
   {
     // A wrong text has been refused when the parameters were checked.

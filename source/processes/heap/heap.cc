@@ -54,9 +54,9 @@ void Heap::prepare(Parameters &parameters)
                                           type.density);
   gravity = -parameters.physics.gravity.y;
   const Apparatus &a = *apparatus;
-  parameters.mesh =
-      box_mesh({-a.half_width, a.y_bottom, -a.half_width}, {a.half_width, a.y_top, a.half_width},
-               largest, parameters.model.skin(largest) + parameters.contact_model(largest).range());
+  parameters.mesh = box_mesh(
+      "heap", {-a.half_width, a.y_bottom, -a.half_width}, {a.half_width, a.y_top, a.half_width},
+      largest, parameters.model.skin(largest) + parameters.contact_model(largest).range());
   parameters.boundaries.conditions.clear();
   for (unsigned int side = 0; side < 6; ++side) {
     BoundaryCondition outlet;

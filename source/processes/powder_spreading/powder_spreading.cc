@@ -40,6 +40,21 @@ void PowderSpreading::check_with(const Parameters &parameters, const ParameterCh
   check.require(p.depth >= 2. * largest, {section}, "depth",
                 "is " + format(p.depth) + " m, less than two of the largest particles.",
                 "Give a larger depth, 2e-3 in the paper.");
+  const double reach =
+      largest + parameters.model.skin(largest) + parameters.contact_model(largest).range();
+  check.require(p.side_walls || p.depth >= 2. * reach || p.depth < 2. * largest, {section}, "depth",
+                "is " + format(p.depth) + " m, less than twice the " + format(reach) +
+                    " m that particles can reach (largest diameter, skin and range of cohesion), "
+                    "so that two particles could touch on both sides of the periodic slice.",
+                "Give a larger depth, 2e-3 in the paper, or a smaller 'neighborhood threshold'.");
+  // Each of its two contacts gives way by a hundredth of the diameter.
+  constexpr double squeezed = 0.98;
+  const double lowest = p.mean_clearance() - 0.5 * p.spreader_tilt - p.vibration_amplitude;
+  check.advise(
+      lowest <= 0. || lowest >= squeezed * largest, {section}, "spreader clearance delta_s",
+      "leaves " + format(lowest) + " m below the spreader, less than the largest grain of " +
+          format(largest) + " m, which cannot pass below it and is pushed along or jams.",
+      "Give a larger clearance, or sieve out the grains with 'maximum diameter cutoff'.");
   // The powder that is there does not depend on how it is dosed.
   const double bed = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
   const double first_bed = std::max(bed, p.first_stroke + p.bed_margin);
@@ -67,7 +82,7 @@ void PowderSpreading::prepare(Parameters &parameters)
   const Apparatus &a = *apparatus;
 
   parameters.mesh =
-      box_mesh({0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
+      box_mesh("powder spreading", {0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
                parameters.model.skin(largest) + parameters.contact_model(largest).range());
 
   set_boundaries(parameters);

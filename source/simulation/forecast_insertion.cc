@@ -1,0 +1,231 @@
+// The insertion before the run: whether particles come, whether they have room, whether they move.
+
+#include <eunoe/contact/contact_grid.h>
+
+#include "../particles/insertion/obstacles.h"
+#include "judgements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace eunoe {
+
+namespace {
+
+const std::string section = "subsection 'insertion info'";
+
+/// Overlap over the radius from which particles are shot off.
+constexpr double doubtful_overlap = 0.1;
+/// Share of its radius that a particle may go in a time step.
+constexpr double largest_way = 0.1;
+/// Most particles of an event whose pairs are looked at.
+constexpr double most_looked_at = 2e6;
+/// Most ids of a run.
+constexpr double most_particles = 4294967294.;
+
+/// All particles of an event, the same on every rank: centres with radii.
+std::vector<Quad> spheres_of_all(const std::vector<NewParticle> &share, MPI_Comm comm)
+{
+  std::vector<Quad> mine, all;
+  for (const NewParticle &p : share)
+    mine.push_back({p.position.x, p.position.y, p.position.z, p.radius});
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  int bytes = static_cast<int>(mine.size() * sizeof(Quad));
+  std::vector<int> counts(n_ranks), starts(n_ranks, 0);
+  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
+  all.resize((starts.back() + counts.back()) / sizeof(Quad));
+  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE,
+                 comm);
+  return all;
+}
+
+/// The deepest overlap that was found.
+struct Overlap
+{
+  double share = 0.; ///< over the smaller radius
+  Vec3 where;
+
+  void take(const double overlap, const double radius, const Vec3 &x)
+  {
+    if (overlap > share * radius) {
+      share = overlap / radius;
+      where = x;
+    }
+  }
+};
+
+/// Of pairs of particles.
+Overlap overlap_of_pairs(const std::vector<Quad> &spheres, const Domain &domain)
+{
+  Overlap deepest;
+  if (spheres.empty())
+    return deepest;
+  double largest = 0.;
+  for (const Quad &sphere : spheres)
+    largest = std::max(largest, sphere.w);
+  const ContactGrid grid(domain.box_from_centre().lower, domain.box_from_centre().upper,
+                         domain.periods(), 2. * largest);
+  std::vector<std::uint64_t> keys;
+  for (const Quad &sphere : spheres)
+    keys.push_back(grid.key(sphere.vec()));
+  std::vector<std::size_t> order(spheres.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
+  });
+  ParticleArrays rows;
+  rows.resize(spheres.size(), 0, 0);
+  for (std::size_t row = 0; row < order.size(); ++row) {
+    rows.position[row] = spheres[order[row]];
+    rows.id[row] = static_cast<ParticleId>(order[row]);
+  }
+  PairList pairs;
+  pairs.clear(0);
+  grid.find_pairs(rows, 0., pairs);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const Quad &a = rows.position[pairs.i[k]], &b = rows.position[pairs.j[k]];
+    const double distance = norm(domain.periods().shortest(a.vec() - b.vec()));
+    deepest.take(a.w + b.w - distance, std::min(a.w, b.w), a.vec());
+  }
+  return deepest;
+}
+
+/// Of particles with the walls and solids that act at the beginning.
+Overlap overlap_with_solids(const std::vector<Quad> &spheres, std::vector<Solid> solids)
+{
+  solids.erase(std::remove_if(solids.begin(), solids.end(),
+                              [](const Solid &solid) { return !solid.is_active(0.); }),
+               solids.end());
+  for (Solid &solid : solids)
+    solid.state = solid.motion->at(0.);
+  std::vector<Vec3> centres;
+  std::vector<double> radii;
+  for (const Quad &sphere : spheres) {
+    centres.push_back(sphere.vec());
+    radii.push_back(sphere.w);
+  }
+  Obstacles obstacles(std::move(solids));
+  obstacles.search(centres, radii, 0, centres.size(), 0.);
+  Overlap deepest;
+  for (std::size_t k = 0; k < centres.size(); ++k) {
+    double overlap = 0.;
+    obstacles.push(k, centres[k], radii[k], overlap);
+    deepest.take(overlap, radii[k], centres[k]);
+  }
+  return deepest;
+}
+
+void judge_overlap(const Overlap &overlap, const std::string &what, const double largest_allowed,
+                   Problems &problems)
+{
+  if (overlap.share <= doubtful_overlap)
+    return;
+  const Vec3 &x = overlap.where;
+  const std::string text = what + " by " + format(overlap.share) +
+                           " of its radius where it is inserted, at (" + format(x.x) + ", " +
+                           format(x.y) + ", " + format(x.z) + ") m, and would be shot off.";
+  const std::string mend = "Correct its place or its diameter.";
+  if (largest_allowed > 0. && overlap.share > largest_allowed)
+    problems.add(section + ":", text, mend);
+  else
+    problems.warn(section + ":", text, mend);
+}
+
+/// Whether the particles of one event are out of the way before the next comes into the same box.
+void judge_interval(const Parameters &parameters, const double largest_diameter, Problems &problems)
+{
+  const InsertionParameters &p = parameters.insertion;
+  const double time = p.frequency * parameters.control.time_step;
+  const double way = norm(p.velocity) * time + 0.5 * norm(parameters.physics.gravity) * time * time;
+  if (way < largest_diameter)
+    problems.warn(section + " / entry 'insertion frequency':",
+                  "between two events, the particles move by no more than " + format(way) +
+                      " m, less than their diameter, so that those of the next come to lie in "
+                      "them.",
+                  "Raise the frequency, which is a number of steps, or the initial velocity.");
+}
+
+void judge_number(const Parameters &parameters, const Insertion &insertion, Problems &problems)
+{
+  double wanted = 0.;
+  for (const ParticleType &type : parameters.physics.types)
+    wanted += type.number;
+  const std::size_t n_events = number_of_events(parameters);
+  const auto coming = static_cast<double>(insertion.supply(n_events));
+  const std::string &method = parameters.insertion.method;
+  const bool counts = method != "list" && method != "file";
+  const std::string number = "subsection 'lagrangian physical properties' / subsection 'particle "
+                             "type 0' / entry 'number of particles':";
+  if (coming > most_particles)
+    problems.add(section + ":", format(coming) + " particles would come into the run.",
+                 "At most " + format(most_particles) + " are possible.");
+  else if (coming == 0. && parameters.solids.objects.empty())
+    problems.add(counts ? number : section + ":",
+                 "no particles come into the run, and there are no solids to be seen.",
+                 "Give a number of particles and an 'insertion info', or name a process.");
+  else if (coming == 0.)
+    problems.warn(counts ? number : section + ":", "no particles come into the run.",
+                  "Give a number of particles and an 'insertion info'.");
+  else if (counts && coming < wanted)
+    problems.warn(section + ":",
+                  "only " + format(coming) + " of " + format(wanted) +
+                      " particles come until the run ends, in " + std::to_string(n_events) +
+                      " events.",
+                  "Let the run last longer, lower 'insertion frequency', or raise 'inserted number "
+                  "of particles at each time step'.");
+}
+
+void judge_speed(const std::vector<NewParticle> &event, const double time_step, MPI_Comm comm,
+                 Problems &problems)
+{
+  double share = 0.;
+  for (const NewParticle &particle : event)
+    share = std::max(share, norm(particle.velocity) * time_step / particle.radius);
+  MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_MAX, comm);
+  if (share > largest_way)
+    problems.warn(section + ":",
+                  "a particle is inserted so fast that it moves by " + format(share) +
+                      " of its radius in a time step and would jump into others.",
+                  "Lower its velocity or the time step.");
+}
+
+} // namespace
+
+void judge_insertion(const Parameters &parameters, const Insertion &insertion,
+                     const std::vector<std::vector<NewParticle>> &events,
+                     const std::vector<Solid> &solids, const Domain &domain, Forecast &forecast)
+{
+  Problems &problems = forecast.problems;
+  judge_number(parameters, insertion, problems);
+  const std::string &method = parameters.insertion.method;
+  if (method == "volume" && !parameters.insertion.removes && number_of_events(parameters) > 1 &&
+      insertion.supply(2) > insertion.supply(1))
+    judge_interval(parameters, insertion.largest_diameter(), problems);
+  Overlap of_pairs, with_solids;
+  for (const std::vector<NewParticle> &event : events) {
+    if (method == "volume") {
+      std::vector<Vec3> places;
+      for (const NewParticle &particle : event)
+        places.push_back(particle.position);
+      check_places(domain, places, domain.communicator(), problems);
+    }
+    judge_speed(event, parameters.control.time_step, domain.communicator(), problems);
+    std::uint64_t n = event.size();
+    MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
+    if (static_cast<double>(n) > most_looked_at)
+      continue;
+    const std::vector<Quad> spheres = spheres_of_all(event, domain.communicator());
+    const Overlap pairs = overlap_of_pairs(spheres, domain),
+                  walls = overlap_with_solids(spheres, solids);
+    of_pairs = pairs.share > of_pairs.share ? pairs : of_pairs;
+    with_solids = walls.share > with_solids.share ? walls : with_solids;
+  }
+  const double largest_overlap = parameters.model.largest_overlap;
+  judge_overlap(of_pairs, "a particle overlaps another", largest_overlap, problems);
+  judge_overlap(with_solids, "a particle overlaps a wall or solid", largest_overlap, problems);
+}
+
+} // namespace eunoe

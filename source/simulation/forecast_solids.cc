@@ -1,0 +1,145 @@
+// The solids of the input before the run: where they are, how large, where they go, how fast.
+
+#include <eunoe/solids/expression_motion.h>
+
+#include "judgements.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe {
+
+namespace {
+
+/// Instants at which a prescribed motion is looked at.
+constexpr unsigned int n_looks = 500;
+/// How much longer than the mesh a solid may be, or shorter.
+constexpr double largest_ratio = 100., smallest_ratio = 1e-3;
+
+std::vector<Vec3> corners_at(const Box &own, const RigidState &state)
+{
+  std::vector<Vec3> corners;
+  for (unsigned int corner = 0; corner < 8; ++corner)
+    corners.push_back(state.centre +
+                      state.rotation.apply({corner & 1 ? own.upper.x : own.lower.x,
+                                            corner & 2 ? own.upper.y : own.lower.y,
+                                            corner & 4 ? own.upper.z : own.lower.z}));
+  return corners;
+}
+
+Box box_at(const Box &own, const RigidState &state)
+{
+  return Box::around(corners_at(own, state));
+}
+
+bool overlap(const Box &a, const Box &b)
+{
+  bool result = true;
+  for (unsigned int d = 0; d < 3; ++d)
+    result = result && a.lower[d] <= b.upper[d] && a.upper[d] >= b.lower[d];
+  return result;
+}
+
+double longest_edge(const Box &box)
+{
+  const Vec3 size = box.upper - box.lower;
+  return std::max({size.x, size.y, size.z});
+}
+
+/// What a solid does in a run.
+struct Path
+{
+  bool meets_mesh = false;
+  double largest_speed = 0., when = 0.; ///< of a corner of its box (m/s, s)
+};
+
+/// The box around the mesh, which may move.
+struct MeshPath
+{
+  Box from_centre;
+  std::shared_ptr<const Motion> motion; ///< null: at rest
+
+  Box at(const double time) const
+  {
+    const Vec3 centre = motion ? motion->at(time).centre : Vec3();
+    return {from_centre.lower + centre, from_centre.upper + centre};
+  }
+};
+
+/// Follows the prescribed motion in few large steps.
+Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, const double duration)
+{
+  const double interval = std::max(duration, 1e-12) / n_looks;
+  const ExpressionMotion motion(object.centre, object.velocity, object.velocity_constants,
+                                object.angular_velocity, object.angular_velocity_constants,
+                                interval);
+  Path path;
+  for (unsigned int k = 0; k <= n_looks; ++k) {
+    const RigidState state = motion.at(k * interval);
+    path.meets_mesh = path.meets_mesh || overlap(box_at(own, state), mesh.at(k * interval));
+    for (const Vec3 &corner : corners_at(own, state)) {
+      const double speed = norm(state.velocity_at(corner));
+      if (speed > path.largest_speed) {
+        path.largest_speed = speed;
+        path.when = k * interval;
+      }
+    }
+  }
+  return path;
+}
+
+void judge_size(const std::string &where, const Box &box, const Box &space, Problems &problems)
+{
+  const double ratio = longest_edge(box) / longest_edge(space);
+  if (ratio > largest_ratio)
+    problems.warn(where,
+                  "the solid is " + format(longest_edge(box)) + " m long, " + format(ratio) +
+                      " times as long as the mesh.",
+                  "All lengths are in metres: 'scale = 0.001' takes a file in millimetres.");
+  else if (ratio < smallest_ratio)
+    problems.warn(
+        where,
+        "the solid is only " + format(longest_edge(box)) + " m long, while the mesh is " +
+            format(longest_edge(space)) + " m long.",
+        "All lengths are in metres; correct its 'scale' or its coordinates, or the mesh.");
+}
+
+} // namespace
+
+double judge_solids(const Parameters &parameters, const std::vector<Solid> &solids,
+                    const Domain &domain, Forecast &forecast)
+{
+  double fastest = 0.;
+  const MeshPath mesh = {domain.box_from_centre(), parameters.grid_motion.make()};
+  const Box space = mesh.at(0.);
+  const double dt = parameters.control.time_step;
+  const double duration = dt * static_cast<double>(parameters.control.n_steps());
+  for (std::size_t k = 0; k < parameters.solids.objects.size(); ++k) {
+    const std::string name = "solid object " + std::to_string(k);
+    const auto solid =
+        std::find_if(solids.begin(), solids.end(), [&](const Solid &s) { return s.name == name; });
+    if (solid == solids.end())
+      continue;
+    const Box own = solid->shape->bounding_box();
+    const Box box = box_at(own, solid->motion->at(0.));
+    forecast.facts.push_back("Solid object " + std::to_string(k) + ": " + describe(box));
+    const std::string where =
+        "subsection 'solid objects' / subsection 'solid surfaces' / subsection '" + name + "':";
+    judge_size(where, box, space, forecast.problems);
+    const Path path = follow(parameters.solids.objects[k], own, mesh, duration);
+    if (!path.meets_mesh)
+      forecast.problems.warn(where,
+                             "the solid lies outside the mesh during the whole run: at the "
+                             "beginning from " +
+                                 describe(box) + ", while the mesh goes from " + describe(space) +
+                                 ".",
+                             "Correct its 'scale' (0.001 for a file in millimetres), its 'initial "
+                             "translation' or its velocity, or enlarge the mesh.");
+    judge_jump(path.largest_speed, parameters, " at t = " + format(path.when) + " s",
+               forecast.problems);
+    fastest = std::max(fastest, path.largest_speed);
+  }
+  return fastest;
+}
+
+} // namespace eunoe
