@@ -1,5 +1,7 @@
 #include <eunoe/core/command_line.h>
 #include <eunoe/core/files.h>
+#include <eunoe/core/machine.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/discovery/application.h>
 #include <eunoe/discovery/measured_csv.h>
@@ -86,6 +88,27 @@ std::unique_ptr<DemLaboratory> open_laboratory(const StudyInput &study, MPI_Comm
   return laboratory;
 }
 
+/// Refuses a study whose folders could not be written to, before hours of runs find that.
+void refuse_folders(const StudyParameters &p, const bool makes_twin, MPI_Comm comm)
+{
+  if (makes_twin)
+    return;
+  Problems problems;
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  for (const auto &[entry, folder] :
+       {std::pair<std::string, std::string>("output path", p.output_path),
+        std::pair<std::string, std::string>("cache path", p.cache_folder())})
+  {
+    const std::string obstacle = broadcast(rank == 0 ? obstacle_to_folder(folder) : "", comm);
+    if (!obstacle.empty())
+      problems.add("subsection 'discovery' / entry '" + entry + "':",
+                   "the folder " + shortened(folder) + " cannot be written to: " + obstacle + ".",
+                   "Choose another folder, or mend the permissions.");
+  }
+  refuse_if_any(problems);
+}
+
 /// Experiments that could be made but were not measured.
 std::vector<std::string> further_experiments(const StudyInput &study)
 {
@@ -146,8 +169,8 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
     return *code;
   Log log(comm, line.quiet);
   StudyInput study;
+  Problems problems;
   try {
-    Problems problems;
     if (wishes.list_observables) {
       list_observables(log);
       return exit_success;
@@ -177,8 +200,10 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
     if (!makes_twin)
       read_data(study, comm, problems);
     refuse_if_any(problems);
+    refuse_folders(study.parameters, makes_twin, comm);
+    const std::size_t n_warnings = print_doubts(study, problems, log);
     if (line.check) {
-      print_check(study, log);
+      print_check(study, n_warnings, log);
       return exit_success;
     }
   } catch (const UserError &error) {

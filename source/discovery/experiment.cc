@@ -29,14 +29,20 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     std::vector<std::string> list = parameters.overrides;
     for (const std::string &line : run_overrides(1))
       list.push_back(line);
-    Parameters of_run = make(list, problems);
-    if (problems.all().size() != n_before)
-      return;
+    Problems found;
+    Parameters of_run = make(list, found);
+    if (!found.empty())
+      throw UserError(found);
     Log silent(comm, true);
-    Simulation simulation(of_run, comm, silent);
+    Simulation simulation(of_run, comm, silent, Simulation::Purpose::check);
     simulation.make_observables();
     described = simulation.described_observables();
     cost = simulation.estimate();
+    const Forecast forecast = simulation.foresee(false);
+    if (!forecast.problems.empty())
+      throw UserError(forecast.problems);
+    for (const auto *list_of_doubts : {&found.warnings(), &forecast.problems.warnings()})
+      doubtful.insert(doubtful.end(), list_of_doubts->begin(), list_of_doubts->end());
   } catch (const UserError &error) {
     problems.add(file + ":", error.what(), "");
     return;

@@ -1,6 +1,7 @@
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/results.h>
+#include <eunoe/simulation/forecast.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -137,13 +138,25 @@ void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &lo
   log.line("The answer is in " + folder.file("discovery.json"));
 }
 
-void print_check(const StudyInput &study, Log &log)
+std::size_t print_doubts(const StudyInput &study, const Problems &problems, Log &log)
+{
+  std::size_t n = problems.warnings().size();
+  for (const Problem &doubt : problems.warnings())
+    log.warning(doubt.text());
+  for (const Experiment &experiment : study.experiments) {
+    n += experiment.doubts().size();
+    for (const Problem &doubt : experiment.doubts())
+      log.warning("Experiment '" + experiment.name() + "': " + doubt.text());
+  }
+  return n;
+}
+
+void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log)
 {
   const StudyOptions &options = study.parameters.options;
   const double n_effects = static_cast<double>(study.n_effects());
   const auto n_factors = static_cast<double>(study.factors.size());
   double runs = 0., core_hours = 0.;
-  log.line("The study is in order.");
   for (const Experiment &experiment : study.experiments) {
     const auto cells = [&](const std::vector<MeasuredCell> &list) {
       return std::count_if(list.begin(), list.end(), [&](const MeasuredCell &m) {
@@ -187,6 +200,9 @@ void print_check(const StudyInput &study, Log &log)
     log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
   log.line("  runs:       about " + format(runs) + " at most");
   log.line("  core-hours: about " + format(core_hours));
+  log.line(n_warnings == 0
+               ? "The study is in order."
+               : "The study can be made. " + count_of_warnings(n_warnings) + ": see above.");
 }
 
 } // namespace eunoe::discovery

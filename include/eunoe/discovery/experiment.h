@@ -24,6 +24,8 @@ public:
   const std::string &process_name() const { return process; }
   const RunEstimate &estimate() const { return cost; }
   const std::vector<ObservableDescription> &observables() const { return described; }
+  /// What is doubtful about the base case and does not forbid the study.
+  const std::vector<Problem> &doubts() const { return doubtful; }
 
   /// Overrides of the case file that put factors at amplitudes: the experiment's own, then
   /// nuisances, then effects, each in the order of names. A factor at its null value, or one that
@@ -42,6 +44,7 @@ private:
   std::string process;
   std::vector<ObservableDescription> described;
   RunEstimate cost;
+  std::vector<Problem> doubtful;
   std::map<std::string, std::string> texts; ///< of the case file and those that it includes
   EntryValues base;                         ///< all entries of the base case
 };

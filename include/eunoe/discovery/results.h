@@ -23,8 +23,12 @@ std::string differences(const EntryValues &before, const EntryValues &after);
 /// Command that makes discovery.html of a folder; empty if the script is not there.
 std::string page_command(const std::string &folder);
 
+/// What is doubtful about a study, as `--check` and the start of the study say it.
+/// @return number of warnings
+std::size_t print_doubts(const StudyInput &study, const Problems &problems, Log &log);
+
 /// What a study would cost, for `--check`; writes it to the log.
-void print_check(const StudyInput &study, Log &log);
+void print_check(const StudyInput &study, std::size_t n_warnings, Log &log);
 
 /// Named effects and the place of the answer.
 void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log);
