@@ -25,11 +25,17 @@ if os.geteuid() == 0:
 LONG = {
     "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
                     "which does not fit. Give a number of at least 0."),
+    "long_value": ("subsection simulation control\nset time step = " + 1000000 * "7 " + "\nend\n",
+                   "... (1999999 characters)', which does not fit."),
+    "long_words": ("subsection insertion info\nsubsection insertion acceptance function\n"
+                   "set Function expression = x +" + 1000000 * "(" + "\nend\nend\n", "is not understood"),
     "long_name": ("set " + 2000000 * "a" + " = 1\n", "' is unknown."),
     "deeply_nested": (40000 * "subsection a\n", "more than 20 subsections are open."),
     "many_unknown_names": ("".join(f"set unknown{k} = 1\n" for k in range(3000)),
                            "entry 'unknown2999' is unknown."),
 }
+# What is quoted from an input is cut short.
+LONGEST_LINE = 2000
 failures = 0
 
 
@@ -60,6 +66,8 @@ def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
             fail(f"{place}: exit code {run.returncode}\n{errors}")
         elif errors.count(sentence) != 1:
             fail(f"{place}: no '{sentence}' in\n{errors}")
+        elif max(len(line) for line in errors.splitlines()) > LONGEST_LINE:
+            fail(f"{place}: it quotes too much of the input")
         elif "Stacktrace" in errors or "terminate called" in errors:
             fail(f"{place}: a stack trace")
 

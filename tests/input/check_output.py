@@ -1,0 +1,214 @@
+"""What --check says of doubtful cases, that the run says the same words at its start, and what is refused.
+
+Usage: check_output.py path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+HANG = 120
+ENTRY = "simulation control/time step"
+# One glass sphere of 1 mm, two steps.
+BASE = """\
+subsection simulation control
+  set time step     = 2e-6
+  set end control   = iteration
+  set iteration end = 2
+  set output path   = results
+end
+subsection mesh
+  set grid type      = subdivided_hyper_rectangle
+  set grid arguments = 4, 4, 4 : 0, 0, 0 : 0.02, 0.02, 0.02 : true
+end
+subsection lagrangian physical properties
+  set g = 0, 0, -9.81
+  subsection particle type 0
+    set diameter                = 1e-3
+    set number of particles     = 1
+    set density particles       = 2500
+    set young modulus particles = 1e8
+  end
+  set young modulus wall = 1e8
+end
+subsection insertion info
+  set insertion box points coordinates = 0.005, 0.005, 0.005 : 0.015, 0.015, 0.015
+end
+"""
+LIST = ["insertion info/insertion method = list", "insertion info/list x = 0.01, 0.01",
+        "insertion info/list y = 0.01, 0.01", "insertion info/list z = 0.01, 0.012"]
+SOLID = ["solid objects/solid surfaces/number of solids = 1",
+         "solid objects/solid surfaces/solid object 0/mesh/type = shape",
+         "solid objects/solid surfaces/solid object 0/mesh/grid type = box"]
+BOX = "solid objects/solid surfaces/solid object 0/mesh/grid arguments = "
+VELOCITY = "solid objects/solid surfaces/solid object 0/translational velocity/Function expression = "
+TYPE = "lagrangian physical properties/particle type 0/"
+FEW = ["insertion info/insertion frequency = 1000",
+       "insertion info/inserted number of particles at each time step = 5", TYPE + "number = 20"]
+OUTSIDE = "the solid lies outside the mesh during the whole run"
+
+# Name: settings, and the warnings that they must give, each once.
+DOUBTFUL = {
+    "nothing doubtful": ([], []),
+    "much too large a step": ([ENTRY + " = 2e-3"],
+                              ["exceeds 25 % of the Rayleigh time of particle type 0"]),
+    "a stiff wall": (["lagrangian physical properties/young modulus wall = 1e13",
+                      TYPE + "poisson ratio particles = 0.45", ENTRY + " = 3.3e-6"],
+                     ["the stiffest contact of particle type 0 takes"]),
+    "small particles in a list": ([*LIST, "insertion info/list diameters = 1e-5, 1e-3"],
+                                  ["exceeds 25 % of the Rayleigh time"]),
+    "no particles but a solid": ([TYPE + "number = 0", *SOLID, BOX + "0.004, 0.004, 0.004 : 0.006, 0.006, 0.006"],
+                                 ["no particles come into the run."]),
+    "a solid in millimetres": ([*SOLID, BOX + "-5000, -5000, 0.001 : 5000, 5000, 5000"],
+                               ["10000 m long, 500000 times as long as the mesh"]),
+    "a solid outside": ([*SOLID, BOX + "1, 1, 1 : 1.01, 1.01, 1.01"], [OUTSIDE]),
+    "a solid that comes in": ([*SOLID, BOX + "0.021, 0.005, 0.005 : 0.022, 0.006, 0.006",
+                               VELOCITY + "-0.1; 0; 0", "simulation control/iteration end = 10000"], []),
+    "a tiny solid": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.00401, 0.00401, 0.00401"],
+                     ["the solid is only 1e-05 m long, while the mesh is 0.02 m long"]),
+    "a fast solid": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.005, 0.005, 0.005", VELOCITY + "5; 0; 0"],
+                     ["searches for contacts will take much of the time"]),
+    "particles that touch": ([*LIST, "insertion info/list z = 0.01, 0.0109"],
+                             ["a particle overlaps another by 0.2 of its radius"]),
+    "a particle in a wall": ([*LIST, "insertion info/list z = 0.0004, 0.01"],
+                             ["a particle overlaps a wall or solid by 0.2 of its radius"]),
+    "a fast particle": (["insertion info/initial velocity = 0, 0, -100"],
+                        ["moves by 0.4 of its radius in a time step"]),
+    "too few events": (FEW, ["only 5 of 20 particles come until the run ends"]),
+    "events upon each other": ([*FEW, "simulation control/iteration end = 4000"],
+                               ["between two events, the particles move by no more than 1.962e-05 m"]),
+    "pictures without end": (["simulation control/output frequency = 1",
+                              "simulation control/iteration end = 2000000"],
+                             ["pictures would be written."]),
+    "two at once": ([ENTRY + " = 2e-3", *SOLID, BOX + "1, 1, 1 : 1.01, 1.01, 1.01"],
+                    ["exceeds 25 % of the Rayleigh time", OUTSIDE]),
+}
+LONG = {"a solid that comes in", "events upon each other", "pictures without end", "too few events"}
+
+# Name: settings, exit code 2, and a part of the sentence.
+REFUSED = {
+    "no particles and no solids": ([TYPE + "number = 0"],
+                                   "no particles come into the run, and there are no solids to be seen."),
+    "particles in one place": ([*LIST, "insertion info/list z = 0.01, 0.0101"],
+                               "a particle overlaps another by 1.8 of its radius"),
+    "a particle deep in a wall": ([*LIST, "insertion info/list z = 0.0001, 0.01"],
+                                  "a particle overlaps a wall or solid by 0.8 of its radius"),
+    "a particle in a solid": ([*LIST, *SOLID, BOX + "0.0101, 0.005, 0.005 : 0.015, 0.015, 0.015"],
+                              "a particle overlaps a wall or solid by 0.8 of its radius"),
+    "a solid that gets too fast": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.005, 0.005, 0.005",
+                                    VELOCITY + "if(t > 5e-6, 500, 0); 0; 0",
+                                    "simulation control/iteration end = 5"],
+                                   "a solid moves by 0.001 m in a time step at t ="),
+    "a path through a file": (["simulation control/output path = case.prm/results"], "case.prm is a file"),
+    "too many particles": (["insertion info/insertion method = plane", "insertion info/insertion frequency = 1",
+                            "insertion info/insertion plane point = 0.01, 0.01, 0.01",
+                            "lagrangian physical properties/number of particle types = 3",
+                            *(f"lagrangian physical properties/particle type {k}/number = 2000000000"
+                              for k in range(3))], "At most 4.29497e+09 are possible."),
+}
+
+# Name, file, settings, a warning, and the number of all.
+PROCESSES = [
+    ("clearance", "prm/spreading/quickstart.prm", ["powder spreading/spreader clearance delta_s = 60e-6"],
+     "leaves 6e-05 m below the spreader, less than the largest grain of 0.000101096 m", 1),
+    ("tilt", "prm/spreading/quickstart.prm", ["powder spreading/spreader tilt = 60e-6"],
+     "leaves 7e-05 m below the spreader", 1),
+    ("coarse step", "prm/spreading/quickstart.prm", [ENTRY + " = 1e-5"],
+     "exceeds 25 % of the Rayleigh time of particle type 0", 2),
+    ("too wide for the machine", "prm/spreading/PS1_L4.prm", ["powder spreading/depth = 0.5"],
+     "Memory: the run needs about", 1),
+]
+failures = 0
+
+
+def fail(name: str, text: str) -> None:
+    global failures
+    failures += 1
+    print(f"{name}: {text}")
+
+
+def call(program: str, file: Path | str, *options: str, settings: list[str], cwd: Path) -> tuple[int, str, str]:
+    words = [word for setting in settings for word in ("--set", setting)]
+    try:
+        done = subprocess.run([program, str(file), *options, *words], cwd=cwd, text=True,
+                              capture_output=True, check=False, timeout=HANG)
+    except subprocess.TimeoutExpired:
+        return -1, "", "it hangs"
+    return done.returncode, done.stdout, done.stderr
+
+
+def warnings(text: str) -> list[str]:
+    return [line for line in text.splitlines() if line.startswith("Warning: ")]
+
+
+def last_line(n_warnings: int) -> str:
+    if n_warnings == 0:
+        return "The case is in order."
+    count = "There is 1 warning" if n_warnings == 1 else f"There are {n_warnings} warnings"
+    return f"The case can be run. {count}: see above."
+
+
+def check_doubtful(program: str, folder: Path) -> None:
+    for name, (settings, expected) in DOUBTFUL.items():
+        code, out, errors = call(program, "case.prm", "--check", settings=settings, cwd=folder)
+        found = warnings(out)
+        if code != 0 or errors:
+            fail(name, f"exit code {code}\n{out}{errors}")
+        elif len(found) != len(expected) or any(sum(text in line for line in found) != 1 for text in expected):
+            fail(name, f"{expected} and nothing else should be in\n{out}")
+        elif out.splitlines()[-1] != last_line(len(expected)):
+            fail(name, f"the last line is {out.splitlines()[-1]}")
+        if (folder / "results").exists():
+            fail(name, "a check has written something")
+        if name not in LONG:
+            code, out, errors = call(program, "case.prm", settings=settings, cwd=folder)
+            if [line for line in warnings(out) if line not in found] or not set(found) <= set(warnings(out)):
+                fail(name, f"the run says something else than\n{found}\n{out}{errors}")
+            shutil.rmtree(folder / "results", ignore_errors=True)
+
+
+def check_refused(program: str, folder: Path) -> None:
+    for name, (settings, sentence) in REFUSED.items():
+        for options in (["--check"], []):
+            code, out, errors = call(program, "case.prm", *options, settings=settings, cwd=folder)
+            if code != 2 or errors.count(sentence) != 1 or (folder / "results").exists():
+                fail(name, f"exit code {code}, no '{sentence}' in\n{out}{errors}")
+    (folder / "empty.prm").write_text("")
+    code, out, errors = call(program, "empty.prm", settings=[], cwd=folder)
+    if code != 2 or "no particles come into the run" not in errors:
+        fail("an empty file", f"exit code {code}\n{out}{errors}")
+
+
+def check_processes(program: str, folder: Path) -> None:
+    for name, file, settings, sentence, number in PROCESSES:
+        code, out, errors = call(program, ROOT / file, "--check", settings=settings, cwd=folder)
+        if code != 0 or sentence not in out or out.splitlines()[-1] != last_line(number):
+            fail(name, f"exit code {code}, no '{sentence}' in\n{out}{errors}")
+
+
+def main(program: str, folder: Path) -> int:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    (folder / "case.prm").write_text(BASE)
+    check_doubtful(program, folder)
+    check_refused(program, folder)
+    check_processes(program, folder)
+    # Without a word on gravity nothing falls, which may be meant and must then be written.
+    (folder / "floating.prm").write_text(BASE.replace("  set g = 0, 0, -9.81\n", ""))
+    _, out, _ = call(program, "floating.prm", "--check", settings=[], cwd=folder)
+    if len(warnings(out)) != 1 or "entry 'g' (left at its default) is zero" not in out:
+        fail("no gravity", out)
+    _, out, _ = call(program, "floating.prm", "--check", cwd=folder,
+                     settings=["lagrangian physical properties/g = 0, 0, 0"])
+    if warnings(out):
+        fail("no gravity, and it is meant", out)
+    print(f"{len(DOUBTFUL)} doubtful, {len(REFUSED)} refused cases")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
