@@ -25,6 +25,15 @@ subsection simulation control
   set time end = 1e-4
   set output path = results
 end
+subsection lagrangian physical properties
+  set g = 0, 0, -9.81
+end
+subsection insertion info
+  set insertion method = list
+  set list x = 0
+  set list y = 0
+  set list z = 0
+end
 PRM
 # The time step is right for the particles, but not for a wall a million times stiffer, nor for an
 # impact at 20 m/s.
