@@ -1,11 +1,9 @@
 #include <eunoe/application.h>
-#include <eunoe/core/mpi_settings.h>
 
 #include <deal.II/base/mpi.h>
 
 int main(int argc, char **argv)
 {
-  eunoe::choose_mpi_settings();
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   return eunoe::run_particles(argc, argv, MPI_COMM_WORLD);
 }

@@ -68,8 +68,7 @@ std::string find_defect(const std::map<int, std::size_t> &numbers)
   if (numbers.count(gmsh::hexahedron) == 0)
     return "has " + (flat.empty() ? "no cells" : flat + " and no volume") +
            ". Mesh the volume ('gmsh -3'); if there are physical groups, Gmsh saves only what is "
-           "in "
-           "one, so that the volume needs a 'Physical Volume'." +
+           "in one, so that the volume needs a 'Physical Volume'." +
            advice;
   if (has_triangles)
     return "has " + flat + " beside its hexahedra, whose faces are quadrilaterals." + advice;
