@@ -12,6 +12,8 @@ namespace eunoe {
 namespace {
 
 constexpr int tag_here = 341;
+/// What a message takes at most, and a rank that speaks and ends all (s).
+constexpr double time_for_messages = 1., time_to_end = 10.;
 
 /// Asks again and again, without taking the processor from those who work.
 bool wait_for(const double seconds, const std::function<bool()> &is_done)
@@ -58,7 +60,6 @@ bool Departure::is_preceded() const
     MPI_Isend(nullptr, 0, MPI_BYTE, later, tag_here, comm, &request);
     MPI_Request_free(&request);
   }
-  constexpr double time_for_messages = 1.;
   return wait_for(time_for_messages, [this] {
     int is_there;
     MPI_Iprobe(MPI_ANY_SOURCE, tag_here, comm, &is_there, MPI_STATUS_IGNORE);
@@ -74,7 +75,7 @@ void Departure::leave(const std::string &sentence, const double patience) const
   }
   if (is_preceded())
     // That one speaks and ends all.
-    wait_for(patience, [] { return false; });
+    wait_for(time_to_end, [] { return false; });
   else
     std::fprintf(stderr, "%s\n", sentence.c_str());
   std::fflush(stderr);
