@@ -79,15 +79,19 @@ class Run:
 
 
 def result(folder: Path) -> dict[str, float] | None:
-    """Densities by layer of a finished run, their mean, and what the run took."""
+    """Densities by layer of a finished run, their mean, what a stroke feeds, and what the run took."""
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
         with open(folder / "layers.csv", newline="", encoding="utf-8") as file:
-            values = {f"LRD of layer {row['layer']}": float(row["LRD"]) for row in csv.DictReader(file)
-                      if row["LRD"]}
+            rows = list(csv.DictReader(file))
+        values = {f"LRD of layer {row['layer']}": float(row["LRD"]) for row in rows if row["LRD"]}
+        # What a stroke brings: it stays on the plate, or leaves.
+        lost = sum(float(row[name]) for row in rows[1:] for name in ("mass_to_gap", "mass_to_collector"))
+        fed = (float(rows[-1]["mass"]) - float(rows[0]["mass"]) + lost) / (len(rows) - 1)
     except (OSError, ValueError):
         return None
     values["mean LRD"] = statistics.mean(values.values())
+    values["fed mass (ug)"] = fed * 1e9
     values["million particle-steps"] = (summary["particle_steps_per_second"]
                                         * summary["loop_seconds"] / 1e6)
     return values
