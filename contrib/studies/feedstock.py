@@ -112,7 +112,7 @@ def spread(values: list[float]) -> float:
 
 def cell(values: list[float], reference: list[float]) -> str:
     """Mean and standard deviation, and how far the mean is from the reference's in standard errors."""
-    text = f"{statistics.mean(values):.3f}" + (f" ± {spread(values):.3f}" if len(values) > 1 else "")
+    text = f"{statistics.mean(values):.3g}" + (f" ± {spread(values):.2g}" if len(values) > 1 else "")
     error = math.hypot(*(spread(v) / math.sqrt(len(v)) for v in (values, reference))) if reference else 0.
     if error > 0.:
         text += f" ({(statistics.mean(values) - statistics.mean(reference)) / error:+.1f})"
