@@ -2,6 +2,7 @@
 // plane of the contact: opposite spins lose mu_r R_e times the normal impulse, equal spins nothing.
 // With a torque in proportion to the speed of rolling the relative spin of two unlike spheres
 // decays exponentially with the impulse, and their angular momentum is kept.
+// EPSD's dashpot takes the effective inertia of both.
 
 #include "../spheres.h"
 
@@ -73,6 +74,33 @@ void check_viscous()
                  momentum(a, b), 1e-12);
 }
 
+/// One short step of two unlike spheres that overlap and turn: EPSD's spring is not yet there, its
+/// dashpot is 2 eta_r sqrt(I_r k_r) with k_r = 2.25 k_n (mu_r R_e)^2, where I_r has 7/5 m R^2 of
+/// each.
+void check_epsd_dashpot()
+{
+  Scene s;
+  s.rolling = "epsd";
+  s.particle.rolling_friction = 0.02;
+  s.particle.rolling_viscous_damping = 0.3;
+  const double overlap = 1e-6, w = 1300.;
+  Sphere a = {{}, {}, {0., 1000., 0.}, 2. * radius}, b = {{}, {}, {0., -300., 0.}, 1.2 * radius};
+  b.x.x = a.radius() + b.radius() - overlap;
+  s.spheres = {a, b};
+  s.time_step = s.time_end = 1e-9;
+  const auto half = [](double x, double y) { return x * y / (x + y); };
+  const double r = half(a.radius(), b.radius());
+  const double normal = Impact(s.particle, s.particle, 1., r, 0.).stiffness * std::sqrt(overlap);
+  const double arm = s.particle.rolling_friction * r;
+  const double torque = 2. * s.particle.rolling_viscous_damping *
+                        std::sqrt(3.5 * half(s.inertia(a), s.inertia(b)) * 2.25 * normal) * arm * w;
+  const std::vector<Sphere> after = run(s);
+  check_relative("epsd, unlike spheres: dashpot on the first", after[0].w.y - a.w.y,
+                 -torque * s.time_step / s.inertia(a), 1e-4);
+  check_relative("epsd, unlike spheres: dashpot on the second", after[1].w.y - b.w.y,
+                 torque * s.time_step / s.inertia(b), 1e-4);
+}
+
 void check_floor()
 {
   const double w = 2000.;
@@ -94,5 +122,6 @@ int main(int argc, char **argv)
         check_pair(std::string("pair along ") + "xyz"[n] + ", spin about " + "xyz"[t] + ": ",
                    axes[n], axes[t]);
   check_viscous();
+  check_epsd_dashpot();
   check_floor();
 }
