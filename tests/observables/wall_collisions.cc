@@ -53,7 +53,7 @@ void test_restitution()
   const Table table = table_of(s, "collision_statistics.csv");
   check("several collisions", table.rows.size() >= 3);
   check("columns", table.columns.size() == 17 && table.columns[end_v] == "end_v_x");
-  bool in_turn = true, untouched = true;
+  bool in_turn = true, untouched = true, before_touch = true;
   double worst = 0., last_end = 0., last_v = -2.;
   for (std::size_t k = 0; k < table.rows.size(); ++k) {
     const auto &row = table.rows[k];
@@ -61,7 +61,7 @@ void test_restitution()
               row[wall] == (k % 2 == 0 ? 4. : 5.) && row[start_time] > last_end &&
               row[end_time] > row[start_time];
     worst = std::max(worst, std::abs(-row[end_v + 2] / row[start_v + 2] - 0.8));
-    worst = std::max(worst, std::abs(row[start_v + 2] - last_v));
+    before_touch = before_touch && row[start_v + 2] == last_v;
     untouched = untouched && row[start_v] == 0.1 && row[end_v] == 0.1 && row[start_w + 2] == 7. &&
                 row[end_w + 2] == 7.;
     last_end = row[end_time];
@@ -69,6 +69,8 @@ void test_restitution()
   }
   check("walls in turn, one line each", in_turn);
   check_close("restitution on every line", worst, 0., 2e-4);
+  // Nothing acts between two walls.
+  check("a collision begins with the velocity that the last one left", before_touch);
   check("without friction nothing else changes", untouched);
 }
 

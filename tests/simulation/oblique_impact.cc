@@ -115,6 +115,37 @@ void spinning_pair(const std::string &name, const Vec3 &normal, const Vec3 &turn
   check_relative(name + "restitution", dot(after[1].v - after[0].v, normal), v, 1e-3);
 }
 
+/// Two unlike spheres meet off their line and slide throughout: friction takes mu (1 + e) of the
+/// normal momentum along the slip, and each turns by its own radius times that over its inertia.
+void unlike_pair()
+{
+  const double mu = 0.1, e = 0.98, v_n = 1., v_t = 1.;
+  Scene s = scene(70e9, 0.33, 2700., mu, e);
+  s.floor = false;
+  const Vec3 normal = {0.6, 0., 0.8}, along = {-0.8, 0., 0.6}, axis = cross(normal, along);
+  Sphere a = {{}, v_n * normal + v_t * along, {}, 2. * radius}, b = {{}, {}, {}, 0.8 * radius};
+  b.x = (a.radius() + b.radius()) * normal;
+  s.spheres = {a, b};
+  const auto half = [](double x, double y) { return x * y / (x + y); };
+  const double mass = half(s.mass(a), s.mass(b)), r = half(a.radius(), b.radius());
+  const double duration = Impact(s.particle, s.particle, mass, r, v_n).duration();
+  s.time_step = duration / 10000.;
+  s.time_end = 1.5 * duration;
+  const std::vector<Sphere> after = run(s);
+  // They pass each other while they touch, so the line of the centres turns.
+  const double pair_tolerance = 0.01, impulse = mu * (1. + e) * mass * v_n;
+  check_relative("unlike spheres: velocity along", dot(after[1].v, along), impulse / s.mass(b),
+                 pair_tolerance);
+  check_relative("unlike spheres: spin of the first", dot(after[0].w, axis),
+                 -a.radius() * impulse / s.inertia(a), pair_tolerance);
+  check_relative("unlike spheres: spin of the second", dot(after[1].w, axis),
+                 -b.radius() * impulse / s.inertia(b), pair_tolerance);
+  // The same force acts on both with arms of their radii, whatever the law.
+  check_relative("unlike spheres: ratio of the spins",
+                 dot(after[0].w, axis) / dot(after[1].w, axis),
+                 a.radius() * s.inertia(b) / (b.radius() * s.inertia(a)), 1e-12);
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -123,6 +154,7 @@ int main(int argc, char **argv)
   oblique("alumina", 380e9, 0.23, 4000.);
   oblique("aluminium alloy", 70e9, 0.33, 2700.);
   spin_on_floor();
+  unlike_pair();
   const Vec3 axes[] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}};
   for (unsigned int n = 0; n < 3; ++n)
     for (unsigned int t = 0; t < 3; ++t)
