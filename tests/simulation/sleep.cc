@@ -211,11 +211,11 @@ void test_grains()
   Story plate;
   plate.name = "the plate under a column sinks";
   plate.grains = column(4);
-  plate.plate = "0; if(t>0.2, -0.02, 0); 0";
+  plate.plate = "0; if(t>0.2, -0.009, 0); 0";
   tell(plate, 0, regular, [&](const Course &c, bool) {
     double worst = 0.;
     for (std::size_t k = 0; k < c.end.size(); ++k)
-      worst = std::max(worst, norm(c.end[k] - c.before[k] + Vec3{0., 0.02 * 0.1, 0.}));
+      worst = std::max(worst, norm(c.end[k] - c.before[k] + Vec3{0., 0.009 * 0.1, 0.}));
     check_close(plate.name + ": all go with it", worst / diameter, 0., regular);
   });
 
