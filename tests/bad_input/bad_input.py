@@ -42,7 +42,7 @@ failures = 0
 def fail(text: str) -> None:
     global failures
     failures += 1
-    print(text)
+    print(text, flush=True)
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -128,7 +128,7 @@ failures = 0
 def fail(name: str, text: str) -> None:
     global failures
     failures += 1
-    print(f"{name}: {text}")
+    print(f"{name}: {text}", flush=True)
 
 
 def call(program: str, file: Path | str, *options: str, settings: list[str], cwd: Path) -> tuple[int, str, str]:
