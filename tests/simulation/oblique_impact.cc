@@ -122,7 +122,8 @@ void unlike_pair()
   const double mu = 0.1, e = 0.98, v_n = 1., v_t = 1.;
   Scene s = scene(70e9, 0.33, 2700., mu, e);
   s.floor = false;
-  const Vec3 normal = {0.6, 0., 0.8}, along = {-0.8, 0., 0.6}, axis = cross(normal, along);
+  const Vec3 normal = Vec3{2., 3., 6.} / 7., along = Vec3{3., -6., 2.} / 7.,
+             axis = cross(normal, along);
   Sphere a = {{}, v_n * normal + v_t * along, {}, 2. * radius}, b = {{}, {}, {}, 0.8 * radius};
   b.x = (a.radius() + b.radius()) * normal;
   s.spheres = {a, b};
@@ -143,7 +144,7 @@ void unlike_pair()
   // The same force acts on both with arms of their radii, whatever the law.
   check_relative("unlike spheres: ratio of the spins",
                  dot(after[0].w, axis) / dot(after[1].w, axis),
-                 a.radius() * s.inertia(b) / (b.radius() * s.inertia(a)), 1e-12);
+                 a.radius() * s.inertia(b) / (b.radius() * s.inertia(a)), 1e-10);
 }
 
 } // namespace
