@@ -71,11 +71,18 @@ void test_carried()
 void test_time_end()
 {
   const double end = 0.04;
-  const std::string rest = box + powder(1e-3, 0.5, 0.3, "0, -9.81, 0") +
-                           grid_motion(" set motion type = translational\n"
-                                       " set grid translational velocity x = 2\n"
-                                       " set grid translational velocity y = -1\n") +
-                           flying({2., -1., 0.});
+  const std::string rest =
+      box + powder(1e-3, 0.5, 0.3, "0, -9.81, 0") +
+      grid_motion(" set motion type = translational\n"
+                  " set grid translational velocity x = 2\n"
+                  " set grid translational velocity y = -1\n") +
+      "subsection lagrangian physical properties\n"
+      " subsection particle type 0\n  set number of particles = 500\n end\nend\n"
+      "subsection insertion info\n set insertion method = volume\n"
+      " set insertion box points coordinates = -5e-3, -5e-3, -5e-3"
+      " : 5e-3, 5e-3, 5e-3\n set insertion distance threshold = 1.2\n"
+      " set insertion maximum offset = 0.1\n"
+      " set initial velocity = 2, -1, 0\nend\n";
   const auto result_at_end = [&](double time_end, const std::string &more, MPI_Comm comm) {
     Table table;
     Case test_case(control(1e-5, time_end) + rest + more, comm);
@@ -88,7 +95,7 @@ void test_time_end()
   const Table whole = run_alone_and_together<Table>(
       "heap in a carried box", [&](MPI_Comm comm) { return result_at_end(end, "", comm); });
   check(
-      "they lie on the floor", whole.size() == 125 && [&] {
+      "they lie on the floor", whole.size() == 500 && [&] {
         double height = 0.;
         for (const auto &row : whole)
           height += (row[c_y] - (-6e-3 - end)) / static_cast<double>(whole.size());
