@@ -28,7 +28,8 @@ LONG = {
     "long_value": ("subsection simulation control\nset time step = " + 1000000 * "7 " + "\nend\n",
                    "... (1999999 characters)', which does not fit."),
     "long_words": ("subsection insertion info\nsubsection insertion acceptance function\n"
-                   "set Function expression = x + " + 1000000 * "y" + "\nend\nend\n", "is not understood"),
+                   "set Function expression = x + " + 1000000 * "y" + "\nend\nend\n",
+                   "... (1000004 characters)' is not understood."),
     "long_name": ("set " + 2000000 * "a" + " = 1\n", "' is unknown."),
     "deeply_nested": (40000 * "subsection a\n", "more than 20 subsections are open."),
     "many_unknown_names": ("".join(f"set unknown{k} = 1\n" for k in range(3000)),
