@@ -8,9 +8,10 @@ Usage: contrib/studies/feedstock.py path/to/eunoe-particles folder [--layers 3] 
 The apparatus is that of the micro-spreading with a plate of 1.5 mm x 0.25 mm, of which a stroke feeds 2.7 times
 what a layer takes (the paper's 5.7 times); friction, rolling friction and cohesion are those of property set
 PS1, the grains soft as in all micro experiments. The reservoir is only 0.8 mm long, so that its walls count
-for far more than in the apparatus. Seeds draw sizes and places anew. A run that has finished is not run again.
+for far more than in the apparatus; so the depth of the bed is asked of a longer one, too, of 4 mm, before a
+plate of 4 mm, of which a stroke feeds 5 times what a layer takes. Seeds draw sizes and places anew. A run that has finished is not run again.
 feedstock.md in the folder has means and standard deviations of single runs over the seeds; in brackets the
-difference from the first row in its standard errors.
+difference from the first row of the same reservoir in its standard errors.
 """
 
 from __future__ import annotations
@@ -37,7 +38,6 @@ SETTINGS = {
     MODEL + "particle particle contact force method": "DMT",
     MODEL + "particle wall contact force method": "DMT",
     MODEL + "contact detection/neighborhood threshold": 1.13,
-    SPREADING + "measuring plate length W3": 1.5e-3,
     SPREADING + "depth": 0.25e-3,
     SPREADING + "feedstock bed depth": 0,
 }
@@ -49,14 +49,26 @@ class Feed:
 
     velocity: float  # of the platform (mm/s)
     margin: float  # left in the reservoir (mm)
+    reservoir: float = 0.8  # its length (mm)
+
+    @property
+    def plate(self) -> float:
+        """Length of the measuring plate (mm)."""
+        return 1.5 if self.reservoir < 1. else self.reservoir
+
+    @property
+    def spreader(self) -> float:
+        """Radius of the spreader (mm), for what lies before it."""
+        return 0.4 if self.reservoir < 1. else 1.5
 
     def __str__(self) -> str:
-        return f"{self.velocity:g} mm/s, margin {self.margin:g} mm"
+        return f"reservoir of {self.reservoir:g} mm, {self.velocity:g} mm/s, margin {self.margin:g} mm"
 
 
 # The first, and what differs from it in one thing. That 0.2 mm, three grains, are left below the stroke makes
 # the platform felt more than the 1 mm of the paper's procedure, and is cheap.
-FEEDS = (Feed(11., 0.2), Feed(11., 1.), Feed(2., 0.2))
+FEEDS = (Feed(11., 0.2), Feed(11., 1.), Feed(2., 0.2),
+         Feed(11., 1., 4.), Feed(11., 2.4, 4.))
 
 
 @dataclass(frozen=True)
@@ -66,13 +78,17 @@ class Run:
 
     @property
     def name(self) -> str:
-        return f"velocity{self.feed.velocity:g}_margin{self.feed.margin:g}_seed{self.seed}"
+        feed = self.feed
+        return f"reservoir{feed.reservoir:g}_velocity{feed.velocity:g}_margin{feed.margin:g}_seed{self.seed}"
 
     def command(self, options: argparse.Namespace) -> list[str]:
         settings = {**SETTINGS,
                     SPREADING + "number of layers": options.layers,
                     SPREADING + "feedstock platform velocity": f"{self.feed.velocity:g}e-3",
                     SPREADING + "feedstock margin": f"{self.feed.margin:g}e-3",
+                    SPREADING + "feedstock platform length W1": f"{self.feed.reservoir:g}e-3",
+                    SPREADING + "measuring plate length W3": f"{self.feed.plate:g}e-3",
+                    SPREADING + "spreader radius R_s": f"{self.feed.spreader:g}e-3",
                     "simulation control/output path": options.folder / self.name}
         return [options.program, str(CASE), "--seed", str(self.seed),
                 *(word for entry, value in settings.items() for word in ("--set", f"{entry} = {value}"))]
@@ -126,7 +142,8 @@ def as_markdown(found: dict[Feed, list[dict[str, float]]]) -> str:
     for feed in FEEDS:
         if feed not in found:
             continue
-        runs, others = found[feed], found.get(FEEDS[0], []) if feed != FEEDS[0] else []
+        first = next(other for other in FEEDS if other.reservoir == feed.reservoir)
+        runs, others = found[feed], found.get(first, []) if feed != first else []
         cells = [cell([run[name] for run in runs], [run[name] for run in others]) for name in names]
         lines.append(f"| {feed} | {len(runs)} | " + " | ".join(cells)
                      + f" | {statistics.mean(run[cost] for run in runs):.0f} |")

@@ -23,7 +23,7 @@ from eunoe_pictures.rules import RULES  # noqa: E402
 
 EXPLAINING = {"meaning", "means", "holds", "keys", "task", "what it does", "what to do", "what differs",
               "what may be behind it", "what is at work", "shares out", "particles come", "formula", "why",
-              "effect to expect", "how Eunoe avoids it", "test", "read", "rule"}
+              "effect to expect", "it says", "how Eunoe avoids it", "test", "read", "rule"}
 MADE_BY = re.compile(r"\b[Mm]ade by (?P<command>(?:[^.]|\.(?=\S))*?) at revisions? "
                      r"(?P<revisions>[0-9a-f]{7}\b(?:(?:, | and )[0-9a-f]{7}\b)*)"
                      r"(?P<processor> on an? (?:AMD|Intel)\b)?")
