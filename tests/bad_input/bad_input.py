@@ -118,10 +118,14 @@ def spoil_checkpoints(program: str, folder: Path) -> None:
 def accept_meshes(program: str) -> None:
     """What the sentences advise is taken: hexahedra in the formats of Gmsh, also of cut tetrahedra."""
     meshes = sorted((HERE.parent / "meshes" / "gmsh").glob("*.msh"))
+    settings = {"lagrangian physical properties/particle type 0/number of particles": 1,
+                "insertion info/insertion method": "list",
+                **{f"insertion info/list {axis}": 0.5 for axis in "xyz"}}
     for mesh in meshes:
-        run = subprocess.run([program, "mesh_of_tetrahedra.prm", "--check", "--set",
-                              f"mesh/file name = {mesh}"], cwd=HERE, timeout=60, capture_output=True,
-                             text=True, check=False)
+        command = [program, "mesh_of_tetrahedra.prm", "--check"]
+        for entry, value in {**settings, "mesh/file name": mesh}.items():
+            command += ["--set", f"{entry} = {value}"]
+        run = subprocess.run(command, cwd=HERE, timeout=60, capture_output=True, text=True, check=False)
         if run.returncode != 0:
             fail(f"{mesh.name}: {run.stderr}")
 
