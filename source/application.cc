@@ -52,9 +52,9 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     simulation = std::make_unique<Simulation>(
         parameters, comm, log, line.check ? Simulation::Purpose::check : Simulation::Purpose::run);
     const Forecast forecast = simulation->foresee();
+    forecast.print(log);
     if (!forecast.problems.empty())
       throw UserError(forecast.problems);
-    forecast.print(log);
     if (line.check) {
       print_check(simulation->estimate(), simulation->time_step(),
                   problems.warnings().size() + forecast.problems.warnings().size(), log);

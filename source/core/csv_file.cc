@@ -106,7 +106,7 @@ void CsvFile::append(const std::string &line)
 void CsvFile::sync() const
 {
   if (file != nullptr)
-    sync_file(path);
+    sync_file(file, path);
 }
 
 } // namespace eunoe

@@ -12,15 +12,23 @@ namespace eunoe {
 namespace {
 
 /// @return 0, or what went wrong
+int sync(const int handle)
+{
+  const int failure = fsync(handle) == 0 ? 0 : errno;
+  // What has no disk behind it, as a pipe, cannot be synced, and some file systems cannot do it.
+  const bool is_unable =
+      failure == EINVAL || failure == EROFS || failure == ENOSYS || failure == ENOTSUP;
+  return is_unable ? 0 : failure;
+}
+
 int sync_path(const std::string &path)
 {
   const int handle = open(path.c_str(), O_RDONLY);
   if (handle < 0)
     return errno;
-  const int failure = fsync(handle) == 0 ? 0 : errno;
+  const int failure = sync(handle);
   close(handle);
-  // What has no disk behind it, as a pipe, cannot be synced.
-  return failure == EINVAL || failure == EROFS ? 0 : failure;
+  return failure;
 }
 
 } // namespace
@@ -34,6 +42,13 @@ std::string cannot_be_written(const std::string &path, const std::string &error)
 void sync_file(const std::string &path)
 {
   const int failure = sync_path(path);
+  if (failure != 0 && failure != ENOENT)
+    throw UserError(cannot_be_written(path, std::strerror(failure)));
+}
+
+void sync_file(std::FILE *const file, const std::string &path)
+{
+  const int failure = sync(fileno(file));
   if (failure != 0)
     throw UserError(cannot_be_written(path, std::strerror(failure)));
 }
@@ -76,7 +91,12 @@ void NewFile::write(const void *data, const std::uint64_t n)
 void NewFile::complete(const bool sync)
 {
   if (file != nullptr) {
-    note(std::fflush(file) == 0 && (!sync || fsync(fileno(file)) == 0));
+    note(std::fflush(file) == 0);
+    if (sync && error.empty()) {
+      const int failure = eunoe::sync(fileno(file));
+      if (failure != 0)
+        error = std::strerror(failure);
+    }
     // Some file systems say only here that there was no space.
     note(std::fclose(file) == 0);
     file = nullptr;

@@ -105,21 +105,26 @@ DemLaboratory::Case DemLaboratory::make_case(const RunRequest &request) const
 {
   Case one;
   one.experiment = &find(request.experiment);
+  std::string input;
   try {
     one.overrides = one.experiment->overrides(factors, request.amplitudes);
     for (const std::string &line : one.experiment->run_overrides(request.seed))
       one.overrides.push_back(line);
     Problems problems;
-    const std::string input = one.experiment->make(one.overrides, problems).as_input_file();
+    input = one.experiment->make(one.overrides, problems).as_input_file();
     if (!problems.empty())
       throw UserError(problems);
-    // Another rank may see other files.
-    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
-    one.key = sha256(std::string(engine_digest()) + files + input);
   } catch (const UserError &error) {
     one.problem = error.what();
-    one.key = sha256(std::string(engine_digest()) + one.problem + words(request));
   }
+  // Another rank may see other files, so what one cannot do, none does.
+  const std::string of_first = broadcast(one.problem, comm);
+  one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
+  if (one.problem.empty()) {
+    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
+    one.key = sha256(std::string(engine_digest()) + files + input);
+  } else
+    one.key = sha256(std::string(engine_digest()) + one.problem + words(request));
   return one;
 }
 
@@ -152,6 +157,9 @@ RunRecord DemLaboratory::simulate(const Case &one)
     Problems problems;
     Parameters parameters = one.experiment->make(one.overrides, problems);
     Simulation simulation(parameters, queue.group(), silent);
+    const Forecast forecast = simulation.foresee(false);
+    if (!forecast.problems.empty())
+      throw UserError(forecast.problems);
     simulation.run([this](Simulation &s) { look(s.step_number()); });
     record.measurements = simulation.measurements();
     if (record.measurements.empty())

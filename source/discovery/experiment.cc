@@ -27,7 +27,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
   try {
     // Building the parts of a run finds what reading alone cannot.
     std::vector<std::string> list = parameters.overrides;
-    for (const std::string &line : run_overrides(1))
+    for (const std::string &line : quiet_overrides())
       list.push_back(line);
     Problems found;
     Parameters of_run = make(list, found);
@@ -76,14 +76,22 @@ std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factor
   return list;
 }
 
-std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
+std::vector<std::string> Experiment::quiet_overrides()
 {
   return {"simulation control/output path = unused",
           "simulation control/output control = iteration",
-          "simulation control/output frequency = 0", "simulation control/log frequency = 0",
-          "restart/checkpoint = false", "restart/restart = false",
-          // Entries hold numbers of 31 bits.
-          "simulation control/seed = " + std::to_string(seed & 0x7fffffff)};
+          "simulation control/output frequency = 0",
+          "simulation control/log frequency = 0",
+          "restart/checkpoint = false",
+          "restart/restart = false"};
+}
+
+std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
+{
+  std::vector<std::string> list = quiet_overrides();
+  // Entries hold numbers of 31 bits.
+  list.push_back("simulation control/seed = " + std::to_string(seed & 0x7fffffff));
+  return list;
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const

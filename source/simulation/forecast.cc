@@ -36,16 +36,20 @@ std::size_t number_of_events(const Parameters &parameters)
 
 namespace {
 
-/// Diameters of each type: those of the particles that are given one by one, else those of the
-/// types.
+/// Whether the input gives the particles one by one, whatever the diameters of their type.
+bool gives_particles(const Parameters &parameters)
+{
+  const std::string &method = parameters.insertion.method;
+  return parameters.process_name == "none" && (method == "list" || method == "file");
+}
+
+/// Diameters of each type that has particles: those of the particles that are given one by one,
+/// else those of the types.
 std::vector<DiameterRange> find_diameters(const Parameters &parameters,
                                           const std::vector<std::vector<NewParticle>> &events,
                                           MPI_Comm comm)
 {
-  const InsertionParameters &insertion = parameters.insertion;
-  const bool are_given = parameters.process_name == "none" &&
-                         (insertion.method == "list" || insertion.method == "file");
-  if (are_given) {
+  if (gives_particles(parameters)) {
     // The largest of the negatives, so that one call serves both.
     double extremes[2] = {-std::numeric_limits<double>::max(), 0.};
     for (const std::vector<NewParticle> &event : events)
@@ -55,12 +59,18 @@ std::vector<DiameterRange> find_diameters(const Parameters &parameters,
       }
     MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, comm);
     if (extremes[1] > 0.)
-      return {{-extremes[0], extremes[1]}};
+      return {{0, -extremes[0], extremes[1]}};
   }
+  const std::vector<ParticleType> &types = parameters.physics.types;
+  // A process counts its particles itself.
+  const bool all_alike = std::none_of(types.begin(), types.end(),
+                                      [](const ParticleType &type) { return type.number > 0; });
   std::vector<DiameterRange> diameters;
-  for (const ParticleType &type : parameters.physics.types) {
-    const auto sizes = type.sizes.make();
-    diameters.emplace_back(sizes->smallest(), sizes->largest());
+  for (std::size_t t = 0; t < types.size(); ++t) {
+    if (!all_alike && types[t].number == 0)
+      continue;
+    const auto sizes = types[t].sizes.make();
+    diameters.push_back({t, sizes->smallest(), sizes->largest()});
   }
   return diameters;
 }
@@ -71,19 +81,30 @@ Forecast Simulation::foresee(const bool writes) const
 {
   Forecast forecast;
   std::vector<std::vector<NewParticle>> events;
-  if (insertion && !checkpoint)
+  if (insertion && (!checkpoint || gives_particles(parameters)))
     events = insertion->known_events();
-  judge_time_step(parameters, find_diameters(parameters, events, comm), forecast);
+  const std::vector<DiameterRange> diameters = find_diameters(parameters, events, comm);
+  judge_time_step(parameters, diameters, forecast);
   forecast.facts.push_back("Domain: " + describe(Box{domain.lower(), domain.upper()}) + ", " +
                            std::to_string(domain.n_cells()) + " cells of at least " +
                            format(1e6 * domain.smallest_cell_width()) + " um, " +
                            std::to_string(solids.size()) + " solids and walls, " +
                            std::to_string(domain.outlets().size()) + " outlets");
-  const double fastest = judge_solids(parameters, solids, domain, forecast);
-  judge_searches(std::max(fastest, fastest_solid()), allowed_displacement,
+  const Vec3 &g = parameters.physics.gravity;
+  forecast.facts.push_back("Gravity: (" + format(g.x) + ", " + format(g.y) + ", " + format(g.z) +
+                           ") m/s2" + (norm_square(g) > 0. ? "" : ", so that nothing falls"));
+  double smallest_radius = std::numeric_limits<double>::max();
+  for (const DiameterRange &range : diameters)
+    smallest_radius = std::min(smallest_radius, 0.5 * range.smallest);
+  const double fastest = judge_solids(parameters, solids, domain, smallest_radius, forecast);
+  judge_jump(fastest_wall(), parameters, smallest_radius, "", "", forecast.problems);
+  judge_searches(std::max(fastest, fastest_wall()), allowed_displacement,
                  parameters.control.time_step, forecast);
   if (insertion && !checkpoint)
     judge_insertion(parameters, *insertion, events, solids, domain, forecast);
+  if (parameters.process_name == "none" && parameters.control.n_steps() == 0)
+    forecast.problems.warn("subsection 'simulation control':", "no step is taken.",
+                           "Set 'time end' or 'iteration end'.");
   const RunEstimate cost = estimate();
   judge_resources(parameters, cost, domain.n_cells(), comm, forecast);
   if (writes)

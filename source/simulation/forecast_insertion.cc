@@ -205,7 +205,8 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
       insertion.supply(2) > insertion.supply(1))
     judge_interval(parameters, insertion.largest_diameter(), problems);
   Overlap of_pairs, with_solids;
-  for (const std::vector<NewParticle> &event : events) {
+  for (std::size_t e = 0; e < events.size(); ++e) {
+    const std::vector<NewParticle> &event = events[e];
     if (method == "volume") {
       std::vector<Vec3> places;
       for (const NewParticle &particle : event)
@@ -218,10 +219,11 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
     if (static_cast<double>(n) > most_looked_at)
       continue;
     const std::vector<Quad> spheres = spheres_of_all(event, domain.communicator());
-    const Overlap pairs = overlap_of_pairs(spheres, domain),
-                  walls = overlap_with_solids(spheres, solids);
+    const Overlap pairs = overlap_of_pairs(spheres, domain);
     of_pairs = pairs.share > of_pairs.share ? pairs : of_pairs;
-    with_solids = walls.share > with_solids.share ? walls : with_solids;
+    // Solids may have moved until the events that follow.
+    if (e == 0)
+      with_solids = overlap_with_solids(spheres, solids);
   }
   const double largest_overlap = parameters.model.largest_overlap;
   judge_overlap(of_pairs, "a particle overlaps another", largest_overlap, problems);

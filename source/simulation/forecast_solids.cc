@@ -16,6 +16,9 @@ constexpr unsigned int n_looks = 500;
 /// How much longer than the mesh a solid may be, or shorter.
 constexpr double largest_ratio = 100., smallest_ratio = 1e-3;
 
+const std::string mend_scale =
+    "All lengths are in metres: 'scale = 0.001' takes a file in millimetres.";
+
 std::vector<Vec3> corners_at(const Box &own, const RigidState &state)
 {
   std::vector<Vec3> corners;
@@ -88,26 +91,28 @@ Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, con
   return path;
 }
 
-void judge_size(const std::string &where, const Box &box, const Box &space, Problems &problems)
+/// @return whether the solid is as large as one expects
+bool judge_size(const std::string &where, const Box &box, const Box &space, Problems &problems)
 {
   const double ratio = longest_edge(box) / longest_edge(space);
   if (ratio > largest_ratio)
     problems.warn(where,
                   "the solid is " + format(longest_edge(box)) + " m long, " + format(ratio) +
                       " times as long as the mesh.",
-                  "All lengths are in metres: 'scale = 0.001' takes a file in millimetres.");
+                  mend_scale);
   else if (ratio < smallest_ratio)
     problems.warn(
         where,
         "the solid is only " + format(longest_edge(box)) + " m long, while the mesh is " +
             format(longest_edge(space)) + " m long.",
         "All lengths are in metres; correct its 'scale' or its coordinates, or the mesh.");
+  return ratio <= largest_ratio && ratio >= smallest_ratio;
 }
 
 } // namespace
 
 double judge_solids(const Parameters &parameters, const std::vector<Solid> &solids,
-                    const Domain &domain, Forecast &forecast)
+                    const Domain &domain, const double smallest_radius, Forecast &forecast)
 {
   double fastest = 0.;
   const MeshPath mesh = {domain.box_from_centre(), parameters.grid_motion.make()};
@@ -125,7 +130,7 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
     forecast.facts.push_back("Solid object " + std::to_string(k) + ": " + describe(box));
     const std::string where =
         "subsection 'solid objects' / subsection 'solid surfaces' / subsection '" + name + "':";
-    judge_size(where, box, space, forecast.problems);
+    const bool fits = judge_size(where, box, space, forecast.problems);
     const Path path = follow(parameters.solids.objects[k], own, mesh, duration);
     if (!path.meets_mesh)
       forecast.problems.warn(where,
@@ -135,8 +140,8 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
                                  ".",
                              "Correct its 'scale' (0.001 for a file in millimetres), its 'initial "
                              "translation' or its velocity, or enlarge the mesh.");
-    judge_jump(path.largest_speed, parameters, " at t = " + format(path.when) + " s",
-               forecast.problems);
+    judge_jump(path.largest_speed, parameters, smallest_radius,
+               " at t = " + format(path.when) + " s", fits ? "" : mend_scale, forecast.problems);
     fastest = std::max(fastest, path.largest_speed);
   }
   return fastest;

@@ -8,11 +8,15 @@
 
 namespace eunoe {
 
-/// Smallest and largest diameter of a particle type (m), as far as it has particles.
-using DiameterRange = std::pair<double, double>;
+/// Diameters of a particle type (m).
+struct DiameterRange
+{
+  std::size_t type;
+  double smallest, largest;
+};
 
 /// The time step against what contacts need.
-/// @param diameters one a particle type
+/// @param diameters of the types that have particles
 void judge_time_step(const Parameters &parameters, const std::vector<DiameterRange> &diameters,
                      Forecast &forecast);
 
@@ -23,14 +27,17 @@ void judge_searches(double fastest, double allowed_displacement, double time_ste
 
 /// Notes that a solid would jump into particles if it goes too far in a time step.
 /// @param speed of the solid (m/s)
+/// @param smallest_radius of a particle (m)
 /// @param when empty, or " at t = 1 s"
-void judge_jump(double speed, const Parameters &parameters, const std::string &when,
-                Problems &problems);
+/// @param mend what to do about it; empty: about the speed
+void judge_jump(double speed, const Parameters &parameters, double smallest_radius,
+                const std::string &when, const std::string &mend, Problems &problems);
 
 /// Size, place and path of the solids of the input against the mesh.
+/// @param smallest_radius of a particle (m)
 /// @return the largest speed that one of them reaches (m/s)
 double judge_solids(const Parameters &parameters, const std::vector<Solid> &solids,
-                    const Domain &domain, Forecast &forecast);
+                    const Domain &domain, double smallest_radius, Forecast &forecast);
 
 /// What is inserted: whether there is anything, where it comes to lie, whether it all comes.
 /// @param events particles of the first events, this rank's share

@@ -91,6 +91,14 @@ void Simulation::find_checkpoint(Problems &problems)
   if (!head.contains("input") || !head["input"].is_string())
     throw checkpoint->damaged("it does not hold the input of its run.");
   find_input_differences(parameters.as_input_file(), head["input"], checkpoint->path, problems);
+  const unsigned long long last = parameters.control.n_steps();
+  understand(*checkpoint, [&](const Json &of_run) {
+    if (count_in(of_run.at("step")) > last)
+      problems.add("The checkpoint " + checkpoint->path,
+                   "is of step " + std::to_string(count_in(of_run.at("step"))) +
+                       ", and the run ends at step " + std::to_string(last) + ".",
+                   "Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
+  });
 }
 
 void Simulation::save(CheckpointWriter &writer)
@@ -153,11 +161,6 @@ void Simulation::resume()
 void Simulation::take_over(const Json &head)
 {
   step = first_step = count_in(head.at("step"));
-  const unsigned long long last = parameters.control.n_steps();
-  if (step > last)
-    throw UserError("The checkpoint " + checkpoint->path + " is of step " + std::to_string(step) +
-                    ", and the run ends at step " + std::to_string(last) +
-                    ". Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
   present_time = static_cast<double>(step) * parameters.control.time_step;
   ids.go_on_from(count_in<ParticleId>(head.at("next_id")));
   next_output = number_in(head.at("next_output"));

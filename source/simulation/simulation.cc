@@ -103,7 +103,6 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const P
   for (const Process::Field &field : fields)
     defaults.insert(defaults.end(), field.n_components, field.initial);
   system.set_extra_defaults(defaults);
-  check_speeds(problems);
   if (!problems.empty())
     throw UserError(problems);
   solid_loads.resize(solids.size());

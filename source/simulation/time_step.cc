@@ -9,6 +9,8 @@ namespace eunoe {
 
 namespace {
 
+/// Diameter (m) from which millimetres may have been taken for metres.
+constexpr double suspicious_diameter = 0.2;
 /// Share of the Rayleigh time up to which contacts keep their energy.
 constexpr double largest_rayleigh_share = 0.25;
 /// Time steps that the half period of a contact should have at least.
@@ -33,9 +35,8 @@ void judge_time_step(const Parameters &parameters, const std::vector<DiameterRan
                      Forecast &forecast)
 {
   const double dt = parameters.control.time_step;
-  for (std::size_t t = 0; t < diameters.size(); ++t) {
+  for (const auto &[t, smallest, largest] : diameters) {
     const ParticleType &type = parameters.physics.types[t];
-    const auto [smallest, largest] = diameters[t];
     const double rayleigh =
         PhysicalProperties::rayleigh_time(0.5 * smallest, type.density, type.material);
     const double contact = parameters.physics.shortest_contact_time(type, 0.5 * smallest);
@@ -44,6 +45,12 @@ void judge_time_step(const Parameters &parameters, const std::vector<DiameterRan
                              " um; the time step of " + format(dt) + " s is " +
                              format(std::round(1e3 * dt / rayleigh) / 10.) +
                              " % of the Rayleigh time and " + share_of_contact(contact / dt));
+    if (smallest > suspicious_diameter)
+      forecast.problems.warn("subsection 'lagrangian physical properties' / subsection 'particle "
+                             "type " +
+                                 std::to_string(t) + "':",
+                             "the particles have diameters of " + format(smallest) + " m and more.",
+                             "All lengths are in metres: write 1e-3 for a millimetre.");
     if (dt > largest_rayleigh_share * rayleigh)
       forecast.problems.warn(
           time_step_entry,
@@ -79,32 +86,25 @@ void judge_searches(const double fastest, const double allowed_displacement, con
                            "solid helps.");
 }
 
-void judge_jump(const double speed, const Parameters &parameters, const std::string &when,
-                Problems &problems)
+void judge_jump(const double speed, const Parameters &parameters, const double smallest_radius,
+                const std::string &when, const std::string &mend, Problems &problems)
 {
   const double step = speed * parameters.control.time_step;
-  const double radius = 0.5 * parameters.physics.smallest_diameter();
-  if (step > largest_jump * radius)
+  if (step > largest_jump * smallest_radius)
     problems.add(time_step_entry,
                  "a solid moves by " + format(step) + " m in a time step" + when +
-                     ", more than a tenth of the " + format(radius) +
+                     ", more than a tenth of the " + format(smallest_radius) +
                      " m of the smallest particle's radius, so that it would jump into particles.",
-                 "Lower the time step or the solid's velocity.");
+                 mend.empty() ? "Lower the time step or the solid's velocity." : mend);
 }
 
-double Simulation::fastest_solid() const
+double Simulation::fastest_wall() const
 {
   const double dt = parameters.control.time_step;
   double fastest = parameters.process() != nullptr ? parameters.process()->fastest_solid() : 0.;
-  for (const Solid &solid : solids)
-    fastest =
-        std::max(fastest, displacement(solid, solid.motion->at(0.), solid.motion->at(dt)) / dt);
+  for (const Solid &wall : domain.walls())
+    fastest = std::max(fastest, displacement(wall, wall.motion->at(0.), wall.motion->at(dt)) / dt);
   return fastest;
-}
-
-void Simulation::check_speeds(Problems &problems) const
-{
-  judge_jump(fastest_solid(), parameters, "", problems);
 }
 
 void Simulation::compare_time_step(double stiffest)

@@ -34,8 +34,10 @@ private:
   std::string error;
 };
 
-/// Waits until a file would outlive a crash of the machine. Throws a UserError if it would not.
+/// Waits until a file would outlive a crash of the machine. Throws a UserError if it would not; one
+/// that was taken away meanwhile needs nothing.
 void sync_file(const std::string &path);
+void sync_file(std::FILE *file, const std::string &path);
 
 /// The same for the names of the files in the folder of @p path.
 void sync_folder_of(const std::string &path);

@@ -40,6 +40,9 @@ public:
   Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
 
 private:
+  /// Overrides that make a run silent.
+  static std::vector<std::string> quiet_overrides();
+
   ExperimentParameters parameters;
   std::string process;
   std::vector<ObservableDescription> described;

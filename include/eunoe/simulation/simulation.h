@@ -118,9 +118,8 @@ private:
   /// Looks for particles with something wrong before they are shared out anew; stops the run on all
   /// ranks, or returns the rows of those to take out.
   std::vector<std::size_t> inspect();
-  /// Largest speed of a solid, as far as it can be known (m/s).
-  double fastest_solid() const;
-  void check_speeds(Problems &problems) const;
+  /// Largest speed of a wall or of a solid of the process, as far as it can be known (m/s).
+  double fastest_wall() const;
   /// Warns once if the stiffest contact is too fast for the time step; collective.
   void compare_time_step(double stiffest);
   [[noreturn]] void stop_for(const std::string &first, std::uint64_t number);
