@@ -149,6 +149,31 @@ std::unique_ptr<SizeDistribution> make_custom(const SizeDistributionParameters &
   }
 }
 
+/// Whether shares are 1, or 100 of percent, in all.
+void check_sum(const SizeTable &table, const bool is_cdf, const ParameterCheck &check,
+               const ParameterCheck::Path &path, const std::string &entry)
+{
+  const std::vector<double> &shares = table.shares;
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.);
+  const auto is_about = [](const double a, const double b) { return std::abs(a - b) <= 0.01 * b; };
+  std::string mend = is_cdf ? "Divide each share by the last one, or correct the one that is wrong."
+                            : "Divide each share by their sum, or correct the one that is wrong.";
+  if (is_about(sum, 100.))
+    mend = "Shares are no percent: divide each of them by 100.";
+  else if (!is_cdf && shares.size() > 1 && std::is_sorted(shares.begin(), shares.end()) &&
+           (is_about(shares.back(), 1.) || is_about(shares.back(), 100.)))
+  {
+    const bool in_percent = shares.back() > 10.;
+    mend = "They grow to " + std::string(in_percent ? "100" : "1") +
+           " as a CDF does: set 'custom distribution probability function type = CDF'" +
+           (in_percent ? " and divide each by 100." : ".");
+  }
+  check.require(std::abs(sum - 1.) <= 1e-5, path, entry,
+                (is_cdf ? "ends at " : "sums to ") + format(sum) + ", not " +
+                    (is_cdf ? "at 1." : "to 1."),
+                mend);
+}
+
 const SizeDistributionRegistry::Registration registration(size_distributions(), "custom",
                                                           make_custom);
 
@@ -197,14 +222,7 @@ void SizeDistributionParameters::check_custom(const ParameterCheck &check,
   check.require(grows, path, of_shares,
                 function_type == "CDF" ? "decreases, which no CDF does." : "has a negative value.",
                 "Correct the value.");
-  const double sum = std::accumulate(read.shares.begin(), read.shares.end(), 0.);
-  const bool is_cdf = function_type == "CDF", in_percent = std::abs(sum - 100.) <= 1.;
-  check.require(std::abs(sum - 1.) <= 1e-5, path, of_shares,
-                (is_cdf ? "ends at " : "sums to ") + format(sum) + ", not " +
-                    (is_cdf ? "at 1." : "to 1."),
-                in_percent ? "Shares are no percent: divide each of them by 100."
-                : is_cdf   ? "Divide each share by the last one, or correct the one that is wrong."
-                           : "Divide each share by their sum, or correct the one that is wrong.");
+  check_sum(read, function_type == "CDF", check, path, of_shares);
   const auto [low, high] = range_of(*this);
   double within = 0.;
   for (std::size_t c = 0; c < n; ++c) {
