@@ -82,6 +82,13 @@ public:
         "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
         "room for " +
         std::to_string(room) + " particles, but ";
+    const Vec3 extent = grid.upper - grid.lower;
+    const double narrowest = std::min({extent.x, extent.y, extent.z});
+    if (wanted > 0 && room == 0 && largest_diameter() > narrowest)
+      throw UserError(
+          box + "grains are up to " + format(largest_diameter()) + " m wide, and it is " +
+          format(narrowest) +
+          " m at its narrowest. Lengths are in metres: correct the diameter or the box.");
     if (wanted > 0 && room == 0)
       throw UserError(box + "there are particles to insert. Enlarge the box.");
     if (parameters.frequency == 0 && room < of_next_event())
