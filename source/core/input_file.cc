@@ -266,6 +266,12 @@ InputEntry parse_override(const std::string &text, Problems &problems)
     if (boost::starts_with(name, "subsection "))
       name = name.substr(11);
   }
+  if (std::any_of(names.begin(), names.end(), [](const std::string &n) { return n.empty(); })) {
+    problems.add(entry.where + ":", "its path has an empty part, as 'a//b' has.",
+                 "Write --set \"subsection/entry = value\".");
+    entry.name.clear();
+    return entry;
+  }
   entry.name = names.back();
   names.pop_back();
   entry.path = names;

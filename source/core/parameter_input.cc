@@ -129,11 +129,13 @@ std::string usual_mistake(const std::string &value, const std::string &wanted)
   }
   const std::size_t end = value.find_first_not_of("0123456789", value.find_first_of("+-") == 0);
   if (whole && end == std::string::npos)
-    return "At most " + std::to_string(std::numeric_limits<int>::max()) + " is possible.";
+    return "";
   if (whole && is_number(value))
     return "Write it in digits alone, without point or exponent.";
   if (one && is_number(value))
-    return "It must be finite, and below 1.8e308 in size.";
+    return std::isfinite(std::strtod(value.c_str(), nullptr))
+               ? ""
+               : "It must be finite, and below 1.8e308 in size.";
   char *rest;
   std::strtod(value.c_str(), &rest);
   std::string unit = rest;
@@ -142,6 +144,23 @@ std::string usual_mistake(const std::string &value, const std::string &wanted)
       std::isalpha(static_cast<unsigned char>(unit[0])))
     return "Leave out '" + unit + "': numbers have no units and are in SI units.";
   return "";
+}
+
+/// Names the limit of whole numbers, if it is what a value exceeds.
+/// @param wanted in words
+std::string with_limit(const std::string &wanted, const std::string &value)
+{
+  constexpr int limit = std::numeric_limits<int>::max();
+  if (wanted.compare(0, 14, "a whole number") != 0 || wanted.find("at most") != std::string::npos ||
+      value.find_first_not_of("0123456789") != std::string::npos ||
+      std::strtod(value.c_str(), nullptr) <= limit)
+    return wanted;
+  const std::string lower = " of at least ";
+  const std::size_t place = wanted.find(lower);
+  if (place == std::string::npos)
+    return wanted + " of at most " + std::to_string(limit);
+  return wanted.substr(0, place) + " from " + wanted.substr(place + lower.size()) + " to " +
+         std::to_string(limit);
 }
 
 /// In words, what an entry wants whose value deal.II refused with @p message.
@@ -231,7 +250,7 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
       problems.add(place,
                    entry.value.empty() ? "has no value."
                                        : "is '" + shortened(entry.value) + "', which does not fit.",
-                   (wanted.empty() ? "" : "Give " + wanted + ".") +
+                   (wanted.empty() ? "" : "Give " + with_limit(wanted, entry.value) + ".") +
                        (wanted.empty() || mistake.empty() ? "" : " ") + mistake);
     }
     for (std::size_t k = 0; k < entry.path.size(); ++k)

@@ -39,6 +39,12 @@ void test_syntax()
   expect("no such choice", "subsection model parameters\n  set integration method = magic\nend\n",
          "entry 'integration method' is 'magic', which does not fit. Give one of "
          "'velocity_verlet', 'explicit_euler'.");
+  const std::string negative =
+      complaints("subsection simulation control\n  set time step = -1e-3\nend\n");
+  check("negative number, which is finite",
+        negative.find("Give a number of at least 0.") != std::string::npos &&
+            negative.find("finite") == std::string::npos,
+        "got '" + negative + "'");
   expect("too few numbers", "subsection lagrangian physical properties\n set g = 0, -9.81\nend\n",
          "entry 'g' is '0, -9.81', which does not fit. Give 3 values, each a number.");
   expect("missing end", "subsection mesh\n  set scale = 1\n",
@@ -57,6 +63,11 @@ void test_syntax()
   expect("override", "",
          "--set \"mesh/scales = 2\": subsection 'mesh' / entry 'scales' is unknown.",
          {"mesh/scales = 2"});
+  expect("override with an empty part", "",
+         "--set \"mesh//scale = 2\": its path has an empty part, as 'a//b' has.",
+         {"mesh//scale = 2"});
+  check("nothing else is said of it",
+        complaints("", {"mesh//scale = 2"}).find("is unknown") == std::string::npos);
   expect("subsection beyond the number",
          "subsection floating walls\n  set number of floating walls = 1\n  subsection wall 1\n"
          "    set end time = 1\n  end\nend\n",
