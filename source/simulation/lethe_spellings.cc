@@ -180,7 +180,7 @@ const std::vector<Ignored> &ignored()
   return list;
 }
 
-/// What is out of scope, if it asks for more than nothing.
+/// What is out of scope or has moved, if it asks for more than nothing.
 struct Refused
 {
   Path path;
@@ -191,6 +191,7 @@ const std::vector<Refused> &refused()
   static const std::string heat = "Heat between particles is out of scope.";
   static const std::vector<Refused> list = {
       {no_section, "dimension", "3", "Simulations are in three dimensions: give 3."},
+      {properties, "density gas", "0", "It is 'density' in 'model parameters / drag' now."},
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},
       {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
