@@ -9,8 +9,8 @@ namespace {
 const ProgramText program = {
     "eunoe-particles", "case.prm",
     "Simulates powders by the discrete element method as the input file says.",
-    "read and check the case, say what would run (particles, memory, steps, core-hours), run "
-    "nothing"};
+    "read and check the case, say what would run (particles, memory, steps, core-hours) and what "
+    "is doubtful, run nothing"};
 
 void print_check(const RunEstimate &estimate, const double time_step, const std::size_t n_warnings,
                  Log &log)

@@ -21,8 +21,8 @@ namespace {
 const ProgramText program = {
     "eunoe-discovery", "study.prm",
     "Compares a model with measured data, and says whether an effect is missing and which one.",
-    "read and check the study, say what would run (experiments, effects, runs, core-hours), run "
-    "nothing"};
+    "read and check the study, say what would run (experiments, effects, runs, core-hours) and "
+    "what is doubtful, run nothing"};
 
 struct Wishes
 {
