@@ -1,6 +1,7 @@
 #include <eunoe/core/parameter_section.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 namespace eunoe {
@@ -54,6 +55,28 @@ std::string format(const double value)
 {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string format_whole(const double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, std::abs(value) < 1e15 ? "%.0f" : "%.6g", std::round(value));
+  return text;
+}
+
+std::string format_count(const double value, const std::string &singular, const std::string &plural)
+{
+  const std::string number = format_whole(value);
+  return number + " " + (number == "1" ? singular : plural);
+}
+
+std::string format_roughly(const double value)
+{
+  if (value >= 10.)
+    return format_whole(value);
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g", value);
   return text;
 }
 

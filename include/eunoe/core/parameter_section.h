@@ -70,6 +70,15 @@ public:
 /// A number as a user would write it.
 std::string format(double value);
 
+/// An estimate of a number of things: whole, without an exponent as far as it is exact.
+std::string format_whole(double value);
+
+/// With its noun: "1 picture", "12 pictures".
+std::string format_count(double value, const std::string &singular, const std::string &plural);
+
+/// A rough estimate: two digits, and whole from 10 up.
+std::string format_roughly(double value);
+
 } // namespace eunoe
 
 #endif
