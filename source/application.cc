@@ -16,10 +16,10 @@ void print_check(const RunEstimate &estimate, const double time_step, const std:
                  Log &log)
 {
   log.line("It would run with");
-  log.line("  particles:  " + format(estimate.most_particles) + " at most, " +
-           format(estimate.particles) + " on average");
-  log.line("  steps:      " + format(estimate.steps) + " of " + format(time_step) + " s");
-  log.line("  core-hours: about " + format(estimate.core_seconds() / 3600.) + " (" +
+  log.line("  particles:  " + format_whole(estimate.most_particles) + " at most, " +
+           format_whole(estimate.particles) + " on average");
+  log.line("  steps:      " + format_whole(estimate.steps) + " of " + format(time_step) + " s");
+  log.line("  core-hours: about " + format_roughly(estimate.core_seconds() / 3600.) + " (" +
            format(estimate.particle_steps()) + " particle-steps at " +
            format(estimate.speed() / 1e6) + " million a second and core)");
   log.line(n_warnings == 0

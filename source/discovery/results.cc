@@ -180,10 +180,12 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
-             (experiment.is_held_out() ? ", held out" : "") + "): " + std::to_string(n_cells) +
-             " measured cells; at most about " + format(n) + " runs of " +
-             format(estimate.particles) + " particles and " + format(estimate.steps) + " steps, " +
-             format(estimate.core_seconds()) + " core-seconds each");
+             (experiment.is_held_out() ? ", held out" : "") +
+             "): " + format_count(static_cast<double>(n_cells), "measured cell", "measured cells") +
+             "; at most about " + format_count(n, "run", "runs") + " of " +
+             format_count(estimate.particles, "particle", "particles") + " and " +
+             format_count(estimate.steps, "step", "steps") + ", " +
+             format_roughly(estimate.core_seconds()) + " core-seconds each");
     runs += n;
     core_hours += hours;
   }
@@ -194,12 +196,12 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
   std::string names;
   for (const Effect &effect : study.factors)
     names += (names.empty() ? "" : ", ") + effect.factor.name;
-  log.line("  factors:    " + format(n_effects) + " effects and " + format(n_factors - n_effects) +
-           " nuisances: " + names);
+  log.line("  factors:    " + format_count(n_effects, "effect", "effects") + " and " +
+           format_count(n_factors - n_effects, "nuisance", "nuisances") + ": " + names);
   if (!study.left_out.empty())
     log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
-  log.line("  runs:       about " + format(runs) + " at most");
-  log.line("  core-hours: about " + format(core_hours));
+  log.line("  runs:       about " + format_whole(runs) + " at most");
+  log.line("  core-hours: about " + format_roughly(core_hours));
   log.line(n_warnings == 0
                ? "The study is in order."
                : "The study can be made. " + count_of_warnings(n_warnings) + ": see above.");

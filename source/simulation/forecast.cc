@@ -86,10 +86,10 @@ Forecast Simulation::foresee(const bool writes) const
   const std::vector<DiameterRange> diameters = find_diameters(parameters, events, comm);
   judge_time_step(parameters, diameters, forecast);
   forecast.facts.push_back("Domain: " + describe(Box{domain.lower(), domain.upper()}) + ", " +
-                           std::to_string(domain.n_cells()) + " cells of at least " +
+                           format_count(domain.n_cells(), "cell", "cells") + " of at least " +
                            format(1e6 * domain.smallest_cell_width()) + " um, " +
-                           std::to_string(solids.size()) + " solids and walls, " +
-                           std::to_string(domain.outlets().size()) + " outlets");
+                           format_count(solids.size(), "solid or wall", "solids and walls") + ", " +
+                           format_count(domain.outlets().size(), "outlet", "outlets"));
   const Vec3 &g = parameters.physics.gravity;
   forecast.facts.push_back("Gravity: (" + format(g.x) + ", " + format(g.y) + ", " + format(g.z) +
                            ") m/s2" + (norm_square(g) > 0. ? "" : ", so that nothing falls"));

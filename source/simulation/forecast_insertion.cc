@@ -171,9 +171,9 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
                   "Give a number of particles and an 'insertion info'.");
   else if (counts && coming < wanted)
     problems.warn(section + ":",
-                  "only " + format(coming) + " of " + format(wanted) +
-                      " particles come until the run ends, in " + std::to_string(n_events) +
-                      " events.",
+                  "only " + format_whole(coming) + " of " + format_whole(wanted) +
+                      " particles come until the run ends, in " +
+                      format_count(static_cast<double>(n_events), "event", "events") + ".",
                   "Let the run last longer, lower 'insertion frequency', or raise 'inserted number "
                   "of particles at each time step'.");
 }

@@ -50,8 +50,9 @@ void judge_memory(const RunEstimate &estimate, const double n_cells, MPI_Comm co
   const double here = of_run * n_here / n_ranks + n_here * bytes_per_rank;
   const double there_is = usable_memory();
   forecast.facts.push_back("Memory: about " + format_bytes(of_run) + " for " +
-                           format(estimate.most_particles) + " particles and " + format(n_cells) +
-                           " cells, and 170 MB a rank; this machine has " + format_bytes(there_is));
+                           format_count(estimate.most_particles, "particle", "particles") +
+                           " and " + format_count(n_cells, "cell", "cells") +
+                           ", and 170 MB a rank; this machine has " + format_bytes(there_is));
   double lack = there_is > 0. && here > there_is ? here - there_is : 0.;
   MPI_Allreduce(MPI_IN_PLACE, &lack, 1, MPI_DOUBLE, MPI_MAX, comm);
   if (lack > 0.)
@@ -75,7 +76,8 @@ void judge_disk(const Parameters &parameters, const RunEstimate &estimate,
                                                 : 0.;
   forecast.facts.push_back(
       "Disk: " +
-      (n > 0. ? format(n) + " pictures of about " + format_bytes(pictures) + " in all"
+      (n > 0. ? format_count(n, "picture", "pictures") + " of about " + format_bytes(pictures) +
+                    " in all"
               : std::string("no pictures, as 'output frequency' is 0 or none is due")) +
       (restart.checkpoint ? ", checkpoints of about " + format_bytes(checkpoints)
                           : std::string(", no checkpoints")) +
@@ -95,7 +97,7 @@ void judge_disk(const Parameters &parameters, const RunEstimate &estimate,
         "subsection 'simulation control' / entry '" +
             std::string(control.output_control == "time" ? "output time" : "output frequency") +
             "':",
-        format(n) + " pictures would be written.",
+        format_whole(n) + " pictures would be written.",
         "Raise it; a few hundred are enough for a film.");
 }
 
@@ -134,7 +136,7 @@ void judge_resources(const Parameters &parameters, const RunEstimate &estimate,
   if (estimate.steps > many_steps)
     forecast.problems.warn("subsection 'simulation control' / entry '" +
                                std::string(by_number ? "iteration end" : "time end") + "':",
-                           "the run would take " + format(estimate.steps) + " steps.",
+                           "the run would take " + format_whole(estimate.steps) + " steps.",
                            "Shorten it, or raise the time step.");
 }
 

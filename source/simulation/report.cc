@@ -38,8 +38,7 @@ void Simulation::print_overview()
 {
   int n_ranks;
   MPI_Comm_size(comm, &n_ranks);
-  log.line("Eunoe " + std::string(version()) + " on " + std::to_string(n_ranks) +
-           (n_ranks == 1 ? " rank" : " ranks"));
+  log.line("Eunoe " + std::string(version()) + " on " + format_count(n_ranks, "rank", "ranks"));
   output.write("used.prm", parameters.as_input_file());
 }
 
@@ -159,8 +158,9 @@ void Simulation::write_summary()
                 percent(mean / std::max(known, loop_seconds));
   }
   output.write("summary.json", summary.dump(2) + "\n");
-  log.line("Finished " + std::to_string(step) + " steps in " + format_duration(loop_seconds) +
-           ": " + format(loop_seconds > 0. ? particle_steps / loop_seconds * 1e-6 : 0.) +
+  log.line("Finished " + format_count(static_cast<double>(step), "step", "steps") + " in " +
+           format_duration(loop_seconds) + ": " +
+           format(loop_seconds > 0. ? particle_steps / loop_seconds * 1e-6 : 0.) +
            " million particle-steps/s. Share of time: " + shares);
   log.line("Results are in " + parameters.control.output_path);
 }

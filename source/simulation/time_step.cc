@@ -29,6 +29,12 @@ std::string share_of_contact(const double steps)
                      : format(1. / steps) + " times the stiffest contact's time";
 }
 
+std::string describe_diameters(const double smallest, const double largest)
+{
+  const std::string from = format(1e6 * smallest), to = format(1e6 * largest);
+  return (from == to ? "diameter " : "diameters " + from + " to ") + to + " um";
+}
+
 } // namespace
 
 void judge_time_step(const Parameters &parameters, const std::vector<DiameterRange> &diameters,
@@ -40,10 +46,9 @@ void judge_time_step(const Parameters &parameters, const std::vector<DiameterRan
     const double rayleigh =
         PhysicalProperties::rayleigh_time(0.5 * smallest, type.density, type.material);
     const double contact = parameters.physics.shortest_contact_time(type, 0.5 * smallest);
-    forecast.facts.push_back("Particle type " + std::to_string(t) + ": diameters " +
-                             format(1e6 * smallest) + " to " + format(1e6 * largest) +
-                             " um; the time step of " + format(dt) + " s is " +
-                             format(std::round(1e3 * dt / rayleigh) / 10.) +
+    forecast.facts.push_back("Particle type " + std::to_string(t) + ": " +
+                             describe_diameters(smallest, largest) + "; the time step of " +
+                             format(dt) + " s is " + format(std::round(1e3 * dt / rayleigh) / 10.) +
                              " % of the Rayleigh time and " + share_of_contact(contact / dt));
     if (smallest > suspicious_diameter)
       forecast.problems.warn("subsection 'lagrangian physical properties' / subsection 'particle "

@@ -95,7 +95,7 @@ def check_refusals(program: Program) -> None:
     (folder / "more.csv").write_text((folder / "measured.csv").read_text()
                                      + "box,height,9,1,1,3,fit\n")
     expect(program.run("study.prm", "--check"), 0, "The study is in order", "experiment box (drop)",
-           "3 effects and 1 nuisances", "core-hours")
+           "3 effects and 1 nuisance: ", "core-hours")
     expect(program.run("--list-observables"), 0, "drift (m): Mean place along x")
     expect(program.run("study.prm", "--list-effects"), 0, "bounce: contacts lose less energy")
     expect(program.run("study.prm", "--print-parameters"), 0, "set null runs")

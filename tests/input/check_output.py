@@ -78,7 +78,7 @@ DOUBTFUL = {
                              ["a particle overlaps a wall or solid by 0.2 of its radius"]),
     "a fast particle": (["insertion info/initial velocity = 0, 0, -100"],
                         ["moves by 0.4 of its radius in a time step"]),
-    "too few events": (FEW, ["only 5 of 20 particles come until the run ends"]),
+    "too few events": (FEW, ["only 5 of 20 particles come until the run ends, in 1 event."]),
     "events upon each other": ([*FEW, "simulation control/iteration end = 4000"],
                                ["between two events, the particles move by no more than 1.962e-05 m"]),
     "pictures without end": (["simulation control/output frequency = 1",
@@ -109,6 +109,20 @@ REFUSED = {
                             "lagrangian physical properties/number of particle types = 3",
                             *(f"lagrangian physical properties/particle type {k}/number = 2000000000"
                               for k in range(3))], "At most 4.29497e+09 are possible."),
+}
+
+# Name: settings, and lines or their beginnings, with whole numbers and their nouns.
+FACTS = {
+    "one particle": ([], ["Particle type 0: diameter 1000 um; the time step",
+                          "Memory: about 0.136 MB for 1 particle and 64 cells,",
+                          "  particles:  1 at most, 1 on average", "  steps:      2 of 2e-06 s",
+                          "  core-hours: about 3.5e-11 ("]),
+    "two sizes, one picture": ([*LIST, "insertion info/list diameters = 5e-4, 1e-3",
+                                "simulation control/output frequency = 1500000",
+                                "simulation control/iteration end = 1200001"],
+                               ["Particle type 0: diameters 500 to 1000 um; the time step",
+                                "Disk: 1 picture of about", "  particles:  2 at most, 2 on average",
+                                "  steps:      1200001 of 2e-06 s", "  core-hours: about 4.2e-05 ("]),
 }
 
 # Name, file, settings, a warning, and the number of all.
@@ -171,6 +185,14 @@ def check_doubtful(program: str, folder: Path) -> None:
             shutil.rmtree(folder / "results", ignore_errors=True)
 
 
+def check_facts(program: str, folder: Path) -> None:
+    for name, (settings, expected) in FACTS.items():
+        code, out, errors = call(program, "case.prm", "--check", settings=settings, cwd=folder)
+        for start in expected:
+            if code != 0 or sum(line.startswith(start) for line in out.splitlines()) != 1:
+                fail(name, f"exit code {code}, no line '{start}' in\n{out}{errors}")
+
+
 def check_refused(program: str, folder: Path) -> None:
     for name, (settings, sentence) in REFUSED.items():
         for options in (["--check"], []):
@@ -195,6 +217,7 @@ def main(program: str, folder: Path) -> int:
     folder.mkdir(parents=True)
     (folder / "case.prm").write_text(BASE)
     check_doubtful(program, folder)
+    check_facts(program, folder)
     check_refused(program, folder)
     check_processes(program, folder)
     # Without a word on gravity nothing falls, which may be meant and must then be written.

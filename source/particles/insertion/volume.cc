@@ -81,7 +81,7 @@ public:
     const std::string box =
         "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
         "room for " +
-        std::to_string(room) + " particles, but ";
+        format_count(static_cast<double>(room), "particle", "particles") + ", but ";
     const Vec3 extent = grid.upper - grid.lower;
     const double narrowest = std::min({extent.x, extent.y, extent.z});
     if (wanted > 0 && room == 0 && largest_diameter() > narrowest)
