@@ -1,6 +1,6 @@
 """The pages of the documentation: relative links lead to files and headings that exist, every page
-of doc/ is reached from its index, and the examples marked as complete (```prm complete) and
-the cases of prm/examples and prm/verification are accepted by the program.
+of doc/ is reached from its index, the examples marked as complete (```prm complete) and the cases of
+prm/examples and prm/verification are accepted by the program, and the sample of --check is what it prints.
 
 Usage: check_pages.py path/to/eunoe-particles
 """
@@ -8,6 +8,7 @@ Usage: check_pages.py path/to/eunoe-particles
 from __future__ import annotations
 
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -89,8 +90,25 @@ def check_examples(program: str) -> list[str]:
     return wrong
 
 
+def check_sample(program: str) -> list[str]:
+    """The command above the sample of --check in doc/input.md prints its lines in this order; of a line with
+    '...', what stands before."""
+    text = (ROOT / "doc" / "input.md").read_text(encoding="utf-8")
+    sample = re.search(r"^```sh\n\S*/eunoe-particles (.* --check .*)\n```\n\n.*\n\n```\n(.*?)^```", text,
+                       flags=re.M | re.S)
+    if not sample:
+        return ["doc/input.md has no sample of --check below its command."]
+    done = subprocess.run([program, *shlex.split(sample[1])], capture_output=True, text=True, check=False,
+                          cwd=ROOT)
+    said, printed = sample[2].splitlines(), done.stdout.splitlines()
+    same = len(said) == len(printed) and all(
+        line.startswith(says.removesuffix("...")) if says.endswith("...") else line == says
+        for says, line in zip(said, printed))
+    return [] if same else ["doc/input.md: --check does not print the sample but\n" + done.stdout + done.stderr]
+
+
 def main() -> int:
-    wrong = check_links() + check_examples(sys.argv[1])
+    wrong = check_links() + check_examples(sys.argv[1]) + check_sample(sys.argv[1])
     print("\n".join(wrong) if wrong else "ok")
     return 1 if wrong else 0
 
