@@ -23,6 +23,7 @@ import os
 import re
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -151,4 +152,6 @@ def main(words: list[str]) -> int:
 
 
 if __name__ == "__main__":
+    # As other tools, end quietly when who reads the output has read enough (--list | head).
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     sys.exit(main(sys.argv[1:]))

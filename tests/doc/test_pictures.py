@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -73,6 +75,14 @@ class Pictures(unittest.TestCase):
 
     def test_the_list_names_pictures_and_commands(self) -> None:
         self.assertIn("rule: nothing\n    a.png\n    $ bash", pictures.listing())
+
+    def test_a_reader_may_leave(self) -> None:
+        reader, writer = os.pipe()
+        os.close(reader)
+        with os.fdopen(writer, "w") as output:
+            done = subprocess.run([sys.executable, "-B", pictures.__file__, "--list"], stdout=output,
+                                  stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(done.stderr, "")
 
 
 if __name__ == "__main__":
