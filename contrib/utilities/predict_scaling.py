@@ -37,6 +37,9 @@ try:
     from scaling.mesh import Failure, Mesh
     from scaling.partition import Partition, divide
 except ImportError as error:
+    if not {"-h", "--help"}.isdisjoint(sys.argv[1:]):
+        print(__doc__)
+        sys.exit()
     sys.exit(f"{error}. This tool needs Python 3 with numpy.")
 
 

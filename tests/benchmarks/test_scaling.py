@@ -3,6 +3,7 @@
 Usage: test_scaling.py
 """
 
+import subprocess
 import sys
 import unittest
 from itertools import product
@@ -257,6 +258,21 @@ class Plate(unittest.TestCase):
         shares = np.array([0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927,
                            0.050544])
         return shares.sum() / (shares / (np.pi / 6. * diameters**3)).sum()
+
+
+class Tool(unittest.TestCase):
+    def test_help_needs_no_numpy(self):
+        tool = CONTRIB / "utilities" / "predict_scaling.py"
+        without_numpy = ("import runpy, sys; sys.modules['numpy'] = None; "
+                         f"sys.argv = ['{tool}', *sys.argv[1:]]; "
+                         f"sys.path.insert(0, '{tool.parent}'); "
+                         f"runpy.run_path('{tool}', run_name='__main__')")
+        for option, code, text in (("--help", 0, "Usage: contrib/utilities/predict_scaling.py"),
+                                   ("--length-factor=1", 1, "needs Python 3 with numpy")):
+            done = subprocess.run([sys.executable, "-B", "-c", without_numpy, option],
+                                  capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, code)
+            self.assertIn(text, done.stdout + done.stderr)
 
 
 if __name__ == "__main__":
