@@ -163,14 +163,6 @@ double PhysicalProperties::shortest_contact_time(const ParticleType &type,
   return M_PI / std::sqrt(largest);
 }
 
-double PhysicalProperties::smallest_diameter() const
-{
-  double smallest = std::numeric_limits<double>::infinity();
-  for (const ParticleType &type : types)
-    smallest = std::min(smallest, type.sizes.make()->smallest());
-  return smallest;
-}
-
 double PhysicalProperties::largest_diameter() const
 {
   double largest = 0.;

@@ -48,8 +48,6 @@ struct PhysicalProperties : public ParameterSection
   Materials materials() const;
   /// Largest diameter that the types' size distributions give (m).
   double largest_diameter() const;
-  /// Smallest diameter that the types' size distributions give (m).
-  double smallest_diameter() const;
   int wall_material() const { return static_cast<int>(types.size()); }
   /// Number of the material that the input gives to `wall material` @p k.
   int wall_material(std::size_t k) const { return wall_material() + 1 + static_cast<int>(k); }
