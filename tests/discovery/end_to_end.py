@@ -32,7 +32,7 @@ class Program:
 
     def run(self, *arguments: str, ranks: int = 1) -> tuple[int, str]:
         done = subprocess.run(self.command(*arguments, ranks=ranks), cwd=self.folder, text=True,
-                              capture_output=True, check=False)
+                              capture_output=True, check=False, timeout=300)
         return done.returncode, done.stdout + done.stderr
 
 
@@ -138,6 +138,20 @@ def check_resume(program: Program, reference: Path) -> None:
     assert answer(program.folder / "killed") == answer(reference)
 
 
+def check_full_disk(program: Program, reference: Path) -> None:
+    """A result that cannot be written ends all ranks; where there is space again, the study goes on."""
+    arguments = ["study.prm", *settings(output_path="full", cache_path="output_cache")]
+    for name in ("study.json", "discovery.json"):
+        link = program.folder / "full" / (name + ".new")
+        link.parent.mkdir(exist_ok=True)
+        link.symlink_to("/dev/full")
+        expect(program.run(*arguments, ranks=2), FAILED,
+               f"{name} cannot be written: No space left on device")
+        assert not link.is_symlink(), "it left a file that is not complete"
+    expect(program.run(*arguments, ranks=2), NAMED)
+    assert answer(program.folder / "full") == answer(reference)
+
+
 def main() -> None:
     folder = Path(sys.argv[2])
     prepare(folder)
@@ -159,6 +173,7 @@ def main() -> None:
     assert answer(reference) == first
     assert json.loads((reference / "discovery.json").read_text())["simulations"]["made_now"] == 0
     check_resume(program, reference)
+    check_full_disk(program, reference)
     print("ok")
 
 
