@@ -1,4 +1,4 @@
-#include <eunoe/application.h>
+#include <eunoe/simulation/application.h>
 
 #include <deal.II/base/mpi.h>
 

@@ -1,6 +1,6 @@
 // Any text as an input file, as far as --check goes: everything is built from what was read.
 
-#include <eunoe/processes/process.h>
+#include <eunoe/simulation/process.h>
 #include <eunoe/simulation/simulation.h>
 
 #include "fuzzing.h"

@@ -1,6 +1,6 @@
 // Any text as a table of particles.
 
-#include <eunoe/particles/insertion.h>
+#include <eunoe/simulation/insertion.h>
 
 #include "fuzzing.h"
 

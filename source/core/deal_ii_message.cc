@@ -1,5 +1,4 @@
-#include "deal_ii_message.h"
-
+#include <eunoe/core/deal_ii_message.h>
 #include <eunoe/core/quoted_text.h>
 
 #include <deal.II/base/exceptions.h>

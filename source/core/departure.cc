@@ -1,5 +1,5 @@
-#include <eunoe/application.h>
 #include <eunoe/core/departure.h>
+#include <eunoe/core/exit_code.h>
 #include <eunoe/core/log.h>
 
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "gmsh_file.h"
+#include <eunoe/core/gmsh_file.h>
 
 #include <algorithm>
 #include <iterator>

@@ -1,4 +1,4 @@
-#include <eunoe/core/command_line.h>
+#include <eunoe/core/exit_code.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/machine.h>
 #include <eunoe/core/quoted_text.h>
@@ -7,6 +7,7 @@
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/results.h>
 #include <eunoe/discovery/twin.h>
+#include <eunoe/simulation/command_line.h>
 
 #include <boost/algorithm/string.hpp>
 

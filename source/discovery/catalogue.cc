@@ -3,7 +3,7 @@
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/catalogue.h>
-#include <eunoe/processes/process.h>
+#include <eunoe/simulation/process.h>
 
 #include <algorithm>
 #include <filesystem>

@@ -1,9 +1,8 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/domain/mesh.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <deal.II/base/data_out_base.h>
-
-#include "../simulation/mesh.h"
 
 #include <algorithm>
 #include <array>

@@ -3,9 +3,8 @@
 #include <eunoe/core/log.h>
 #include <eunoe/core/machine.h>
 #include <eunoe/core/quoted_text.h>
+#include <eunoe/domain/mesh.h>
 #include <eunoe/simulation/parameters.h>
-
-#include "mesh.h"
 
 #include <cmath>
 #include <filesystem>

@@ -23,7 +23,7 @@ void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_
     const Timers::Scope scope(timers, Section::search);
     first_new = system.exchange(delivery, removed, lost, solids);
     // The mesh was shared out before there were particles. This changes no result.
-    const LoadBalancingParameters &balancing = parameters.model.load_balancing;
+    const LoadBalancingParameters &balancing = parameters.load_balancing;
     if (step == 0 && system.imbalance(balancing) > balancing.threshold_at_start)
       system.search(solids, &balancing);
   }

@@ -108,7 +108,7 @@ Forecast Simulation::foresee(const bool writes) const
   const RunEstimate cost = estimate();
   judge_resources(parameters, cost, domain.n_cells(), comm, forecast);
   if (writes)
-    judge_output(parameters, cost, Process::n_components(fields), comm, forecast);
+    judge_output(parameters, cost, n_components(fields), comm, forecast);
   return forecast;
 }
 

@@ -2,7 +2,7 @@
 
 #include <eunoe/contact/contact_grid.h>
 
-#include "../particles/insertion/obstacles.h"
+#include "insertion/obstacles.h"
 #include "judgements.h"
 
 #include <algorithm>

@@ -26,7 +26,7 @@ using Ranges =
 class ParticlePatches : public dealii::DataOutInterface<0, 3>
 {
 public:
-  ParticlePatches(const ParticleArrays &p, const std::vector<Process::Field> &fields,
+  ParticlePatches(const ParticleArrays &p, const std::vector<ParticleField> &fields,
                   const std::vector<PictureField> &more)
   {
     const auto add = [this](const std::string &name, unsigned int n) {
@@ -41,7 +41,7 @@ public:
     add("velocity", 3);
     add("omega", 3);
     unsigned int n_extra = 0;
-    for (const Process::Field &field : fields) {
+    for (const ParticleField &field : fields) {
       add(field.name, field.n_components);
       n_extra += field.n_components;
     }
@@ -168,7 +168,7 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
 }
 
 void PictureSeries::write(const double time, const ParticleArrays &particles,
-                          const std::vector<Process::Field> &fields,
+                          const std::vector<ParticleField> &fields,
                           const std::vector<PictureField> &more)
 {
   ParticlePatches patches(particles, fields, more);

@@ -68,9 +68,10 @@ Parameters::Parameters(const SectionCounts &counts)
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {&control,        &mesh,    &refinement, &grid_motion,
-                                         &boundaries,     &physics, &insertion,  &model,
-                                         &floating_walls, &solids,  &restart};
+  std::vector<ParameterSection *> all = {
+      &control,        &mesh,      &refinement, &grid_motion,    &boundaries,
+      &physics,        &insertion, &model,      &load_balancing, &sparse_contacts,
+      &floating_walls, &solids,    &restart};
   for (auto &[name, load] : loads)
     all.push_back(load.get());
   for (auto &[name, observable] : observables)

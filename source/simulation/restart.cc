@@ -142,7 +142,7 @@ void Simulation::resume()
   understand(*checkpoint, [&](const Json &head) {
     take_over(head);
     domain.return_to_earlier_pose();
-    system.load(*checkpoint, solids, parameters.model.load_balancing, sparse);
+    system.load(*checkpoint, solids, parameters.load_balancing, sparse);
     n_particles = system.n_global();
     if (Process *const process = parameters.process())
       process->resume(*this, *checkpoint);

@@ -22,13 +22,13 @@ Parameters &prepare(Parameters &parameters)
 }
 
 /// Extra doubles of the particles: the process's, then those that tell who sleeps.
-std::vector<Process::Field> make_fields(const Parameters &parameters)
+std::vector<ParticleField> make_fields(const Parameters &parameters)
 {
-  std::vector<Process::Field> fields;
+  std::vector<ParticleField> fields;
   if (const Process *const process = parameters.process())
     fields = process->fields();
-  if (parameters.model.sparse_contacts.enabled)
-    for (const Process::Field &field : SparseContacts::fields())
+  if (parameters.sparse_contacts.enabled)
+    for (const ParticleField &field : SparseContacts::fields())
       fields.push_back(field);
   return fields;
 }
@@ -68,9 +68,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const P
       model(parameters.contact_model(largest_diameter)),
       guard(domain, model.get_materials(), parameters.model.largest_overlap),
       fields(make_fields(parameters)),
-      sparse(parameters.model.sparse_contacts, fields, parameters.control.time_step),
-      ledger(domain.outlets()), system(domain, model, Process::n_components(fields), sparse.flag(),
-                                       skin, largest_diameter, ledger, timers),
+      sparse(parameters.sparse_contacts, fields, parameters.control.time_step),
+      ledger(domain.outlets()), system(domain, model, n_components(fields), sparse.flag(), skin,
+                                       largest_diameter, ledger, timers),
       integrator(integrators().make(parameters.model.integration_method)),
       output(parameters.control.output_path, comm),
       checkpoints(parameters.control.output_path, parameters.restart.filename,
@@ -100,7 +100,7 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const P
   }
   give_materials(solids, parameters.physics, problems);
   std::vector<double> defaults;
-  for (const Process::Field &field : fields)
+  for (const ParticleField &field : fields)
     defaults.insert(defaults.end(), field.n_components, field.initial);
   system.set_extra_defaults(defaults);
   if (!problems.empty())
@@ -304,7 +304,7 @@ bool Simulation::search_is_due()
 
 const LoadBalancingParameters *Simulation::balance_if_due()
 {
-  const LoadBalancingParameters &p = parameters.model.load_balancing;
+  const LoadBalancingParameters &p = parameters.load_balancing;
   bool due = false;
   if (p.method == "once")
     due = !balanced_once && step >= p.step;

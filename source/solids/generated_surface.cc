@@ -1,11 +1,10 @@
 // Surfaces of deal.II's generators: quadrilaterals in space, cut into triangles.
 
+#include <eunoe/core/deal_ii_message.h>
 #include <eunoe/solids/solid_parameters.h>
 
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
-
-#include "../core/deal_ii_message.h"
 
 #include <stdexcept>
 

@@ -1,7 +1,6 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/gmsh_file.h>
 #include <eunoe/solids/solid_parameters.h>
-
-#include "../core/gmsh_file.h"
 
 #include <map>
 

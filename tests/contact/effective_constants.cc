@@ -2,7 +2,7 @@
 // Mindlin's theory in the form that names the shear modulus, harmonic means, and the time step that
 // Gaboriault et al. (2025) state for their powder.
 
-#include <eunoe/particles/physical_properties.h>
+#include <eunoe/state/physical_properties.h>
 
 #include "../one_contact.h"
 

@@ -112,8 +112,8 @@ def write_tree(page: Page, tree: Path) -> None:
     """The additions and the edited files, in their places under a folder of their own."""
     files = dict(page.files)
     model, wall = page.blocks[LAW][1:]
-    files["source/contact/model_parameters.cc"] = edited(
-        "source/contact/model_parameters.cc",
+    files["source/simulation/model_parameters.cc"] = edited(
+        "source/simulation/model_parameters.cc",
         ("std::vector<NamedModel> models = {\n", "std::vector<NamedModel> models = {\n" + model),
         ('                  "linear|nonlinear|DMT|JKR",\n', wall))
     members, entries, use = page.blocks[MOTION][1:]
@@ -206,7 +206,7 @@ def main() -> int:
     law, observable = (name for name in page.files if name.endswith(".cc"))
     objects = [build.compile(law, "source/contact/laws/dmt.cc"),
                build.compile(observable, "source/observables/energies.cc"),
-               build.compile("source/contact/model_parameters.cc", "source/contact/model_parameters.cc")]
+               build.compile("source/simulation/model_parameters.cc", "source/simulation/model_parameters.cc")]
     check_case(build.link("eunoe-particles-with-additions", objects, True), folder)
     objects = [build.compile(f"source/solids/{name}.cc", "source/solids/solid_objects.cc")
                for name in ("solid_objects", "vibration_example")]

@@ -1,7 +1,8 @@
 // A program in which some ranks throw while the others wait for them; lone_error.py runs it.
 // Usage: lone-error RANK ...
 
-#include <eunoe/core/command_line.h>
+#include <eunoe/core/exit_code.h>
+#include <eunoe/simulation/command_line.h>
 
 #include <algorithm>
 #include <mpi.h>

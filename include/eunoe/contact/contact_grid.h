@@ -3,7 +3,7 @@
 
 #include <eunoe/contact/pair_list.h>
 #include <eunoe/core/periodic_box.h>
-#include <eunoe/particles/particle_arrays.h>
+#include <eunoe/state/particle_arrays.h>
 
 #include <array>
 #include <cstdint>

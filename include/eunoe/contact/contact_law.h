@@ -1,9 +1,9 @@
 #ifndef eunoe_contact_contact_law_h
 #define eunoe_contact_contact_law_h
 
-#include <eunoe/contact/material.h>
 #include <eunoe/contact/pair_block.h>
 #include <eunoe/core/registry.h>
+#include <eunoe/state/material.h>
 
 #include <memory>
 #include <string>

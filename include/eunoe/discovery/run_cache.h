@@ -1,7 +1,7 @@
 #ifndef eunoe_discovery_run_cache_h
 #define eunoe_discovery_run_cache_h
 
-#include <eunoe/processes/process.h>
+#include <eunoe/simulation/process.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 #ifndef eunoe_processes_box_mesh_h
 #define eunoe_processes_box_mesh_h
 
-#include <eunoe/simulation/domain.h>
+#include <eunoe/domain/domain.h>
 
 namespace eunoe {
 

@@ -1,9 +1,9 @@
 #ifndef eunoe_simulation_output_h
 #define eunoe_simulation_output_h
 
-#include <eunoe/particles/particle_arrays.h>
-#include <eunoe/processes/process.h>
+#include <eunoe/simulation/process.h>
 #include <eunoe/solids/solid.h>
+#include <eunoe/state/particle_arrays.h>
 
 #include <cstdint>
 #include <mpi.h>
@@ -47,8 +47,8 @@ public:
   /// file cannot be written, like all that follows.
   /// @param fields names of the extra doubles
   /// @param more further data of the particles
-  void write(double time, const ParticleArrays &particles,
-             const std::vector<Process::Field> &fields, const std::vector<PictureField> &more = {});
+  void write(double time, const ParticleArrays &particles, const std::vector<ParticleField> &fields,
+             const std::vector<PictureField> &more = {});
 
   /// Writes what all ranks together draw with deal.II, cells or lines; collective.
   ///@{

@@ -2,15 +2,17 @@
 #define eunoe_simulation_parameters_h
 
 #include <eunoe/checkpoint/restart_parameters.h>
-#include <eunoe/contact/model_parameters.h>
-#include <eunoe/forces/load.h>
-#include <eunoe/observables/observable.h>
-#include <eunoe/particles/insertion.h>
-#include <eunoe/particles/physical_properties.h>
-#include <eunoe/processes/process.h>
+#include <eunoe/domain/domain.h>
+#include <eunoe/engine/load.h>
+#include <eunoe/engine/load_balancing.h>
+#include <eunoe/engine/sparse_contacts.h>
 #include <eunoe/simulation/control_parameters.h>
-#include <eunoe/simulation/domain.h>
+#include <eunoe/simulation/insertion.h>
+#include <eunoe/simulation/model_parameters.h>
+#include <eunoe/simulation/observable.h>
+#include <eunoe/simulation/process.h>
 #include <eunoe/solids/solid_parameters.h>
+#include <eunoe/state/physical_properties.h>
 
 #include <map>
 #include <memory>
@@ -60,6 +62,8 @@ public:
   PhysicalProperties physics;
   InsertionParameters insertion;
   ModelParameters model;
+  LoadBalancingParameters load_balancing;
+  SparseContactParameters sparse_contacts;
   FloatingWallParameters floating_walls;
   SolidObjectParameters solids;
   RestartParameters restart;

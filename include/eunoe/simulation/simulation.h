@@ -3,14 +3,14 @@
 
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/core/log.h>
-#include <eunoe/forces/load.h>
-#include <eunoe/observables/observable.h>
-#include <eunoe/particles/particle_ids.h>
+#include <eunoe/engine/integrator.h>
+#include <eunoe/engine/load.h>
+#include <eunoe/engine/particle_system.h>
 #include <eunoe/simulation/forecast.h>
-#include <eunoe/simulation/integrator.h>
+#include <eunoe/simulation/observable.h>
 #include <eunoe/simulation/output_folder.h>
 #include <eunoe/simulation/parameters.h>
-#include <eunoe/simulation/particle_system.h>
+#include <eunoe/state/particle_ids.h>
 
 #include <functional>
 
@@ -146,7 +146,7 @@ private:
   Domain domain;
   const ContactModel model;
   const ParticleGuard guard;
-  const std::vector<Process::Field> fields;
+  const std::vector<ParticleField> fields;
   const SparseContacts sparse;
   Ledger ledger;
   Timers timers;

@@ -28,7 +28,7 @@ constexpr double column_width = 0.25;
 
 } // namespace
 
-std::vector<Process::Field> LayerLog::fields()
+std::vector<ParticleField> LayerLog::fields()
 {
   return {{"layer", 1, -1.},
           {"tracked", 1, 0.},

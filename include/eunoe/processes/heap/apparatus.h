@@ -1,9 +1,9 @@
 #ifndef eunoe_processes_heap_apparatus_h
 #define eunoe_processes_heap_apparatus_h
 
-#include <eunoe/particles/new_particle.h>
 #include <eunoe/processes/heap/parameters.h>
 #include <eunoe/solids/solid.h>
+#include <eunoe/state/new_particle.h>
 
 namespace eunoe::heap {
 

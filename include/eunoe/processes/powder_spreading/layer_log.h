@@ -13,7 +13,7 @@ class LayerLog
 {
 public:
   /// The extra doubles of a particle, in this order.
-  static std::vector<Process::Field> fields();
+  static std::vector<ParticleField> fields();
 
   LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
            const Apparatus &apparatus);

@@ -3,7 +3,7 @@
 
 #include <eunoe/core/exact_sum.h>
 #include <eunoe/core/vec3.h>
-#include <eunoe/observables/measurement.h>
+#include <eunoe/simulation/measurement.h>
 
 namespace eunoe::spreading {
 

@@ -19,7 +19,7 @@ public:
   void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
   void prepare(Parameters &parameters) override;
   RunEstimate estimate(const Parameters &parameters) const override;
-  std::vector<Field> fields() const override { return LayerLog::fields(); }
+  std::vector<ParticleField> fields() const override { return LayerLog::fields(); }
   std::vector<Solid> make_solids(const Parameters &parameters) override
   {
     return apparatus->make_solids(parameters.physics.wall_material());

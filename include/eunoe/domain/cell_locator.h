@@ -1,0 +1,66 @@
+#ifndef eunoe_domain_cell_locator_h
+#define eunoe_domain_cell_locator_h
+
+// Finds the cells of particles in meshes whose cells are no boxes of one size, for source files
+// only.
+
+#include <eunoe/domain/domain.h>
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/distributed/tria.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace eunoe {
+
+/// For every cell its centre and its faces as planes: a place belongs to the cell that it sticks
+/// out of least. So every place belongs to some cell, those too that round-off, faces that are not
+/// flat or hanging nodes on a curved boundary leave outside of all.
+///
+/// deal.II's search inverts the mapping of each cell and loses what lies on a face.
+class CellLocator
+{
+public:
+  using Cell = dealii::Triangulation<3>::active_cell_iterator;
+
+  explicit CellLocator(Domain &domain);
+  ~CellLocator();
+
+  /// Looks at the cells anew after they have been shared out; must be called first.
+  void rebuild();
+
+  /// How far a place sticks out of a cell by its active index, at most (m); negative inside.
+  double outside(unsigned int cell, const Vec3 &x) const;
+  /// Distance of a place from the box around a cell (m).
+  double gap(unsigned int cell, const Vec3 &x) const;
+  /// The cell of a place near a known cell, among those that this rank owns and their neighbours.
+  unsigned int walk(unsigned int from, const Vec3 &x) const;
+  /// The cell of a place among those that this rank owns, which must be some.
+  unsigned int find(const Vec3 &x) const;
+
+  const Cell &cell(unsigned int index) const { return cells[index]; }
+
+private:
+  struct Tree;
+  /// Bounds of a cell, relative to its centre.
+  struct Bounds
+  {
+    Vec3 centre, lower, upper;
+    std::array<Vec3, 6> normal;
+    std::array<double, 6> offset;
+  };
+
+  Domain &domain;
+  std::vector<Cell> cells;
+  std::vector<Bounds> bounds;
+  /// Cells around a vertex, of all vertices that coincide over periodic faces; by vertex.
+  std::vector<std::vector<unsigned int>> at_vertex;
+  std::vector<unsigned int> representative;
+  std::unique_ptr<const Tree> tree;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,60 @@
+#ifndef eunoe_engine_halo_h
+#define eunoe_engine_halo_h
+
+#include <eunoe/contact/contact_grid.h>
+#include <eunoe/contact/pair_list.h>
+#include <eunoe/engine/particle_store.h>
+
+#include <mpi.h>
+
+namespace eunoe {
+
+/// Copies of the neighbours' particles (ghosts): who needs which, and their state step by step.
+class Halo
+{
+public:
+  explicit Halo(MPI_Comm comm) : comm(comm) {}
+
+  /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
+  /// @param gap up to which pairs are listed (m)
+  void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
+             double gap);
+
+  /// From now on takes in only ghosts of pairs, about half of them; collective.
+  void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
+
+  /// Number that is taken in unless it sleeps.
+  std::size_t n_ghosts() const;
+
+  /// Brings position, velocity and spin of the ghosts up to date; collective.
+  void update(ParticleArrays &particles);
+
+  /// Gives the ghosts the flags of their originals, one a particle; collective.
+  void update(std::vector<std::uint8_t> &flags);
+
+  /// From now on takes in sleepers again.
+  void include_sleepers();
+  /// From now on leaves out those who sleep, whose state does not change.
+  void leave_out_sleepers(const ParticleArrays &particles);
+
+private:
+  struct Neighbour
+  {
+    int rank;
+    std::vector<std::int32_t> sent;     ///< rows of owned particles
+    std::vector<std::int32_t> received; ///< rows of ghosts
+    /// Those that are awake.
+    std::vector<std::int32_t> sent_awake, received_awake;
+    std::vector<double> out, in;
+  };
+
+  /// Sends `out` to and fills `in` from every neighbour; both have their sizes already.
+  void exchange(int tag);
+
+  MPI_Comm comm;
+  std::vector<Neighbour> neighbours;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,39 @@
+#ifndef eunoe_engine_integrator_h
+#define eunoe_engine_integrator_h
+
+#include <eunoe/core/registry.h>
+#include <eunoe/state/particle_arrays.h>
+
+#include <memory>
+
+namespace eunoe {
+
+/// Moves the owned particles over one time step, before and after the forces are computed.
+///
+/// What remains to be done after the forces may be put off to the beginning of the next step, in
+/// the same memory pass and with the same arithmetic; `complete` does it at once for those who want
+/// to look at the state.
+class Integrator
+{
+public:
+  virtual ~Integrator() = default;
+
+  /// Brings positions to the end of the step and sets forces and torques to zero.
+  /// @param dt (s)
+  /// @return square of the largest distance of a particle that is awake from its reference position
+  ///         (m2), no number if one of them is none
+  virtual double begin_step(ParticleArrays &particles, double dt) = 0;
+
+  /// To be called when the forces at the end of the step are complete.
+  virtual void end_step() {}
+
+  /// Brings velocities to the end of the step.
+  virtual void complete(ParticleArrays &particles, double dt) = 0;
+};
+
+using IntegratorRegistry = Registry<std::unique_ptr<Integrator>>;
+IntegratorRegistry &integrators();
+
+} // namespace eunoe
+
+#endif

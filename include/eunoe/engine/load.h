@@ -1,0 +1,44 @@
+#ifndef eunoe_engine_load_h
+#define eunoe_engine_load_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/registry.h>
+#include <eunoe/state/particle_arrays.h>
+
+#include <memory>
+
+namespace eunoe {
+
+struct PhysicalProperties;
+
+/// A force on every particle that is not a contact: gravity, drag, charge, ...
+class Load
+{
+public:
+  virtual ~Load() = default;
+
+  /// Adds to force and torque of the owned particles that are awake.
+  /// @param time at which the forces are computed (s)
+  virtual void add(ParticleArrays &particles, double time) const = 0;
+
+  /// Whether particles at rest feel another load at the end of a span of time than at its
+  /// beginning, so that those who sleep must wake.
+  virtual bool changes(double /*begin*/, double /*end*/) const { return false; }
+};
+
+/// What the input file says of a load, in entries that the load's own file declares, if it has any.
+class LoadSection : public ParameterSection
+{
+public:
+  void declare(dealii::ParameterHandler &) override {}
+
+  /// Null where the load does not act.
+  virtual std::unique_ptr<Load> make(const PhysicalProperties &physics) const = 0;
+};
+
+using LoadRegistry = Registry<std::unique_ptr<LoadSection>>;
+LoadRegistry &loads();
+
+} // namespace eunoe
+
+#endif

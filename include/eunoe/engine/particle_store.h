@@ -1,0 +1,77 @@
+#ifndef eunoe_engine_particle_store_h
+#define eunoe_engine_particle_store_h
+
+#include <eunoe/contact/contact_grid.h>
+#include <eunoe/domain/domain.h>
+#include <eunoe/engine/contact_rows.h>
+#include <eunoe/state/new_particle.h>
+
+#include <functional>
+
+namespace eunoe {
+
+struct LoadBalancingParameters;
+
+/// The store of record of all particles, distributed over the ranks by the background mesh
+/// (deal.II's ParticleHandler): identity, migration, repartitioning. Between searches the
+/// simulation computes with ParticleArrays; `write` and `read` move the state between the two.
+class ParticleStore
+{
+public:
+  /// @param n_extra doubles a particle beside the ones of the engine
+  /// @param asleep place among them of the flag that is not 0 for sleepers; -1: nobody sleeps
+  ParticleStore(Domain &domain, unsigned int n_extra, int asleep = -1);
+  ~ParticleStore();
+
+  /// Number of particles of all ranks.
+  std::uint64_t n_global() const;
+
+  /// Inserts this rank's share of new particles, wherever they lie; collective.
+  /// @param extra initial values of the extra doubles of every particle
+  /// @param origins where the contacts of each are kept, empty for none
+  /// Throws a UserError if one of them lies outside the mesh.
+  void insert(const std::vector<NewParticle> &particles, const std::vector<double> &extra,
+              const std::vector<Origin> &origins = {});
+
+  /// Takes over the state of the owned particles, which must be those of the last `read`, wraps
+  /// their positions and notes that their contacts are kept in row k of this rank.
+  /// @param work cost of each in a step, about 1; new particles count 1
+  void write(const ParticleArrays &particles, const std::vector<double> &work);
+
+  /// Removes owned particles by their rows in the last `read`; collective. To be called between
+  /// `write` and `migrate`.
+  void remove(const std::vector<std::size_t> &rows);
+
+  /// Hands every particle to the rank that owns its cell; collective.
+  /// Throws a UserError if one has left the mesh.
+  void migrate();
+
+  /// Shares out the cells anew by their loads; collective.
+  void repartition(const LoadBalancingParameters &parameters);
+
+  /// Largest load of a rank less the smallest, over the mean; collective.
+  double imbalance(const LoadBalancingParameters &parameters) const;
+
+  /// Fills the arrays with the owned particles, ordered by (cell of @p grid, id), without ghosts.
+  /// @param origins where the contacts of each are kept
+  void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &origins);
+
+  /// Ranks that need a copy of an owned particle by its row in the last `read`: those that own a
+  /// neighbour of its cell, across periodic faces too, within reach.
+  /// @param position of the particle as it was read
+  /// @param reach distance up to which it can meet the centres of others (m)
+  /// @param ranks ascending
+  void ranks_near(std::size_t row, const Vec3 &position, double reach,
+                  std::vector<int> &ranks) const;
+
+  /// Active index of the cell in which an owned particle was found, by its row in the last `read`.
+  unsigned int cell(std::size_t row) const;
+
+private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,164 @@
+#ifndef eunoe_engine_particle_system_h
+#define eunoe_engine_particle_system_h
+
+#include <eunoe/contact/contact_grid.h>
+#include <eunoe/contact/pair_forces.h>
+#include <eunoe/core/timers.h>
+#include <eunoe/engine/halo.h>
+#include <eunoe/engine/ledger.h>
+#include <eunoe/engine/load.h>
+#include <eunoe/engine/particle_guard.h>
+#include <eunoe/engine/particle_store.h>
+#include <eunoe/engine/solid_contacts.h>
+#include <eunoe/engine/sparse_contacts.h>
+
+namespace eunoe {
+
+class Checkpoint;
+class CheckpointWriter;
+
+/// New particles with what their contacts remember.
+struct Delivery
+{
+  std::vector<NewParticle> particles; ///< this rank's share; ids larger than all before
+  /// One row a particle, or none at all; partners are named by their new ids.
+  ContactRows rows{0};
+  bool has_rows = false;
+};
+
+/// All particles of a run and their contacts: the store of record, the arrays of the hot loop, the
+/// ghosts, the lists of what can touch, and the search that rebuilds them all.
+class ParticleSystem
+{
+public:
+  /// @param asleep place of the sleepers' flag among the extra doubles, -1 if nobody sleeps
+  /// @param skin gap up to which pairs are listed (m)
+  /// @param largest_diameter of all particles ever (m)
+  ParticleSystem(Domain &domain, const ContactModel &model, unsigned int n_extra, int asleep,
+                 double skin, double largest_diameter, Ledger &ledger, Timers &timers);
+
+  /// Sets the initial values of the extra doubles of particles to come.
+  void set_extra_defaults(const std::vector<double> &values) { extra_defaults = values; }
+
+  /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
+  /// memory. Particles beyond an outlet leave. Collective.
+  /// @param lost rows of owned particles that are taken out and counted as lost
+  void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
+              const std::vector<std::size_t> &lost = {});
+
+  /// What is wrong with this rank's particles.
+  Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids, double longest_way,
+                 double dt) const
+  {
+    return guard.inspect(particles, pairs, solid_contacts, solids, longest_way, dt);
+  }
+  std::string describe(std::size_t row, const std::vector<Solid> &solids) const
+  {
+    return describe_particle(particles, row, pairs, solid_contacts, solids);
+  }
+
+  /// Adds and removes particles, then searches. Those that stay keep their forces; the new ones
+  /// have none yet. Collective.
+  /// @param removed rows of owned particles
+  /// @param lost rows of those that are taken out and counted as lost
+  /// @return the smallest id of the new particles of all ranks
+  ParticleId exchange(const Delivery &delivery, const std::vector<std::size_t> &removed,
+                      const std::vector<std::size_t> &lost, const std::vector<Solid> &solids);
+
+  /// Brings the ghosts up to date; collective.
+  void update_ghosts() { halo.update(particles); }
+  /// Of this rank: those that are brought up to date.
+  std::size_t n_paired_ghosts() const { return halo.n_ghosts(); }
+
+  /// Keeps awake those around particles that leave at the coming search, as what held them goes;
+  /// collective.
+  /// @param lost rows of owned particles
+  void stir_around_leaving(const SparseContacts &sparse, const std::vector<std::size_t> &lost,
+                           unsigned long long step);
+
+  /// Puts to sleep and wakes, then brings the ghosts up to date; collective.
+  void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
+
+  /// Lets every contact begin anew.
+  void forget_contacts();
+
+  /// Adds the forces of all contacts and advances their memory by @p dt (s).
+  /// @param loads if not null: forces on the solids, one a solid
+  void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,
+                          std::vector<SolidLoad> *loads);
+
+  /// Computes the forces on the particles with ids from @p first_new on, which a scheme with an
+  /// opening half step needs; forces on the others and the memory of all contacts stay as they are.
+  void add_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
+                         const std::vector<Solid> &solids, double time);
+
+  /// What acts at present in all contacts of owned particles; changes nothing. A contact of two
+  /// ranks is known to both.
+  std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time);
+
+  /// Adds all particles, with what their contacts remember and where they were at the last search,
+  /// to a checkpoint; collective. Velocities must belong to the present time.
+  void save(CheckpointWriter &writer) const;
+
+  /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
+  /// last search had left them; collective.
+  /// @param solids in their places at that search
+  /// @param sparse knows who slept
+  void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
+            const LoadBalancingParameters &balancing, const SparseContacts &sparse);
+
+  /// Memory of all contacts by owned particle.
+  ContactRows contact_rows() const;
+
+  /// Largest load of a rank less the smallest, over the mean; collective.
+  double imbalance(const LoadBalancingParameters &parameters) const
+  {
+    return store.imbalance(parameters);
+  }
+  std::uint64_t n_global() const { return store.n_global(); }
+  unsigned long long n_searches() const { return searches; }
+  unsigned long long n_balances() const { return balances; }
+  std::size_t n_pairs() const { return pairs.size(); }
+  const SolidContacts &get_solid_contacts() const { return solid_contacts; }
+  const ParticleStore &get_store() const { return store; }
+
+  ParticleArrays particles;
+
+private:
+  /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
+  std::vector<double> work() const;
+  bool is_within_reach(std::size_t pair) const;
+  /// Owned particles that are beyond an outlet, and which one.
+  std::vector<std::pair<std::size_t, int>> beyond_outlets() const;
+  /// Counts those who leave through outlets, and those who are lost.
+  /// @return the rows of all of them
+  std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
+  /// Sorts out the pairs of two sleepers and the ghosts that sleep.
+  void leave_out_sleepers();
+  void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
+  /// Room for the memory of the contacts at once, as what grows by itself takes twice as much.
+  void make_room_for_contacts();
+  /// Reads the particles from the store and makes ghosts and empty lists.
+  /// @return where the contacts of each owned particle are kept
+  std::vector<Origin> build_lists(const std::vector<Solid> &solids);
+
+  Domain &domain;
+  const ContactModel &model;
+  const double skin;
+  Ledger &ledger;
+  Timers &timers;
+  ParticleStore store;
+  Halo halo;
+  ContactGrid grid;
+  PairForces pair_forces;
+  SolidContacts solid_contacts;
+  PairList pairs;
+  ContactRows rows;
+  std::vector<double> extra_defaults;
+  std::size_t pairs_with_room = 0; ///< for whose contacts there is room in the memory
+  unsigned long long searches = 0, balances = 0;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,108 @@
+#ifndef eunoe_engine_solid_contacts_h
+#define eunoe_engine_solid_contacts_h
+
+#include <eunoe/contact/contact_force.h>
+#include <eunoe/contact/contact_memory.h>
+#include <eunoe/contact/contact_model.h>
+#include <eunoe/solids/solid.h>
+#include <eunoe/state/particle_arrays.h>
+
+#include <array>
+
+namespace eunoe {
+
+/// The contacts of particles with solids: what is near since the last search, what touches, and
+/// what it remembers. Goes through the same laws as contacts between particles.
+class SolidContacts
+{
+public:
+  /// A particle near a solid.
+  struct Candidate
+  {
+    std::int32_t particle, solid;
+    std::int32_t first_facet, n_facets;
+    std::int32_t plane; ///< that stands for the facets until the next search, -1 if none does
+    std::uint32_t n_living = 0;
+    float gap = 0.f; ///< least distance of the surfaces when they were searched (m), rounded down
+    /// Records of the contacts that touched at the last step.
+    std::array<std::int32_t, Shape::max_contacts> living;
+  };
+
+  explicit SolidContacts(const ContactModel &model);
+
+  /// Lists every owned particle whose gap to a solid's surface is at most @p reach (m), ordered by
+  /// particle and solid. All contacts are forgotten.
+  void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
+
+  /// Adds the forces and torques on the owned particles and advances the memory by @p dt.
+  /// @param loads if not null, one a solid: what the particles exert is added to it
+  void add_forces(ParticleArrays &particles, const std::vector<Solid> &solids, double time,
+                  double dt, std::vector<SolidLoad> *loads);
+
+  /// From now on `add_forces` appends every contact to @p list; null: no longer.
+  void record_to(std::vector<ContactForce> *list) { recorded = list; }
+
+  /// @name Memory of the living contacts
+  ///@{
+  const std::vector<Candidate> &get_candidates() const { return candidates; }
+  const double *history(std::int32_t record) const { return memory[record]; }
+  /// Normal in the solid's own frame, by which a contact is recognised at the next step.
+  const Vec3 &normal(std::int32_t record) const { return normals[record]; }
+  /// Depth of a sphere in a solid near it (m), negative across a gap.
+  double deepest_overlap(const Candidate &candidate, const Solid &solid, const Vec3 &centre,
+                         double radius) const;
+  /// All that the contacts remember, to be put back by `reset`.
+  struct Memory
+  {
+    std::vector<Candidate> candidates;
+    ContactMemory records;
+    std::vector<Vec3> normals;
+  };
+  /// Lets every contact begin anew.
+  void forget();
+  Memory save() const { return {candidates, memory, normals}; }
+  void reset(const Memory &saved);
+  /// Gives the candidate (particle, solid) a contact with a memory; without effect if the two are
+  /// no longer near each other.
+  void restore(std::int32_t particle, std::int32_t solid, const Vec3 &normal,
+               const double *history);
+  ///@}
+
+private:
+  /// What the block of laws does not hold of its contacts.
+  struct Places
+  {
+    std::array<std::int32_t, PairBlock::size> particle, solid, record;
+    std::array<Vec3, PairBlock::size> point;
+    std::array<bool, PairBlock::size> feels; ///< the particle is awake
+  };
+
+  /// The contacts of a sphere with the solid that it is near.
+  unsigned int find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
+                    SurfaceContact *found) const;
+  void add_to_block(const ParticleArrays &particles, const Solid &solid, const Candidate &candidate,
+                    const SurfaceContact &contact, std::int32_t record);
+  void run_block(ParticleArrays &particles, const std::vector<Solid> &solids, double dt,
+                 std::vector<SolidLoad> *loads);
+  std::int32_t create(const Vec3 &normal);
+  /// Takes the living contact with nearly the same normal out of a candidate: a contact moves by a
+  /// tiny part of the particle's size in a step, over whatever edge. None if there is none.
+  std::int32_t take_living(Candidate &candidate, const Vec3 &normal) const;
+  /// Contacts that were found go on, or begin; those that were not have ended.
+  void go_on(Candidate &candidate, const SurfaceContact *found, unsigned int n_found);
+
+  const ContactModel &model;
+  std::vector<RigidState> solids_at_search;
+  std::vector<Candidate> candidates;
+  std::vector<std::int32_t> facets;
+  std::vector<Plane> planes;
+  ContactMemory memory;
+  std::vector<Vec3> normals;
+  std::unique_ptr<PairBlock> block;
+  std::unique_ptr<Places> places;
+  std::vector<ContactForce> *recorded = nullptr;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,83 @@
+#ifndef eunoe_engine_sparse_contacts_h
+#define eunoe_engine_sparse_contacts_h
+
+#include <eunoe/contact/pair_list.h>
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/engine/halo.h>
+#include <eunoe/engine/solid_contacts.h>
+#include <eunoe/state/particle_field.h>
+
+namespace eunoe {
+
+/// Who sleeps, so that contacts at rest cost nothing: `subsection adaptive sparse contacts`.
+struct SparseContactParameters : public ParameterSection
+{
+  bool enabled = false;
+  double temperature = 1e-7; ///< square of the speed below which a particle is at rest (m2/s2)
+  double rest_time = 2e-3;   ///< for which a particle must have been at rest (s)
+  unsigned int frequency = 50;
+
+  void declare(dealii::ParameterHandler &prm) override;
+};
+
+/// What has happened outside the particles since the last look at who sleeps.
+struct Stirring
+{
+  unsigned long long step = 0;
+  std::vector<bool> solid_moves; ///< one a solid
+  bool everything = false;       ///< particles came or went, or a load has changed
+};
+
+/// Puts particles to sleep and wakes them (adaptive sparse contacts).
+///
+/// A particle is *restless* while it moves, for some time after, and while a solid that moves is
+/// near. Awake are the restless and their neighbours, and the neighbours of these, over the list of
+/// pairs that can touch. All others sleep: they have no velocity and feel nothing, but are
+/// obstacles for those who are awake; their contacts remember. So nothing that moves ever meets a
+/// sleeper, and a front of waking particles runs ahead of what stirs them.
+///
+/// All decisions follow from what each particle has done and from lists that do not depend on the
+/// distribution over ranks, so they are the same on any number of ranks.
+class SparseContacts
+{
+public:
+  /// @param fields of the particles; its own are the last ones
+  /// @param time_step (s)
+  SparseContacts(const SparseContactParameters &parameters,
+                 const std::vector<ParticleField> &fields, double time_step);
+
+  /// What it keeps of every particle.
+  static std::vector<ParticleField> fields()
+  {
+    return {{"asleep", 1, 0.}, {"last_moved_step", 1, -1.}};
+  }
+
+  /// Place of the flag of sleepers among the extra doubles, -1 if nobody sleeps.
+  int flag() const { return parameters.enabled ? static_cast<int>(asleep) : -1; }
+  bool is_enabled() const { return parameters.enabled; }
+  unsigned int frequency() const { return parameters.frequency; }
+
+  /// Decides who sleeps from now on; collective.
+  void update(ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids,
+              Halo &halo, const Stirring &stirring) const;
+
+  /// Keeps awake the owned particles of all pairs with a flag.
+  /// @param flags one a particle, ghosts too
+  void stir_neighbours(ParticleArrays &particles, const PairList &pairs,
+                       const std::vector<std::uint8_t> &flags, unsigned long long step) const;
+
+  /// Lets those sleep who slept when their fields were saved; collective.
+  void recall(ParticleArrays &particles, Halo &halo) const;
+
+private:
+  std::vector<std::uint8_t> find_restless(ParticleArrays &particles, const SolidContacts &solids,
+                                          const Stirring &stirring) const;
+
+  const SparseContactParameters &parameters;
+  const unsigned int last_moved, asleep; ///< places of the fields among the extra doubles
+  const double rest_steps;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,145 @@
+#ifndef eunoe_simulation_insertion_h
+#define eunoe_simulation_insertion_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/registry.h>
+#include <eunoe/state/new_particle.h>
+#include <eunoe/state/particle_ids.h>
+#include <eunoe/state/physical_properties.h>
+
+#include <functional>
+#include <mpi.h>
+
+namespace eunoe {
+
+class Domain;
+struct Solid;
+
+/// What an insertion finds where its particles are to come.
+struct Surroundings
+{
+  const Domain &domain;
+  const ParticleArrays &particles;  ///< with ghosts
+  const std::vector<bool> &leaving; ///< those that are taken out before, by their rows
+  const std::vector<Solid> &solids; ///< and walls, where they are
+  double time;                      ///< (s)
+};
+
+/// `subsection insertion info`.
+struct InsertionParameters : public ParameterSection
+{
+  std::string method = "volume";
+  unsigned int per_event = 0; ///< "inserted number of particles at each time step"
+  unsigned int frequency = 0; ///< steps between events; 0: one event only
+  std::vector<std::string> files = {"particles.input"};
+  std::vector<double> list_x, list_y, list_z, list_vx, list_vy, list_vz, list_wx, list_wy, list_wz,
+      list_diameters;
+  std::vector<int> directions = {0, 1, 2};
+  Vec3 box_lower, box_upper = {1., 1., 1.};
+  Vec3 plane_point, plane_normal = {1., 0., 0.};
+  double distance_threshold = 1.;
+  double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
+  unsigned int seed = 1;
+  Vec3 velocity, spin;
+  std::string acceptance = "1", acceptance_constants; ///< a point is used where this is positive
+  bool removes = false; ///< empties the removal box before every event
+  Vec3 removal_lower, removal_upper = {1., 1., 1.};
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+/// Supplies the particles of one event after another. Whatever is wrong with its input is found
+/// when it is made.
+class Insertion
+{
+public:
+  virtual ~Insertion() = default;
+
+  /// Largest diameter that it can supply (m).
+  virtual double largest_diameter() const = 0;
+
+  /// Number of particles that @p n_events events supply together.
+  virtual std::size_t supply(std::size_t n_events) const = 0;
+
+  /// What is wrong with the insertion in the light of the mesh; collective.
+  virtual void check(const Domain &, Problems &) const {}
+
+  /// Looks around before the next event; collective.
+  virtual void survey(const Surroundings &) {}
+
+  /// This rank's share of the particles of the next event; the shares of all ranks together are
+  /// the same for any number of ranks.
+  /// @param ids from which the particles of all ranks take theirs; throws as they do
+  virtual std::vector<NewParticle> next(ParticleIds &ids) = 0;
+
+  /// Places of this rank's share of the particles, where they are known beforehand (m).
+  virtual std::vector<Vec3> known_places() const { return {}; }
+
+  /// This rank's share of the particles of the first events, as far as they are known beforehand
+  /// and as they are inserted; of very many on a grid only some.
+  virtual std::vector<std::vector<NewParticle>> known_events() const { return {}; }
+
+  /// Passes over the particles of the first events, which have been supplied already.
+  /// @param n_particles that they supplied
+  virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
+
+  /// Whether all particles have been supplied.
+  virtual bool finished() const = 0;
+};
+
+using InsertionRegistry = Registry<std::unique_ptr<Insertion>, const InsertionParameters &,
+                                   const PhysicalProperties &, MPI_Comm>;
+InsertionRegistry &insertion_methods();
+
+/// Particles of all types that are still to come, one type after another.
+class ParticleSupply
+{
+public:
+  explicit ParticleSupply(const std::vector<ParticleType> &types);
+
+  double largest_diameter() const { return largest; }
+  std::size_t n_remaining() const;
+  /// The k-th of those that remain, at no place yet.
+  NewParticle particle(std::size_t k, ParticleId id) const;
+  void take(std::size_t n);
+
+private:
+  std::vector<ParticleType> types;
+  std::vector<std::unique_ptr<SizeDistribution>> sizes;
+  std::vector<std::size_t> remaining; ///< of each type
+  double largest = 0.;
+};
+
+/// Rank's part [first, second) of a range of @p n items.
+std::pair<std::size_t, std::size_t> share_of(std::size_t n, MPI_Comm comm);
+
+/// Particles in a regular grid of a box with a random offset each, as dense as asked for.
+struct VolumeGrid
+{
+  Vec3 lower, upper;      ///< the box (m)
+  double pitch = 0.;      ///< distance of the grid points (m)
+  double offset = 0.;     ///< largest random shift in each direction (m)
+  std::vector<int> order; ///< directions from the first filled to the last
+
+  /// Leaves out the points, before their shift, that @p accepts refuses.
+  void restrict_to(const std::function<bool(const Vec3 &)> &accepts);
+
+  /// Number of points that fit.
+  std::size_t capacity() const;
+  /// The k-th point, shifted by draws that depend on (seed, id).
+  Vec3 point(std::size_t k, unsigned int seed, ParticleId id) const;
+
+private:
+  /// Number of points in direction @p d, a whole number.
+  double points_along(unsigned int d) const;
+  /// Lower corner of the cell of the k-th point of all (m).
+  Vec3 cell(std::size_t k) const;
+
+  bool restricted = false;
+  std::vector<std::uint32_t> accepted; ///< of all points, if not all are used
+};
+
+} // namespace eunoe
+
+#endif

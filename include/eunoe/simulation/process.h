@@ -1,0 +1,90 @@
+#ifndef eunoe_simulation_process_h
+#define eunoe_simulation_process_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/registry.h>
+#include <eunoe/simulation/measurement.h>
+#include <eunoe/state/particle_field.h>
+
+#include <memory>
+
+namespace eunoe {
+
+class Checkpoint;
+class CheckpointWriter;
+class Parameters;
+class Simulation;
+struct Solid;
+
+/// What a run will cost, for `--check`.
+struct RunEstimate
+{
+  double particles = 0.; ///< at a time, mean over the run
+  double most_particles = 0.;
+  double steps = 0.;
+
+  double particle_steps() const { return particles * steps; }
+  /// Particle-steps per second and core, as measured on settled beds with the full model: of 20,000
+  /// particles, which fit into the caches, and of 200,000 to a million, which do not.
+  double speed() const { return most_particles < 1e5 ? 16e6 : 8e6; }
+  double core_seconds() const { return particle_steps() / speed(); }
+};
+
+/// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from
+/// the parts of the engine. A process is a section of the input file.
+class Process : public ParameterSection
+{
+public:
+  /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
+  virtual void prepare(Parameters &parameters) = 0;
+
+  /// What is wrong with the process together with the other parameters.
+  virtual void check_with(const Parameters &parameters, const ParameterCheck &check) const = 0;
+
+  /// What the run will cost, as far as it can be known.
+  virtual RunEstimate estimate(const Parameters &parameters) const = 0;
+
+  /// Extra doubles that the process attaches to every particle.
+  virtual std::vector<ParticleField> fields() const { return {}; }
+
+  /// Solids of the process.
+  virtual std::vector<Solid> make_solids(const Parameters &parameters) = 0;
+
+  /// Largest speed at which a solid of the process will move (m/s).
+  virtual double fastest_solid() const { return 0.; }
+
+  /// Called once before the first step.
+  virtual void start(Simulation &simulation) = 0;
+
+  /// Adds all that the process keeps to a checkpoint; collective.
+  virtual void save(CheckpointWriter &writer) const = 0;
+  /// Called instead of `start` when the run continues from a checkpoint; collective.
+  virtual void resume(Simulation &simulation, const Checkpoint &checkpoint) = 0;
+
+  /// Called after every step. Must call Simulation::complete_step before it looks at particles.
+  virtual void step(Simulation &simulation) = 0;
+
+  /// Whether the forces on the solids are to be summed during the coming step.
+  virtual bool wants_solid_loads(unsigned long long step) const = 0;
+
+  /// Share of the work that is done, in [0, 1], and what is being done now.
+  virtual double progress(const Simulation &simulation) const = 0;
+  virtual std::string stage() const { return ""; }
+
+  /// Whether all work is done.
+  virtual bool finished() const = 0;
+
+  /// What has been measured so far, the same on every rank, and what those observables are.
+  virtual std::vector<Measurement> measurements() const { return {}; }
+  virtual std::vector<ObservableDescription> observables() const { return {}; }
+
+  /// Adds what the process has found to the keys of summary.json.
+  virtual void add_to_summary(nlohmann::ordered_json &) const {}
+};
+
+using ProcessRegistry = Registry<std::unique_ptr<Process>>;
+ProcessRegistry &process_kinds();
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,69 @@
+#ifndef eunoe_state_particle_arrays_h
+#define eunoe_state_particle_arrays_h
+
+#include <eunoe/core/vec3.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace eunoe {
+
+/// Identity of a particle, unique over the whole run and never used again.
+using ParticleId = std::uint32_t;
+
+/// The hot state of the particles that a rank computes with: those that it owns, then copies of
+/// those that its neighbours own (ghosts), each part ordered by (contact-grid cell, id). Rebuilt
+/// from the particle store at every contact search. SI units.
+struct ParticleArrays
+{
+  std::size_t n_owned = 0, n_ghosts = 0;
+
+  std::vector<Quad> position; ///< x, y, z and radius
+  std::vector<Quad> velocity; ///< velocity and mass
+  std::vector<Quad> spin;     ///< angular velocity and moment of inertia
+  std::vector<Quad> force;    ///< force; w unused
+  std::vector<Quad> torque;   ///< torque; w unused
+  std::vector<ParticleId> id;
+  std::vector<std::int32_t> type; ///< particle type, which is its material
+
+  /// @name Who is awake (see SparseContacts)
+  ///@{
+  std::vector<std::uint8_t> awake;      ///< a flag each, ghosts too; empty while all are awake
+  std::vector<std::int32_t> awake_rows; ///< of owned particles, ascending; empty while all are
+  /// Square of the largest distance of an owned sleeper from its reference position (m2).
+  double sleepers_moved2 = 0.;
+  bool is_awake(std::size_t row) const { return awake.empty() || awake[row] != 0; }
+  std::size_t n_awake() const { return awake.empty() ? n_owned : awake_rows.size(); }
+  ///@}
+
+  /// @name Owned particles only
+  ///@{
+  std::vector<Vec3> reference; ///< position at the last search
+  /// Further data that processes attach to particles (layer tag, ...), `[component][particle]`.
+  std::vector<std::vector<double>> extra;
+  ///@}
+
+  std::size_t size() const { return n_owned + n_ghosts; }
+
+  /// All are awake afterwards.
+  void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
+
+  /// Forces on those who sleep have no meaning, and must not pile up.
+  void clear_forces_on_sleepers();
+
+  /// Calls `action(row)` for every owned particle that is awake.
+  template <typename Action>
+  void for_each_awake(const Action &action) const
+  {
+    if (awake.empty())
+      for (std::size_t row = 0; row < n_owned; ++row)
+        action(row);
+    else
+      for (const std::int32_t row : awake_rows)
+        action(static_cast<std::size_t>(row));
+  }
+};
+
+} // namespace eunoe
+
+#endif

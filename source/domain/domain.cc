@@ -1,0 +1,364 @@
+#include <eunoe/domain/mesh.h>
+#include <eunoe/solids/enclosure.h>
+#include <eunoe/solids/half_space.h>
+#include <eunoe/solids/surface_part.h>
+
+#include <deal.II/fe/mapping_cartesian.h>
+#include <deal.II/fe/mapping_q1.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include "mesh_boundary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace eunoe {
+
+namespace {
+
+using Triangulation = dealii::parallel::distributed::Triangulation<3>;
+
+/// deal.II asks for the particles of every cell at each search, and its mapping prepares for those
+/// of cells that have none, too: most of the time of a search in a mesh of many more cells than
+/// particles.
+class ParticleMapping : public dealii::MappingQ1<3>
+{
+public:
+  using Points = dealii::ArrayView<const dealii::Point<3>>;
+
+  std::unique_ptr<dealii::Mapping<3>> clone() const override
+  {
+    return std::make_unique<ParticleMapping>(*this);
+  }
+
+  void transform_points_real_to_unit_cell(
+      const Triangulation::cell_iterator &cell, const Points &points,
+      const dealii::ArrayView<dealii::Point<3>> &unit) const override
+  {
+    if (points.size() > 0)
+      dealii::MappingQ1<3>::transform_points_real_to_unit_cell(cell, points, unit);
+  }
+};
+
+/// Refines the cells that meet the box around a region's mesh by more than a face; collective.
+void refine(Triangulation &triangulation, const RefinementParameters::Region &region)
+{
+  dealii::Triangulation<3> mesh;
+  create_mesh(mesh, region.mesh, triangulation.get_communicator());
+  const auto box = dealii::GridTools::compute_bounding_box(mesh).get_boundary_points();
+  const double tolerance = 1e-9 * box.first.distance(box.second);
+  for (unsigned int time = 0; time < region.additional; ++time) {
+    for (const auto &cell : triangulation.active_cell_iterators()) {
+      if (!cell->is_locally_owned())
+        continue;
+      const auto own = cell->bounding_box().get_boundary_points();
+      bool meets = true;
+      for (unsigned int d = 0; d < 3; ++d)
+        meets = meets && own.second[d] > box.first[d] + tolerance &&
+                own.first[d] < box.second[d] - tolerance;
+      if (meets)
+        cell->set_refine_flag();
+    }
+    triangulation.execute_coarsening_and_refinement();
+    if (static_cast<double>(triangulation.n_global_active_cells()) > most_cells)
+      throw UserError(describe(region.mesh.path, "") + ": the mesh has more than " +
+                      format(most_cells) +
+                      " cells. Refine less; 8 to 10 particles a cell are best.");
+  }
+}
+
+} // namespace
+
+Domain::Domain(const Background &background, const BoundaryParameters &boundaries,
+               const int wall_material, MPI_Comm comm)
+    : comm(comm), mesh_data(std::make_unique<Mesh>(comm)), motion(background.motion)
+{
+  Triangulation &triangulation = mesh_data->triangulation;
+  check_mesh_size(background.mesh);
+  const auto sketch = background.is_only_looked_at && background.refinement.regions.empty()
+                          ? sketch_of(background.mesh)
+                          : std::nullopt;
+  const MeshParameters &mesh = sketch ? sketch->mesh : background.mesh;
+  create_mesh(triangulation, mesh, comm);
+  const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
+  lower_corner = to_vec3(bounding_box.get_boundary_points().first);
+  upper_corner = to_vec3(bounding_box.get_boundary_points().second);
+  MeshBoundary boundary(triangulation);
+  const std::set<unsigned int> periodic = join_periodic_ends(boundaries, boundary.sides());
+  triangulation.refine_global(global_refinement(triangulation, mesh));
+  for (const RefinementParameters::Region &region : background.refinement.regions)
+    refine(triangulation, region);
+  measure_cells();
+  if (sketch)
+    take_cells_of(*sketch);
+  boundary.refine(triangulation, periodic, box, moves());
+  make_boundaries(boundaries, wall_material, boundary, periodic);
+}
+
+void Domain::move_to(const double time)
+{
+  if (motion)
+    pose = motion->at(time);
+}
+
+Box Domain::box_from_centre() const
+{
+  if (!motion || !motion->rotates())
+    return {lower_corner, upper_corner};
+  // Whatever the axis, nothing is further from the centre than the furthest corner.
+  Vec3 most;
+  for (unsigned int d = 0; d < 3; ++d)
+    most[d] = std::max(std::abs(lower_corner[d]), std::abs(upper_corner[d]));
+  const double radius = norm(most);
+  return {{-radius, -radius, -radius}, {radius, radius, radius}};
+}
+
+void Domain::measure_cells()
+{
+  const Triangulation &triangulation = mesh_data->triangulation;
+  const double tolerance = 1e-10 * norm(upper_corner - lower_corner);
+  bool boxes = true;
+  double width = std::numeric_limits<double>::max();
+  Vec3 lower = lower_corner, upper = upper_corner;
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_locally_owned()) {
+      for (unsigned int d = 0; d < 3; ++d)
+        width = std::min(width, cell->extent_in_direction(d));
+      const auto cell_box = cell->bounding_box().get_boundary_points();
+      for (const unsigned int v : cell->vertex_indices())
+        for (unsigned int d = 0; d < 3; ++d) {
+          const double x = cell->vertex(v)[d];
+          lower[d] = std::min(lower[d], x);
+          upper[d] = std::max(upper[d], x);
+          const double end = (v >> d & 1) == 0 ? cell_box.first[d] : cell_box.second[d];
+          boxes = boxes && std::abs(x - end) < tolerance;
+        }
+    }
+  mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;
+  mesh_data->is_plain = mesh_data->has_boxes && !triangulation.has_hanging_nodes() && !moves();
+  if (!mesh_data->has_boxes)
+    width = std::min(width, smallest_distance_of_cells_apart(*mesh_data, box));
+  cell_width = dealii::Utilities::MPI::min(width, comm);
+  // On a manifold the refined mesh reaches further than the coarse one.
+  for (unsigned int d = 0; d < 3; ++d) {
+    lower_corner[d] = dealii::Utilities::MPI::min(lower[d], comm);
+    upper_corner[d] = dealii::Utilities::MPI::max(upper[d], comm);
+  }
+  if (mesh_data->has_boxes)
+    mesh_data->mapping = std::make_unique<dealii::MappingCartesian<3>>();
+  else
+    mesh_data->mapping = std::make_unique<ParticleMapping>();
+}
+
+void Domain::take_cells_of(const BoxSketch &sketch)
+{
+  double number = 1.;
+  for (unsigned int d = 0; d < 3; ++d) {
+    number *= sketch.n_cells[d];
+    cell_width = std::min(cell_width, (upper_corner[d] - lower_corner[d]) / sketch.n_cells[d]);
+  }
+  sketched_cells = static_cast<std::uint64_t>(number);
+}
+
+Domain::~Domain() = default;
+
+bool Domain::contains(const Vec3 &x) const
+{
+  if (enclosure)
+    return enclosure->contains(to_own_frame(x));
+  return std::all_of(sides.begin(), sides.end(),
+                     [&](const auto &side) { return dot(x - side.first, side.second) >= 0.; });
+}
+
+int Domain::passed_outlet(const Vec3 &from, const Vec3 &x) const
+{
+  if (enclosure)
+    return contains(x) ? -1 : enclosure->exit(in_frame(earlier, from), to_own_frame(x));
+  for (std::size_t o = 0; o < outlet_list.size(); ++o)
+    if (dot(x - outlet_list[o].point, outlet_list[o].inward) < 0.)
+      return static_cast<int>(o);
+  return -1;
+}
+
+std::uint64_t Domain::n_cells() const
+{
+  return sketched_cells > 0 ? sketched_cells : mesh_data->triangulation.n_global_active_cells();
+}
+
+std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
+                                                  const std::vector<Side> &all_sides)
+{
+  Triangulation &triangulation = mesh_data->triangulation;
+  const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
+  const std::string section = "subsection 'DEM boundary conditions' / ";
+  Problems problems;
+
+  std::set<unsigned int> periodic_ids;
+  for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
+    const BoundaryCondition &c = boundaries.conditions[k];
+    const bool periodic = c.type == "periodic";
+    for (const unsigned int id :
+         periodic ? std::vector<unsigned int>{c.periodic_ids[0], c.periodic_ids[1]}
+                  : std::vector<unsigned int>{c.id})
+    {
+      if (periodic)
+        periodic_ids.insert(id);
+      if (std::none_of(all_sides.begin(), all_sides.end(),
+                       [&](const Side &s) { return s.id == id; }))
+        problems.add(section + "subsection 'boundary condition " + std::to_string(k) + "':",
+                     "the mesh has no boundary " + std::to_string(id) + ".",
+                     "Check the ids; for deal.II's generators they differ only with 'colorize' set "
+                     "to true in 'grid arguments'.");
+    }
+  }
+  if (!problems.empty())
+    throw UserError(problems);
+
+  std::vector<dealii::GridTools::PeriodicFacePair<Triangulation::cell_iterator>> pairs;
+  for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
+    const BoundaryCondition &c = boundaries.conditions[k];
+    if (c.type != "periodic")
+      continue;
+    const std::string where =
+        section + "subsection 'boundary condition " + std::to_string(k) + "':";
+    const unsigned int d = c.periodic_direction;
+    const auto is_end = [&](unsigned int id, const Vec3 &corner) {
+      return std::all_of(all_sides.begin(), all_sides.end(), [&](const Side &s) {
+        return s.id != id || (std::abs(s.point[d] - corner[d]) < tolerance &&
+                              std::abs(std::abs(s.inward[d]) - 1.) < 1e-9);
+      });
+    };
+    unsigned int first = c.periodic_ids[0], second = c.periodic_ids[1];
+    if (!is_end(first, lower_corner))
+      std::swap(first, second);
+    if (!is_end(first, lower_corner) || !is_end(second, upper_corner) || first == second) {
+      problems.add(where,
+                   "the boundaries " + std::to_string(first) + " and " + std::to_string(second) +
+                       " are not the two flat ends of the domain in the periodic direction.",
+                   "Choose two opposite boundaries and their axis.");
+      continue;
+    }
+    try {
+      dealii::GridTools::collect_periodic_faces(triangulation, first, second, d, pairs);
+    } catch (const std::exception &) {
+      problems.add(where, "the faces of the two boundaries do not match.",
+                   "Make the mesh the same on both.");
+    }
+    box.length[d] = upper_corner[d] - lower_corner[d];
+    box.origin[d] = lower_corner[d];
+  }
+  if (!problems.empty())
+    throw UserError(problems);
+  triangulation.add_periodicity(pairs);
+  return periodic_ids;
+}
+
+namespace {
+
+/// The wall of a boundary, without its shape.
+/// @param is_plane for which a turning surface has the axis as its centre
+Solid wall_of(const unsigned int id, const BoundaryCondition &c, const int material,
+              const bool is_plane)
+{
+  Solid wall;
+  wall.name = "boundary " + std::to_string(id);
+  wall.material = material;
+  wall.output = false;
+  const bool turns = c.type == "rotational";
+  const Vec3 spin = turns ? c.rotational_speed / norm(c.rotation_axis) * c.rotation_axis : Vec3();
+  const Vec3 speed = c.type == "translational" ? c.speed : Vec3();
+  if (turns && is_plane)
+    wall.motion = std::make_shared<AtRest>(c.rotation_point, speed, spin);
+  else
+    wall.motion = std::make_shared<AtRest>(Vec3(), speed + cross(c.rotation_point, spin), spin);
+  return wall;
+}
+
+} // namespace
+
+void Domain::make_boundaries(const BoundaryParameters &boundaries, const int wall_material,
+                             const MeshBoundary &boundary, const std::set<unsigned int> &periodic)
+{
+  const std::vector<Side> &all_sides = boundary.sides();
+  const BoundaryCondition fixed;
+  const auto condition = [&](unsigned int id) -> const BoundaryCondition & {
+    for (const BoundaryCondition &c : boundaries.conditions)
+      if (c.type != "periodic" && c.id == id)
+        return c;
+    return fixed;
+  };
+  std::map<unsigned int, int> outlet_of, part_of;
+  for (std::size_t s = 0; s < all_sides.size(); ++s) {
+    const Side &side = all_sides[s];
+    if (periodic.count(side.id) != 0)
+      continue;
+    const BoundaryCondition &c = condition(side.id);
+    const int material = c.material < 0 ? wall_material : c.material;
+    if (boundary.is_convex())
+      sides.emplace_back(side.point, side.inward);
+    if (c.type == "outlet") {
+      if (boundary.is_convex() || outlet_of.count(side.id) == 0) {
+        outlet_of[side.id] = static_cast<int>(outlet_list.size());
+        outlet_list.push_back({side.id, side.point, side.inward});
+      }
+    } else if (boundary.is_convex() || boundary.is_plane(s)) {
+      Solid wall = wall_of(side.id, c, material, true);
+      wall.shape =
+          std::make_shared<HalfSpace>(side.point - wall.motion->at(0.).centre, side.inward);
+      wall_solids.push_back(wall);
+    } else if (part_of.count(side.id) == 0) {
+      part_of[side.id] = static_cast<int>(wall_solids.size());
+      wall_solids.push_back(wall_of(side.id, c, material, false));
+      if (motion)
+        wall_solids.back().motion = motion;
+    }
+  }
+  if (!boundary.is_convex())
+    make_surfaces(boundary, outlet_of, part_of);
+}
+
+void Domain::make_surfaces(const MeshBoundary &boundary, const std::map<unsigned int, int> &outlets,
+                           const std::map<unsigned int, int> &walls)
+{
+  std::vector<Enclosure::Triangle> all;
+  TriangleMesh mesh;
+  const auto wall_of_triangle = std::make_shared<std::vector<int>>();
+  // What coincides but for round-off is united later, for which there should be few vertices.
+  std::map<std::array<double, 3>, std::int32_t> vertex_at;
+  const auto vertex = [&](const Vec3 &x) {
+    const auto [place, is_new] =
+        vertex_at.emplace(std::array<double, 3>{{x.x, x.y, x.z}}, mesh.vertices.size());
+    if (is_new)
+      mesh.vertices.push_back(x);
+    return place->second;
+  };
+  for (const BoundaryFace &face : boundary.faces()) {
+    const unsigned int id = boundary.sides()[face.side].id;
+    const auto outlet = outlets.find(id);
+    for (const std::array<Vec3, 3> &triangle : triangles_of(face))
+      with_images(triangle, box, [&](const std::array<Vec3, 3> &image) {
+        all.push_back({image, outlet == outlets.end() ? -1 : outlet->second});
+        if (outlet != outlets.end() || face.is_flat)
+          return;
+        mesh.triangles.push_back({{vertex(image[0]), vertex(image[1]), vertex(image[2])}});
+        wall_of_triangle->push_back(walls.at(id));
+      });
+  }
+  enclosure = std::make_unique<Enclosure>(std::move(all), box);
+  if (walls.empty())
+    return;
+  const std::string defect = mesh.defect();
+  if (!defect.empty())
+    throw UserError("subsection 'mesh': the boundary cannot be a wall: " + defect +
+                    ". Check the cells of the mesh at the boundary.");
+  const auto surface = std::make_shared<const TriangulatedSurface>(std::move(mesh));
+  for (const auto &[id, wall] : walls)
+    if (walls.size() == 1)
+      wall_solids[wall].shape = surface;
+    else
+      wall_solids[wall].shape = std::make_shared<SurfacePart>(surface, wall, wall_of_triangle);
+}
+
+} // namespace eunoe

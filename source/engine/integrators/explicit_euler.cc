@@ -1,0 +1,36 @@
+#include <eunoe/engine/integrator.h>
+
+namespace eunoe {
+namespace {
+
+/// x += v dt with the old velocity, then v += a dt with the old acceleration; first order.
+class ExplicitEuler : public Integrator
+{
+public:
+  double begin_step(ParticleArrays &p, double dt) override
+  {
+    // The largest of numbers forgets what is no number; this sum does not.
+    double largest = 0., poison = 0.;
+    p.for_each_awake([&](const std::size_t k) {
+      p.position[k].add(dt * p.velocity[k].vec());
+      p.velocity[k].add(dt / p.velocity[k].w * p.force[k].vec());
+      p.spin[k].add(dt / p.spin[k].w * p.torque[k].vec());
+      const double moved2 = norm_square(p.position[k].vec() - p.reference[k]);
+      largest = std::max(largest, moved2);
+      poison += 0. * moved2;
+      p.force[k] = p.torque[k] = Quad();
+    });
+    if (!p.awake.empty())
+      p.clear_forces_on_sleepers();
+    return largest + poison;
+  }
+
+  void complete(ParticleArrays &, double) override {}
+};
+
+const IntegratorRegistry::Registration registration(integrators(), "explicit_euler", [] {
+  return std::make_unique<ExplicitEuler>();
+});
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,53 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/core/expressions.h>
+#include <eunoe/engine/load_balancing.h>
+
+namespace eunoe {
+
+void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("model parameters");
+  prm.enter_subsection("load balancing");
+  declare::choice(prm, "load balance method", method, "none|once|frequent|dynamic",
+                  "When the cells are shared out anew over the ranks. It happens at the next "
+                  "contact search and never changes a result.");
+  declare::count(prm, "step", step, "once: the step.");
+  declare::count(prm, "frequency", frequency, "frequent: steps between balances.", 1);
+  prm.add_parameter("threshold", threshold,
+                    "dynamic: balance if the largest load less the smallest exceeds this share of "
+                    "the mean.",
+                    declare::Patterns::Double(0.));
+  declare::count(prm, "dynamic check frequency", check_frequency,
+                 "dynamic: steps between looks at the loads.", 1);
+  declare::count(prm, "particle weight", particle_weight,
+                 "Cost of a particle, beside that of a cell.");
+  declare::count(prm, "cell weight", cell_weight, "Cost of a cell.", 1);
+  declare::positive(prm, "active weight factor", active_factor,
+                    "Factor on the weight of particles that are awake (see 'adaptive sparse "
+                    "contacts').");
+  declare::positive(prm, "inactive weight factor", inactive_factor,
+                    "Factor on the weight of particles that sleep.");
+  prm.enter_subsection("cell weight function");
+  prm.add_parameter("Function expression", cell_weight_expression,
+                    "Cost of a cell as an expression in x, y, z, its centre (m); empty: 'cell "
+                    "weight'. Below 1 counts as 1.");
+  prm.add_parameter("Function constants", cell_weight_constants,
+                    "Constants of the expression, 'a=1, b=2'.");
+  prm.leave_subsection();
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+void LoadBalancingParameters::check(const ParameterCheck &check) const
+{
+  if (!cell_weight_expression.empty())
+    try {
+      Expressions(cell_weight_expression, cell_weight_constants, 1);
+    } catch (const std::invalid_argument &error) {
+      check.require(false, {"model parameters", "load balancing", "cell weight function"},
+                    "Function expression", "is not understood: " + std::string(error.what()) + ".",
+                    "Write one expression in x, y and z.");
+    }
+}
+
+} // namespace eunoe

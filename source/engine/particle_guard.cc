@@ -1,0 +1,124 @@
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/engine/particle_guard.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe {
+
+namespace {
+
+bool is_finite(const Vec3 &v)
+{
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::string format(const Vec3 &v)
+{
+  return "(" + eunoe::format(v.x) + ", " + eunoe::format(v.y) + ", " + eunoe::format(v.z) + ")";
+}
+
+} // namespace
+
+ParticleGuard::ParticleGuard(const Domain &domain, const Materials &materials,
+                             const double largest_overlap)
+    : domain(domain), materials(materials), young_modulus(materials.table(effective_young_modulus)),
+      largest_overlap(largest_overlap)
+{
+}
+
+Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
+                              const SolidContacts &solid_contacts, const std::vector<Solid> &solids,
+                              const double longest_way, const double dt) const
+{
+  Faults faults;
+  for (std::size_t row = 0; row < p.n_owned; ++row) {
+    const Vec3 x = p.position[row].vec();
+    if (!is_finite(x) || !is_finite(p.velocity[row].vec()) || !is_finite(p.spin[row].vec())) {
+      faults.lost.push_back({row, "is not a number any more."});
+      continue;
+    }
+    const double way = norm(x - p.reference[row]) - dt * norm(p.velocity[row].vec());
+    if (!domain.contains(x)) {
+      if (domain.passed_outlet(p.reference[row], x) < 0)
+        faults.lost.push_back({row, "has left the mesh, though not through an outlet."});
+    } else if (way > longest_way)
+      faults.squeezed.push_back({row, "has moved by " + eunoe::format(way) +
+                                          " m without a search for contacts, and only " +
+                                          eunoe::format(longest_way) + " m is safe."});
+  }
+  find_overlaps(p, pairs, faults);
+  find_overlaps(p, solid_contacts, solids, faults);
+  return faults;
+}
+
+void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs,
+                                  Faults &faults) const
+{
+  const PeriodicBox &box = domain.periods();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto i = static_cast<std::size_t>(pairs.i[k]), j = static_cast<std::size_t>(pairs.j[k]);
+    // A pair with an i that is a ghost is seen by the owner of i.
+    if (pairs.record[k] == ContactMemory::none || i >= p.n_owned)
+      continue;
+    const double ri = p.position[i].w, rj = p.position[j].w;
+    const double overlap = ri + rj - norm(box.shortest(p.position[j].vec() - p.position[i].vec()));
+    if (overlap <= 0.)
+      continue;
+    const double mi = p.velocity[i].w, mj = p.velocity[j].w;
+    const double stiffness = hertz_tangent_stiffness(
+        young_modulus[materials.kind(p.type[i], p.type[j])], ri * rj / (ri + rj), overlap);
+    faults.stiffest = std::max(faults.stiffest, stiffness * (mi + mj) / (mi * mj));
+    if (largest_overlap > 0. && overlap > largest_overlap * std::min(ri, rj))
+      faults.squeezed.push_back({i, "overlaps particle " + std::to_string(p.id[j]) + " by " +
+                                        eunoe::format(overlap) +
+                                        " m, more than the 'largest overlap'."});
+  }
+}
+
+void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &solid_contacts,
+                                  const std::vector<Solid> &solids, Faults &faults) const
+{
+  for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates()) {
+    if (candidate.n_living == 0)
+      continue;
+    const Quad &x = p.position[candidate.particle];
+    const Solid &solid = solids[candidate.solid];
+    const double depth = solid_contacts.deepest_overlap(candidate, solid, x.vec(), x.w);
+    if (depth <= 0.)
+      continue;
+    const int kind = materials.kind(p.type[candidate.particle], solid.material);
+    faults.stiffest =
+        std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], x.w, depth) /
+                                      p.velocity[candidate.particle].w);
+    if (largest_overlap > 0. && depth > largest_overlap * x.w)
+      faults.squeezed.push_back({static_cast<std::size_t>(candidate.particle),
+                                 "overlaps '" + solid.name + "' by " + eunoe::format(depth) +
+                                     " m, more than the 'largest overlap'."});
+  }
+}
+
+std::string describe_particle(const ParticleArrays &p, const std::size_t row, const PairList &pairs,
+                              const SolidContacts &solid_contacts, const std::vector<Solid> &solids)
+{
+  std::vector<std::string> touched;
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (pairs.record[k] != ContactMemory::none)
+      for (const auto &[one, other] :
+           {std::pair(pairs.i[k], pairs.j[k]), std::pair(pairs.j[k], pairs.i[k])})
+        if (static_cast<std::size_t>(one) == row)
+          touched.push_back("particle " + std::to_string(p.id[other]));
+  for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates())
+    if (static_cast<std::size_t>(candidate.particle) == row && candidate.n_living > 0)
+      touched.push_back("'" + solids[candidate.solid].name + "'");
+  std::string text = "particle " + std::to_string(p.id[row]) + " at " +
+                     format(p.position[row].vec()) + " m with a velocity of " +
+                     format(p.velocity[row].vec()) + " m/s, which touched ";
+  if (touched.empty())
+    text += "nothing";
+  for (std::size_t k = 0; k < touched.size(); ++k)
+    text += (k == 0 ? "" : k + 1 == touched.size() ? " and " : ", ") + touched[k];
+  return text + ",";
+}
+
+} // namespace eunoe

@@ -1,0 +1,134 @@
+// The particles and their contacts in a checkpoint: a row of doubles a particle.
+
+#include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/engine/load_balancing.h>
+#include <eunoe/engine/particle_system.h>
+
+namespace eunoe {
+
+namespace {
+
+/// Places in a row; behind the last come the extra doubles, then the contacts.
+enum Place : unsigned int
+{
+  id,
+  type,
+  radius,
+  mass,
+  reference, ///< position at the last search, on which the order of all lists depends
+  position = reference + 3,
+  velocity = position + 3,
+  spin = velocity + 3,
+  force = spin + 3,
+  torque = force + 3,
+  n_places = torque + 3
+};
+
+void put(const Vec3 &v, double *place)
+{
+  place[0] = v.x;
+  place[1] = v.y;
+  place[2] = v.z;
+}
+
+Vec3 get(const double *place)
+{
+  return {place[0], place[1], place[2]};
+}
+
+void set(Quad &q, const double *place)
+{
+  q.x = place[0];
+  q.y = place[1];
+  q.z = place[2];
+}
+
+} // namespace
+
+void ParticleSystem::save(CheckpointWriter &writer) const
+{
+  const ParticleArrays &p = particles;
+  const Rows contacts = contact_rows().get_rows();
+  const std::size_t n_fixed = n_places + p.extra.size();
+  Rows all;
+  std::vector<ParticleId> keys;
+  std::vector<double> row;
+  for (std::size_t k = 0; k < p.n_owned; ++k) {
+    row.assign(n_fixed, 0.);
+    row[id] = p.id[k];
+    row[type] = p.type[k];
+    row[radius] = p.position[k].w;
+    row[mass] = p.velocity[k].w;
+    put(p.reference[k], &row[reference]);
+    put(p.position[k].vec(), &row[position]);
+    put(p.velocity[k].vec(), &row[velocity]);
+    put(p.spin[k].vec(), &row[spin]);
+    put(p.force[k].vec(), &row[force]);
+    put(p.torque[k].vec(), &row[torque]);
+    for (std::size_t e = 0; e < p.extra.size(); ++e)
+      row[n_places + e] = p.extra[e][k];
+    row.insert(row.end(), contacts[k], contacts[k] + contacts.length(k));
+    all.append(row.data(), row.data() + row.size());
+    keys.push_back(p.id[k]);
+  }
+  writer.add_rows("particles", keys, all);
+}
+
+void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
+                          const LoadBalancingParameters &balancing, const SparseContacts &sparse)
+{
+  MPI_Comm comm = domain.communicator();
+  int rank;
+  MPI_Comm_rank(comm, &rank);
+  const Rows share = checkpoint.rows("particles");
+  const std::size_t n_fixed = n_places + extra_defaults.size();
+  bool ok = true;
+  for (std::size_t k = 0; k < share.size(); ++k)
+    ok = ok && share.length(k) >= n_fixed &&
+         are_of_particle(share[k] + id, model.get_materials().n_types()) &&
+         ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
+                                  model.history_size());
+  checkpoint.require(ok, "its particles are not those of the case.");
+  std::vector<NewParticle> list;
+  std::vector<Origin> kept;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const double *const row = share[k];
+    NewParticle particle;
+    particle.id = static_cast<ParticleId>(row[id]);
+    particle.type = static_cast<int>(row[type]);
+    particle.radius = row[radius];
+    particle.mass = row[mass];
+    particle.position = get(row + reference);
+    list.push_back(particle);
+    kept.push_back({rank, static_cast<std::int32_t>(k)});
+  }
+  store.insert(list, extra_defaults, kept);
+  store.migrate();
+  if (store.imbalance(balancing) > balancing.threshold_at_start) {
+    store.repartition(balancing);
+    store.migrate();
+  }
+  const RowViews mine = fetch_rows(share, build_lists(solids), comm);
+
+  Rows contacts;
+  ParticleArrays &p = particles;
+  for (std::size_t k = 0; k < p.n_owned; ++k) {
+    const double *const row = mine[k];
+    set(p.position[k], row + position);
+    set(p.velocity[k], row + velocity);
+    set(p.spin[k], row + spin);
+    set(p.force[k], row + force);
+    set(p.torque[k], row + torque);
+    for (std::size_t e = 0; e < p.extra.size(); ++e)
+      p.extra[e][k] = row[n_places + e];
+    contacts.append(row + n_fixed, row + mine.length(k));
+  }
+  ContactRows(model.history_size()).attach(RowViews(contacts), particles, pairs, solid_contacts);
+  halo.update(particles);
+  if (sparse.is_enabled()) {
+    sparse.recall(particles, halo);
+    leave_out_sleepers();
+  }
+}
+
+} // namespace eunoe

@@ -1,0 +1,305 @@
+#include <eunoe/engine/solid_contacts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace eunoe {
+namespace {
+
+/// Between the normals of a contact at two steps, below which it is another one.
+constexpr double least_cosine = 0.9;
+
+} // namespace
+
+SolidContacts::SolidContacts(const ContactModel &model)
+    : model(model), block(std::make_unique<PairBlock>()), places(std::make_unique<Places>())
+{
+  memory.clear(model.history_size());
+}
+
+void SolidContacts::search(const ParticleArrays &particles, const std::vector<Solid> &solids,
+                           const double reach)
+{
+  candidates.clear();
+  facets.clear();
+  planes.clear();
+  normals.clear();
+  memory.clear(model.history_size());
+  std::vector<Box> boxes;
+  solids_at_search.clear();
+  for (const Solid &solid : solids) {
+    boxes.push_back(solid.shape->bounding_box());
+    solids_at_search.push_back(solid.state);
+  }
+  for (std::size_t p = 0; p < particles.n_owned; ++p)
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+      const Vec3 centre = solids[s].to_own_frame(particles.position[p].vec());
+      const double near = particles.position[p].w + reach;
+      if (!boxes[s].contains(centre, near))
+        continue;
+      Candidate candidate;
+      candidate.particle = static_cast<std::int32_t>(p);
+      candidate.solid = static_cast<std::int32_t>(s);
+      candidate.first_facet = static_cast<std::int32_t>(facets.size());
+      const double gap =
+          solids[s].shape->find_facets(centre, near, facets) - particles.position[p].w;
+      candidate.gap = std::nextafter(static_cast<float>(gap), -std::numeric_limits<float>::max());
+      candidate.n_facets = static_cast<std::int32_t>(facets.size()) - candidate.first_facet;
+      if (candidate.n_facets == 0)
+        continue;
+      const std::int32_t *const first = facets.data() + candidate.first_facet;
+      Plane plane;
+      candidate.plane = -1;
+      if (solids[s].shape->is_plane(centre, near, first, first + candidate.n_facets, plane)) {
+        candidate.plane = static_cast<std::int32_t>(planes.size());
+        planes.push_back(plane);
+      }
+      candidates.push_back(candidate);
+    }
+}
+
+std::int32_t SolidContacts::create(const Vec3 &normal)
+{
+  const std::int32_t record = memory.create();
+  if (static_cast<std::size_t>(record) >= normals.size())
+    normals.resize(record + 1);
+  normals[record] = normal;
+  return record;
+}
+
+unsigned int SolidContacts::find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
+                                 SurfaceContact *found) const
+{
+  const Vec3 centre = solid.to_own_frame(sphere.vec());
+  const double reach = sphere.w + model.range();
+  if (candidate.plane >= 0) {
+    const Plane &plane = planes[candidate.plane];
+    const double height = dot(plane.normal, centre) - plane.offset;
+    found[0] = {height < 0. ? plane.normal : -plane.normal, std::abs(height)};
+    return found[0].distance < reach ? 1 : 0;
+  }
+  const std::int32_t *const first = facets.data() + candidate.first_facet;
+  return solid.shape->find_contacts(centre, sphere.w, reach, first, first + candidate.n_facets,
+                                    found);
+}
+
+double SolidContacts::deepest_overlap(const Candidate &candidate, const Solid &solid,
+                                      const Vec3 &centre, const double radius) const
+{
+  std::array<SurfaceContact, Shape::max_contacts> found;
+  const unsigned int n =
+      find(candidate, solid, {centre.x, centre.y, centre.z, radius}, found.data());
+  double deepest = -model.range();
+  for (unsigned int k = 0; k < n; ++k)
+    deepest = std::max(deepest, radius - found[k].distance);
+  return deepest;
+}
+
+void SolidContacts::forget()
+{
+  for (Candidate &candidate : candidates)
+    candidate.n_living = 0;
+  memory.clear(model.history_size());
+  normals.clear();
+}
+
+void SolidContacts::reset(const Memory &saved)
+{
+  candidates = saved.candidates;
+  memory = saved.records;
+  normals = saved.normals;
+}
+
+void SolidContacts::restore(const std::int32_t particle, const std::int32_t solid,
+                            const Vec3 &normal, const double *history)
+{
+  const auto it = std::lower_bound(
+      candidates.begin(), candidates.end(), std::pair(particle, solid),
+      [](const Candidate &c, const auto &key) { return std::pair(c.particle, c.solid) < key; });
+  if (it == candidates.end() || it->particle != particle || it->solid != solid ||
+      it->n_living == Shape::max_contacts)
+    return;
+  const std::int32_t record = create(normal);
+  std::copy_n(history, model.history_size(), memory[record]);
+  it->living[it->n_living++] = record;
+}
+
+std::int32_t SolidContacts::take_living(Candidate &candidate, const Vec3 &normal) const
+{
+  unsigned int best = candidate.n_living;
+  double best_cosine = least_cosine;
+  for (unsigned int l = 0; l < candidate.n_living; ++l) {
+    const double cosine = candidate.living[l] == ContactMemory::none
+                              ? -1.
+                              : dot(normal, normals[candidate.living[l]]);
+    if (cosine > best_cosine) {
+      best = l;
+      best_cosine = cosine;
+    }
+  }
+  return best < candidate.n_living ? std::exchange(candidate.living[best], ContactMemory::none)
+                                   : ContactMemory::none;
+}
+
+void SolidContacts::go_on(Candidate &candidate, const SurfaceContact *found,
+                          const unsigned int n_found)
+{
+  if (n_found == 0 && candidate.n_living == 0)
+    return;
+  // The usual case: one contact, which goes on.
+  if (n_found == 1 && candidate.n_living == 1 &&
+      dot(found[0].normal, normals[candidate.living[0]]) > least_cosine)
+  {
+    normals[candidate.living[0]] = found[0].normal;
+    return;
+  }
+  std::array<std::int32_t, Shape::max_contacts> living = {};
+  for (unsigned int k = 0; k < n_found; ++k) {
+    living[k] = take_living(candidate, found[k].normal);
+    if (living[k] == ContactMemory::none)
+      living[k] = create(found[k].normal);
+    else
+      normals[living[k]] = found[k].normal;
+  }
+  for (unsigned int l = 0; l < candidate.n_living; ++l)
+    if (candidate.living[l] != ContactMemory::none)
+      memory.release(candidate.living[l]);
+  candidate.living = living;
+  candidate.n_living = n_found;
+}
+
+void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Solid> &solids,
+                               const double time, const double dt, std::vector<SolidLoad> *loads)
+{
+  block->n = 0;
+  std::vector<double> way(solids.size());
+  for (std::size_t s = 0; s < solids.size(); ++s)
+    way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
+  Candidate asleep = {}; // a copy, from which contacts may be taken
+  for (Candidate &candidate : candidates) {
+    // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
+    if (loads == nullptr && recorded == nullptr && !particles.is_awake(candidate.particle))
+      continue;
+    // Too far for a contact, as long as both together have not gone the gap that there was.
+    const double spare = candidate.gap - model.range() - way[candidate.solid];
+    if (spare > 0. && candidate.n_living == 0 &&
+        norm_square(particles.position[candidate.particle].vec() -
+                    particles.reference[candidate.particle]) < spare * spare)
+      continue;
+    const Solid &solid = solids[candidate.solid];
+    const Quad &position = particles.position[candidate.particle];
+    std::array<SurfaceContact, Shape::max_contacts> found;
+    const unsigned int n_found =
+        solid.is_active(time) ? find(candidate, solid, position, found.data()) : 0;
+
+    const bool is_awake = particles.is_awake(candidate.particle);
+    if (is_awake)
+      go_on(candidate, found.data(), n_found);
+    else
+      asleep = candidate;
+    for (unsigned int k = 0; k < n_found; ++k) {
+      add_to_block(particles, solid, candidate, found[k],
+                   is_awake ? candidate.living[k] : take_living(asleep, found[k].normal));
+      places->feels[block->n - 1] = is_awake;
+      if (block->n == PairBlock::size)
+        run_block(particles, solids, dt, loads);
+    }
+  }
+  if (block->n > 0)
+    run_block(particles, solids, dt, loads);
+}
+
+void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &solid,
+                                 const Candidate &candidate, const SurfaceContact &contact,
+                                 const std::int32_t record)
+{
+  PairBlock &b = *block;
+  const unsigned int k = b.n++;
+  const std::int32_t p = candidate.particle;
+  const Quad &position = particles.position[p], &velocity = particles.velocity[p],
+             &spin = particles.spin[p];
+  const double radius = position.w;
+  const Vec3 n = solid.to_space(contact.normal);
+  const Vec3 point = position.vec() + contact.distance * n;
+  const Vec3 v = velocity.vec() - solid.state.velocity_at(point) + cross(radius * spin.vec(), n);
+  const double closing = dot(v, n);
+  const Vec3 slip = v - closing * n;
+  const Vec3 w = spin.vec() - solid.state.angular_velocity;
+  const Vec3 roll = w - dot(w, n) * n;
+
+  b.nx[k] = n.x;
+  b.ny[k] = n.y;
+  b.nz[k] = n.z;
+  b.distance[k] = contact.distance;
+  b.overlap[k] = radius - contact.distance;
+  b.radius[k] = radius;
+  b.mass[k] = velocity.w;
+  b.inertia[k] = spin.w;
+  b.closing_speed[k] = closing;
+  b.slip_x[k] = slip.x;
+  b.slip_y[k] = slip.y;
+  b.slip_z[k] = slip.z;
+  b.roll_x[k] = roll.x;
+  b.roll_y[k] = roll.y;
+  b.roll_z[k] = roll.z;
+  b.kind[k] = model.get_materials().kind(particles.type[p], solid.material);
+  const double *const history = record == ContactMemory::none ? nullptr : memory[record];
+  for (unsigned int h = 0; h < model.history_size(); ++h)
+    b.history[h][k] = history == nullptr ? 0. : history[h];
+
+  places->particle[k] = p;
+  places->solid[k] = candidate.solid;
+  places->record[k] = record;
+  places->point[k] = point;
+}
+
+void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid> &solids,
+                              const double dt, std::vector<SolidLoad> *loads)
+{
+  PairBlock &b = *block;
+  for (unsigned int k = b.n; k < PairBlock::size; ++k) {
+    for (double *lanes :
+         {b.nx, b.ny, b.nz, b.distance, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
+          b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z})
+      lanes[k] = lanes[b.n - 1];
+    b.kind[k] = b.kind[b.n - 1];
+    for (unsigned int h = 0; h < model.history_size(); ++h)
+      b.history[h][k] = b.history[h][b.n - 1];
+  }
+  b.uniform_kind = std::all_of(b.kind, b.kind + b.n, [&b](auto kind) { return kind == b.kind[0]; })
+                       ? static_cast<int>(b.kind[0])
+                       : -1;
+  model.apply(b, dt);
+
+  for (unsigned int k = 0; k < b.n; ++k) {
+    const std::int32_t p = places->particle[k];
+    const Vec3 n = {b.nx[k], b.ny[k], b.nz[k]};
+    const Vec3 shear = {b.shear_x[k], b.shear_y[k], b.shear_z[k]};
+    const Vec3 rolling = {b.torque_x[k], b.torque_y[k], b.torque_z[k]};
+    const Vec3 force = (b.contact_force[k] - b.cohesion[k]) * n + shear;
+    if (recorded != nullptr)
+      recorded->push_back({p, -1, places->solid[k], n, b.distance[k], b.overlap[k],
+                           b.contact_force[k] - b.cohesion[k], shear});
+    if (loads != nullptr) {
+      SolidLoad &load = (*loads)[places->solid[k]];
+      const Vec3 torque =
+          cross(places->point[k] - solids[places->solid[k]].state.centre, force) - rolling;
+      for (unsigned int d = 0; d < 3; ++d) {
+        load.force[d] += force[d];
+        load.torque[d] += torque[d];
+      }
+    }
+    if (!places->feels[k])
+      continue;
+    particles.force[p].add(-force);
+    particles.torque[p].add(rolling - particles.position[p].w * cross(n, shear));
+    double *const history = memory[places->record[k]];
+    for (unsigned int h = 0; h < model.history_size(); ++h)
+      history[h] = b.history[h][k];
+  }
+  b.n = 0;
+}
+
+} // namespace eunoe

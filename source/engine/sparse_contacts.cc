@@ -1,0 +1,133 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/engine/sparse_contacts.h>
+
+#include <algorithm>
+
+namespace eunoe {
+
+namespace {
+
+/// Neighbours of neighbours are awake, so that those who move feel others that can give way.
+constexpr unsigned int n_rings = 2;
+
+/// Takes the flags for those who are awake; without flags if that is everyone.
+void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
+{
+  p.awake_rows.clear();
+  p.sleepers_moved2 = 0.;
+  if (std::find(flags.begin(), flags.end(), 0) == flags.end()) {
+    p.awake.clear();
+    return;
+  }
+  p.awake = std::move(flags);
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (p.awake[row] != 0)
+      p.awake_rows.push_back(static_cast<std::int32_t>(row));
+    else
+      p.sleepers_moved2 =
+          std::max(p.sleepers_moved2, norm_square(p.position[row].vec() - p.reference[row]));
+}
+
+} // namespace
+
+void SparseContactParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("model parameters");
+  prm.enter_subsection("adaptive sparse contacts");
+  prm.add_parameter("enable adaptive sparse contacts", enabled,
+                    "Whether particles that are at rest, and whose neighbours are, sleep: they do "
+                    "not move and their contacts with each other are not computed, until something "
+                    "stirs near them.");
+  declare::positive(prm, "granular temperature threshold", temperature,
+                    "Square of the speed below which a particle is at rest (m2/s2).");
+  declare::positive(prm, "rest time", rest_time,
+                    "Time for which a particle must have been at rest before it may sleep (s).");
+  declare::count(prm, "check frequency", frequency,
+                 "Steps between two looks at who may sleep and who must wake; every search for "
+                 "contacts looks as well.",
+                 1);
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+SparseContacts::SparseContacts(const SparseContactParameters &parameters,
+                               const std::vector<ParticleField> &fields, const double time_step)
+    : parameters(parameters), last_moved(n_components(fields) - 1), asleep(last_moved - 1),
+      rest_steps(parameters.rest_time / time_step)
+{
+}
+
+std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
+                                                        const SolidContacts &solids,
+                                                        const Stirring &stirring) const
+{
+  std::vector<double> &moved = p.extra[last_moved];
+  const auto now = static_cast<double>(stirring.step);
+  const double limit = parameters.temperature;
+  for (std::size_t row = 0; row < p.n_owned; ++row) {
+    // What is no number is not at rest. Spin does not count: many particles turn in place for long,
+    // as nothing resists a spin about the normal of a contact, and one that rolls moves as well.
+    const bool at_rest = norm_square(p.velocity[row].vec()) <= limit;
+    if (!at_rest || stirring.everything || moved[row] < 0.)
+      moved[row] = now;
+  }
+  for (const SolidContacts::Candidate &candidate : solids.get_candidates())
+    if (stirring.solid_moves[candidate.solid])
+      moved[candidate.particle] = now;
+  // Ghosts of no pair are not asked.
+  std::vector<std::uint8_t> restless(p.size(), 1);
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    restless[row] = now - moved[row] < rest_steps;
+  return restless;
+}
+
+void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const SolidContacts &solids,
+                            Halo &halo, const Stirring &stirring) const
+{
+  std::vector<std::uint8_t> awake = find_restless(p, solids, stirring), wider;
+  halo.update(awake);
+  for (unsigned int ring = 0; ring < n_rings; ++ring) {
+    wider = awake;
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      if ((awake[pairs.i[k]] | awake[pairs.j[k]]) != 0)
+        wider[pairs.i[k]] = wider[pairs.j[k]] = 1;
+    awake.swap(wider);
+    halo.update(awake);
+  }
+  std::vector<double> &sleeps = p.extra[asleep];
+  for (std::size_t row = 0; row < p.n_owned; ++row) {
+    const double now = awake[row] != 0 ? 0. : 1.;
+    if (now == sleeps[row])
+      continue;
+    sleeps[row] = now;
+    if (now != 0.) {
+      p.velocity[row] = {0., 0., 0., p.velocity[row].w};
+      p.spin[row] = {0., 0., 0., p.spin[row].w};
+    } else
+      // Who wakes has been in balance; what was noted meanwhile is no force on it.
+      p.force[row] = p.torque[row] = Quad();
+  }
+  set_awake(p, std::move(awake));
+}
+
+void SparseContacts::stir_neighbours(ParticleArrays &p, const PairList &pairs,
+                                     const std::vector<std::uint8_t> &flags,
+                                     const unsigned long long step) const
+{
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if ((flags[pairs.i[k]] | flags[pairs.j[k]]) != 0)
+      for (const std::int32_t row : {pairs.i[k], pairs.j[k]})
+        if (static_cast<std::size_t>(row) < p.n_owned)
+          p.extra[last_moved][row] = static_cast<double>(step);
+}
+
+void SparseContacts::recall(ParticleArrays &p, Halo &halo) const
+{
+  std::vector<std::uint8_t> awake(p.size(), 1);
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    awake[row] = p.extra[asleep][row] == 0.;
+  halo.update(awake);
+  set_awake(p, std::move(awake));
+}
+
+} // namespace eunoe

@@ -1,0 +1,134 @@
+#include <eunoe/core/files.h>
+#include <eunoe/simulation/insertion.h>
+
+#include <algorithm>
+
+namespace eunoe {
+namespace {
+
+const char *const columns[] = {"p_x", "p_y", "p_z", "v_x", "v_y",
+                               "v_z", "w_x", "w_y", "w_z", "diameters"};
+
+/// Columns that a file may leave out; they are zero then.
+bool may_lack(const std::string &column)
+{
+  return column[0] == 'v' || column[0] == 'w';
+}
+
+/// Particles from files in Lethe's format, all of type 0, one file an event.
+class File : public Insertion
+{
+public:
+  File(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : repeats(parameters.frequency > 0), density(physics.types[0].density)
+  {
+    for (const std::string &file : parameters.files)
+      read(file, comm);
+  }
+
+  double largest_diameter() const override { return largest; }
+
+  std::size_t supply(const std::size_t n_events) const override
+  {
+    const std::size_t events = repeats ? n_events : 1, rest = events % files.size();
+    std::size_t round = 0, last_round = 0;
+    for (std::size_t k = 0; k < files.size(); ++k) {
+      round += files[k].n;
+      last_round += k < rest ? files[k].n : 0;
+    }
+    return events / files.size() * round + last_round;
+  }
+
+  std::vector<Vec3> known_places() const override
+  {
+    std::vector<Vec3> places;
+    for (const Contents &file : files)
+      for (const NewParticle &particle : file.share)
+        places.push_back(particle.position);
+    return places;
+  }
+
+  std::vector<std::vector<NewParticle>> known_events() const override
+  {
+    std::vector<std::vector<NewParticle>> events;
+    for (const Contents &file : files)
+      events.push_back(file.share);
+    return events;
+  }
+
+  void skip(std::size_t n, std::size_t) override { n_events = n; }
+
+  bool finished() const override { return !repeats && n_events > 0; }
+
+  std::vector<NewParticle> next(ParticleIds &ids) override
+  {
+    Contents &file = files[n_events++ % files.size()];
+    const ParticleId first = ids.take(file.n);
+    // A file that is not needed again is not kept.
+    std::vector<NewParticle> particles = repeats ? file.share : std::move(file.share);
+    for (NewParticle &particle : particles)
+      particle.id += first;
+    return particles;
+  }
+
+private:
+  /// A file: number of its particles, and this rank's share of them with ids from 0.
+  struct Contents
+  {
+    std::size_t n;
+    std::vector<NewParticle> share;
+  };
+
+  void read(const std::string &file, MPI_Comm comm)
+  {
+    const Table table = parse_table(read_file(file, comm), file);
+    std::vector<int> place;
+    for (const std::string name : columns) {
+      place.push_back(table.column(name));
+      if (place.back() < 0 && !may_lack(name))
+        throw UserError(file + ":1: the header has no column '" + name +
+                        "'. It is 'p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters'.");
+    }
+    const auto [begin, end] = share_of(table.rows.size(), comm);
+    Contents contents = {table.rows.size(), {}};
+    for (std::size_t k = 0; k < table.rows.size(); ++k) {
+      double value[10];
+      for (unsigned int c = 0; c < 10; ++c) {
+        value[c] = place[c] < 0 ? 0. : table.rows[k][place[c]];
+        if (!std::isfinite(value[c]))
+          throw UserError(file + ": particle " + std::to_string(k) + " has " + format(value[c]) +
+                          " as its '" + columns[c] + "'. Give a number.");
+      }
+      if (!(value[9] > 0.))
+        throw UserError(file + ": particle " + std::to_string(k) + " has a diameter of " +
+                        format(value[9]) + " m. Give a positive diameter.");
+      largest = std::max(largest, value[9]);
+      if (k < begin || k >= end)
+        continue;
+      NewParticle particle;
+      particle.id = static_cast<ParticleId>(k);
+      particle.radius = 0.5 * value[9];
+      particle.mass = sphere_mass(particle.radius, density);
+      particle.position = {value[0], value[1], value[2]};
+      particle.velocity = {value[3], value[4], value[5]};
+      particle.spin = {value[6], value[7], value[8]};
+      contents.share.push_back(particle);
+    }
+    files.push_back(std::move(contents));
+  }
+
+  const bool repeats;
+  const double density;
+  std::vector<Contents> files;
+  double largest = 0.;
+  std::size_t n_events = 0;
+};
+
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "file",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<File>(parameters, physics, comm);
+    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,201 @@
+#include <eunoe/core/problems.h>
+#include <eunoe/core/random.h>
+#include <eunoe/domain/mesh.h>
+#include <eunoe/simulation/insertion.h>
+
+#include <algorithm>
+#include <array>
+
+namespace eunoe {
+namespace {
+
+/// Lethe's "plane": at every event one particle in each empty cell that a plane cuts.
+class Plane : public Insertion
+{
+public:
+  Plane(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : parameters(parameters), particles(physics.types), comm(comm)
+  {
+  }
+
+  double largest_diameter() const override { return particles.largest_diameter(); }
+
+  /// At most; how many cells will be empty cannot be known.
+  std::size_t supply(std::size_t) const override { return particles.n_remaining(); }
+
+  void skip(std::size_t n, std::size_t n_particles) override
+  {
+    n_events = n;
+    particles.take(n_particles);
+  }
+
+  bool finished() const override { return particles.n_remaining() == 0; }
+
+  void check(const Domain &domain, Problems &problems) const override
+  {
+    const std::size_t n_cells = all_of_ranks(find_cells(domain)).size();
+    if (n_cells == 0)
+      problems.add("subsection 'insertion info' / entry 'insertion plane point':",
+                   "the plane cuts no cell of the mesh.",
+                   "Move the plane into the mesh, or turn it.");
+    else if (parameters.frequency == 0 && n_cells < particles.n_remaining())
+      problems.add("subsection 'insertion info' / entry 'insertion frequency':",
+                   "is 0, so that there is a single event, and the plane cuts " +
+                       std::to_string(n_cells) + " cells only for " +
+                       std::to_string(particles.n_remaining()) + " particles.",
+                   "Set an 'insertion frequency' for several events, or insert fewer.");
+  }
+
+  void survey(const Surroundings &surroundings) override
+  {
+    cells = all_of_ranks(find_cells(surroundings.domain));
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (unsigned int d = 0; d < 3; ++d) {
+        const double shift = uniform(parameters.seed, Draw::offset, n_events << 32 | c, d) - 0.5;
+        cells[c].place[d] += shift * std::min(parameters.maximum_offset * largest_diameter(),
+                                              2. * cells[c].slack[d]);
+      }
+    find_free(surroundings);
+  }
+
+  std::vector<NewParticle> next(ParticleIds &ids) override
+  {
+    std::vector<Cell> free;
+    std::copy_if(cells.begin(), cells.end(), std::back_inserter(free),
+                 [](const Cell &cell) { return cell.is_free; });
+    const std::size_t n = std::min(free.size(), particles.n_remaining());
+    const ParticleId first = ids.take(n);
+    const auto [begin, end] = share_of(n, comm);
+    std::vector<NewParticle> share;
+    for (std::size_t k = begin; k < end; ++k) {
+      NewParticle particle = particles.particle(k, first + static_cast<ParticleId>(k));
+      particle.position = free[k].place;
+      particle.velocity = parameters.velocity;
+      particle.spin = parameters.spin;
+      share.push_back(particle);
+    }
+    particles.take(n);
+    ++n_events;
+    return share;
+  }
+
+private:
+  /// A cell that the plane cuts.
+  struct Cell
+  {
+    std::array<double, 4> key; ///< the same on any number of ranks, by which cells are ordered
+    Vec3 centre, half;         ///< half the widths of a box, or of the largest one in the cell (m)
+    Vec3 slack;                ///< largest shift from a box's centre in each direction (m)
+    Vec3 place;                ///< of the particle (m)
+    bool is_free = false;
+  };
+
+  /// This rank's cells that the plane cuts. A plane along faces cuts the cells behind it.
+  std::vector<Cell> find_cells(const Domain &domain) const
+  {
+    const Vec3 normal = parameters.plane_normal / norm(parameters.plane_normal);
+    const double tolerance = 1e-10 * norm(domain.upper() - domain.lower());
+    std::vector<Cell> found;
+    for (const auto &cell : domain.mesh().triangulation.active_cell_iterators()) {
+      if (!cell->is_locally_owned())
+        continue;
+      double lowest = 0., highest = 0.;
+      for (const unsigned int v : cell->vertex_indices()) {
+        const double height = dot(to_vec3(cell->vertex(v)) - parameters.plane_point, normal);
+        lowest = v == 0 ? height : std::min(lowest, height);
+        highest = v == 0 ? height : std::max(highest, height);
+      }
+      if (lowest >= -tolerance || highest < -tolerance)
+        continue;
+      Cell cut;
+      const auto id = cell->id().to_binary<3>();
+      std::copy(id.begin(), id.end(), cut.key.begin());
+      cut.centre = cut.place = to_vec3(cell->center());
+      for (unsigned int d = 0; d < 3; ++d) {
+        cut.half[d] = 0.5 * cell->extent_in_direction(d);
+        // In a cell that is no box a particle stays where it surely fits.
+        cut.slack[d] =
+            domain.mesh().has_boxes ? std::max(0., cut.half[d] - 0.5 * largest_diameter()) : 0.;
+      }
+      found.push_back(cut);
+    }
+    return found;
+  }
+
+  /// Those of all ranks, in an order that does not depend on their number.
+  std::vector<Cell> all_of_ranks(const std::vector<Cell> &mine) const
+  {
+    std::vector<Cell> all;
+    std::vector<char> bytes(reinterpret_cast<const char *>(mine.data()),
+                            reinterpret_cast<const char *>(mine.data() + mine.size()));
+    for (const auto &part : dealii::Utilities::MPI::all_gather(comm, bytes)) {
+      const std::size_t n = all.size();
+      all.resize(n + part.size() / sizeof(Cell));
+      std::copy(part.begin(), part.end(), reinterpret_cast<char *>(all.data() + n));
+    }
+    std::sort(all.begin(), all.end(), [](const Cell &a, const Cell &b) { return a.key < b.key; });
+    return all;
+  }
+
+  /// Whether a particle or one of its images is closer to the plane than @p reach (m).
+  bool is_near_plane(const Vec3 &x, const PeriodicBox &box, double reach) const
+  {
+    const Vec3 normal = parameters.plane_normal / norm(parameters.plane_normal);
+    const Vec3 away = x - parameters.plane_point;
+    for (const double i : {-1., 0., 1.})
+      for (const double j : {-1., 0., 1.})
+        for (const double k : {-1., 0., 1.}) {
+          const Vec3 shift = {i * box.length.x, j * box.length.y, k * box.length.z};
+          if (std::abs(dot(away + shift, normal)) <= reach)
+            return true;
+        }
+    return false;
+  }
+
+  /// Whether a sphere stands in a cell, or touches the largest particle in its place.
+  bool takes(const Vec3 &x, double radius, const Cell &cell, const PeriodicBox &box) const
+  {
+    const Vec3 from_centre = box.shortest(x - cell.centre);
+    bool inside = true;
+    for (unsigned int d = 0; d < 3; ++d)
+      inside = inside && from_centre[d] >= -cell.half[d] && from_centre[d] < cell.half[d];
+    const double least = radius + 0.5 * largest_diameter();
+    return inside || norm_square(box.shortest(x - cell.place)) < least * least;
+  }
+
+  void find_free(const Surroundings &surroundings)
+  {
+    const ParticleArrays &p = surroundings.particles;
+    const PeriodicBox &box = surroundings.domain.periods();
+    double reach = 0.;
+    for (const Cell &cell : cells)
+      reach = std::max(reach, 2. * norm(cell.half) + largest_diameter());
+    std::vector<int> taken(cells.size(), 0);
+    for (std::size_t row = 0; row < p.n_owned; ++row) {
+      const Vec3 x = box.wrap(p.position[row].vec());
+      if (surroundings.leaving[row] || !is_near_plane(x, box, reach))
+        continue;
+      for (std::size_t c = 0; c < cells.size(); ++c)
+        if (takes(x, p.position[row].w, cells[c], box))
+          taken[c] = 1;
+    }
+    dealii::Utilities::MPI::max(taken, comm, taken);
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      cells[c].is_free = taken[c] == 0;
+  }
+
+  const InsertionParameters parameters;
+  ParticleSupply particles;
+  MPI_Comm comm;
+  std::uint64_t n_events = 0;
+  std::vector<Cell> cells;
+};
+
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "plane",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<Plane>(parameters, physics, comm);
+    });
+
+} // namespace
+} // namespace eunoe

@@ -1,0 +1,182 @@
+#include <eunoe/core/expressions.h>
+#include <eunoe/core/random.h>
+#include <eunoe/simulation/insertion.h>
+
+#include <algorithm>
+
+namespace eunoe {
+
+namespace {
+/// More than any run can have ids for, and whole as a double.
+constexpr double many = 0x1p32;
+/// Points at which an acceptance function is asked, as many as fit into some seconds.
+constexpr std::size_t most_restricted = 100000000;
+} // namespace
+
+double VolumeGrid::points_along(const unsigned int d) const
+{
+  return std::clamp(std::floor((upper[d] - lower[d]) / pitch + 1e-9), 0., many);
+}
+
+std::size_t VolumeGrid::capacity() const
+{
+  if (restricted)
+    return accepted.size();
+  return static_cast<std::size_t>(
+      std::min(points_along(0) * points_along(1) * points_along(2), many));
+}
+
+Vec3 VolumeGrid::cell(std::size_t k) const
+{
+  Vec3 x;
+  for (const int d : order) {
+    const auto n = static_cast<std::size_t>(points_along(static_cast<unsigned int>(d)));
+    x[d] = lower[d] + (k % n) * pitch;
+    k /= n;
+  }
+  return x;
+}
+
+Vec3 VolumeGrid::point(const std::size_t k, const unsigned int seed, const ParticleId id) const
+{
+  Vec3 x = cell(restricted ? accepted[k] : k);
+  for (const int d : order) {
+    const double slack = pitch - offset;
+    x[d] = x[d] + 0.5 * slack +
+           offset * uniform(seed, Draw::offset, id, static_cast<std::uint32_t>(d));
+  }
+  return x;
+}
+
+void VolumeGrid::restrict_to(const std::function<bool(const Vec3 &)> &accepts)
+{
+  std::vector<std::uint32_t> list;
+  const std::size_t n = capacity();
+  const Vec3 middle = {0.5 * pitch, 0.5 * pitch, 0.5 * pitch};
+  for (std::size_t k = 0; k < n; ++k)
+    if (accepts(cell(k) + middle))
+      list.push_back(static_cast<std::uint32_t>(k));
+  accepted = list;
+  restricted = true;
+}
+
+namespace {
+
+/// Lethe's "volume": events that fill a grid of points in a box, one type after another.
+class Volume : public Insertion
+{
+public:
+  Volume(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
+      : parameters(parameters), particles(physics.types), comm(comm)
+  {
+    grid.lower = parameters.box_lower;
+    grid.upper = parameters.box_upper;
+    grid.pitch = parameters.distance_threshold * largest_diameter();
+    grid.offset = parameters.maximum_offset * largest_diameter();
+    grid.order = parameters.directions;
+    if (parameters.acceptance != "1")
+      restrict_grid();
+
+    const std::size_t room = grid.capacity(), wanted = particles.n_remaining();
+    const std::string box =
+        "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
+        "room for " +
+        format_count(static_cast<double>(room), "particle", "particles") + ", but ";
+    const Vec3 extent = grid.upper - grid.lower;
+    const double narrowest = std::min({extent.x, extent.y, extent.z});
+    if (wanted > 0 && room == 0 && largest_diameter() > narrowest)
+      throw UserError(
+          box + "grains are up to " + format(largest_diameter()) + " m wide, and it is " +
+          format(narrowest) +
+          " m at its narrowest. Lengths are in metres: correct the diameter or the box.");
+    if (wanted > 0 && room == 0)
+      throw UserError(box + "there are particles to insert. Enlarge the box.");
+    if (parameters.frequency == 0 && room < of_next_event())
+      throw UserError(box + std::to_string(of_next_event()) +
+                      " are to be inserted at once. Enlarge the box, or set an 'insertion "
+                      "frequency' for several events.");
+    if (parameters.frequency == 0 && of_next_event() < wanted)
+      throw UserError(
+          "subsection 'insertion info' / entry 'inserted number of particles at each time step' "
+          "is " +
+          std::to_string(parameters.per_event) + ", but all " + std::to_string(wanted) +
+          " particles come in a single event, as the 'insertion frequency' is 0. Set it to 0 for "
+          "all at once, or set an 'insertion frequency'.");
+  }
+
+  double largest_diameter() const override { return particles.largest_diameter(); }
+
+  std::size_t supply(const std::size_t n_events) const override
+  {
+    const std::size_t of_event = std::min(of_next_event(), grid.capacity());
+    const std::size_t left = particles.n_remaining();
+    const bool all = of_event > 0 && n_events >= left / of_event + 1;
+    return all ? left : std::min(left, n_events * of_event);
+  }
+
+  void skip(std::size_t, std::size_t n_particles) override { particles.take(n_particles); }
+
+  bool finished() const override { return particles.n_remaining() == 0; }
+
+  std::vector<std::vector<NewParticle>> known_events() const override
+  {
+    constexpr std::size_t most = 50000;
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
+    return {some(1, std::max<std::size_t>(1, n / most))};
+  }
+
+  std::vector<NewParticle> next(ParticleIds &ids) override
+  {
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
+    const std::vector<NewParticle> share = some(ids.take(n), 1);
+    particles.take(n);
+    return share;
+  }
+
+private:
+  /// Every so many of this rank's share of the next event.
+  std::vector<NewParticle> some(const ParticleId first_id, const std::size_t stride) const
+  {
+    const std::size_t n = std::min(of_next_event(), grid.capacity());
+    const auto [begin, end] = share_of(n, comm);
+    std::vector<NewParticle> share;
+    for (std::size_t k = begin; k < end; k += stride) {
+      NewParticle p = particles.particle(k, first_id + static_cast<ParticleId>(k));
+      p.position = grid.point(k, parameters.seed, p.id);
+      p.velocity = parameters.velocity;
+      p.spin = parameters.spin;
+      share.push_back(p);
+    }
+    return share;
+  }
+
+  void restrict_grid()
+  {
+    // A wrong text has been refused when the parameters were checked.
+    const Expressions acceptance(parameters.acceptance, parameters.acceptance_constants, 1);
+    if (grid.capacity() > most_restricted)
+      throw UserError("subsection 'insertion info': the acceptance function would be asked at " +
+                      std::to_string(grid.capacity()) +
+                      " points. Make the insertion box smaller, or the distance threshold larger.");
+    grid.restrict_to([&](const Vec3 &x) { return acceptance.value(0, x, 0.) > 0.; });
+  }
+  std::size_t of_next_event() const
+  {
+    const std::size_t left = particles.n_remaining();
+    return parameters.per_event > 0 ? std::min<std::size_t>(parameters.per_event, left) : left;
+  }
+
+  const InsertionParameters parameters;
+  ParticleSupply particles;
+  MPI_Comm comm;
+  VolumeGrid grid;
+};
+
+const InsertionRegistry::Registration registration(
+    insertion_methods(), "volume",
+    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
+      return std::make_unique<Volume>(parameters, physics, comm);
+    });
+
+} // namespace
+} // namespace eunoe

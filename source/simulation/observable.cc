@@ -1,0 +1,36 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/simulation/observable.h>
+#include <eunoe/simulation/output.h>
+
+namespace eunoe {
+
+ObservableRegistry &observables()
+{
+  static ObservableRegistry registry;
+  return registry;
+}
+
+std::vector<PictureField> Observable::fields(Simulation &) const
+{
+  return {};
+}
+
+void RecordSection::declare(dealii::ParameterHandler &prm)
+{
+  for (const std::string &name : path)
+    prm.enter_subsection(name);
+  prm.add_parameter("calculation", calculation, texts.what);
+  prm.add_parameter("filename", file, texts.naming);
+  if (frequency > 0)
+    declare::count(prm, "output frequency", frequency, "Steps between two rows.", 1);
+  for (std::size_t k = 0; k < path.size(); ++k)
+    prm.leave_subsection();
+}
+
+void RecordSection::check(const ParameterCheck &check) const
+{
+  check.require(!file.empty() && file.find('/') == std::string::npos, path, "filename",
+                "is '" + file + "'.", "Give a name without '/'.");
+}
+
+} // namespace eunoe

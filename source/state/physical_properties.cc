@@ -1,0 +1,231 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/state/new_particle.h>
+#include <eunoe/state/physical_properties.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace eunoe {
+
+namespace {
+
+const std::string section = "lagrangian physical properties";
+
+std::string type_section(unsigned int t)
+{
+  return "particle type " + std::to_string(t);
+}
+
+const char *const common = "common";
+
+/// A number, or the word 'common'.
+class OwnOrCommon : public declare::Patterns::PatternBase
+{
+public:
+  explicit OwnOrCommon(const declare::Patterns::Double &number) : number(number) {}
+
+  bool match(const std::string &text) const override
+  {
+    return text == common || number.match(text);
+  }
+  std::string description(const OutputStyle style = Machine) const override
+  {
+    return "[common or " + number.description(style) + "]";
+  }
+  std::unique_ptr<PatternBase> clone() const override
+  {
+    return std::make_unique<OwnOrCommon>(*this);
+  }
+
+private:
+  const declare::Patterns::Double number;
+};
+
+std::string wall_section(std::size_t k)
+{
+  return "wall material " + std::to_string(k);
+}
+
+/// An entry of every material.
+struct Property
+{
+  const char *name;
+  double Material::*member;
+  double largest;
+  const char *documentation;
+};
+
+constexpr double any = std::numeric_limits<double>::max();
+const Property properties[] = {
+    {"young modulus", &Material::young_modulus, any, "Young's modulus (Pa)."},
+    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio, below 0.5."},
+    {"restitution coefficient", &Material::restitution, 1.,
+     "Restitution coefficient; a pair takes the harmonic mean."},
+    {"friction coefficient", &Material::friction, any,
+     "Sliding friction coefficient; a pair takes the harmonic mean."},
+    {"rolling friction", &Material::rolling_friction, any,
+     "Rolling friction coefficient; a pair takes the harmonic mean."},
+    {"rolling viscous damping", &Material::rolling_viscous_damping, any,
+     "Damping ratio of the EPSD rolling spring; a pair takes the harmonic mean."},
+    {"surface energy", &Material::surface_energy, any,
+     "Surface energy (J/m2); a pair takes twice the geometric mean."},
+    {"hamaker constant", &Material::hamaker_constant, any,
+     "Hamaker constant (J); a pair takes the arithmetic mean."}};
+
+/// The entries of a material; @p of is "particles" or "wall".
+void declare_material(dealii::ParameterHandler &prm, Material &m, const std::string &of)
+{
+  for (const Property &p : properties)
+    prm.add_parameter(p.name + (" " + of), m.*p.member, p.documentation,
+                      declare::Patterns::Double(0., p.largest));
+}
+
+/// The same entries of a material that takes those which it lacks from the common one of walls.
+void declare_wall_material(dealii::ParameterHandler &prm, WallMaterial &material)
+{
+  prm.add_parameter(
+      "surfaces", material.surfaces,
+      "Names of the walls and solids of this material, separated by commas: 'boundary "
+      "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
+      "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
+      "that have one.");
+  for (const Property &p : properties) {
+    const std::string entry = p.name + std::string(" wall");
+    prm.declare_entry(entry, common, OwnOrCommon(declare::Patterns::Double(0., p.largest)),
+                      std::string(p.documentation) + " 'common': that of all other walls.");
+    prm.add_action(entry, [&material, &p](const std::string &value) {
+      auto &own = material.own;
+      own.erase(std::remove_if(own.begin(), own.end(),
+                               [&p](const auto &entry) { return entry.first == p.member; }),
+                own.end());
+      if (value != common)
+        own.emplace_back(p.member, dealii::Utilities::string_to_double(value));
+    });
+  }
+}
+
+void check_material(const ParameterCheck &check, const ParameterCheck::Path &path,
+                    const Material &m, const std::string &of)
+{
+  check.require(m.young_modulus > 0., path, "young modulus " + of,
+                "is " + format(m.young_modulus) + " Pa.", "Give a positive modulus.");
+  check.require(m.poisson_ratio < 0.5, path, "poisson ratio " + of,
+                "is " + format(m.poisson_ratio) + ".", "Give a value of at least 0 and below 0.5.");
+}
+
+} // namespace
+
+Materials PhysicalProperties::materials() const
+{
+  std::vector<Material> all;
+  for (const ParticleType &type : types)
+    all.push_back(type.material);
+  const auto n_types = static_cast<int>(all.size());
+  all.push_back(wall);
+  for (const WallMaterial &material : wall_materials) {
+    all.push_back(wall);
+    for (const auto &[member, value] : material.own)
+      all.back().*member = value;
+  }
+  all.insert(all.end(), other_walls.begin(), other_walls.end());
+  return Materials(all, n_types);
+}
+
+double PhysicalProperties::rayleigh_time(const double radius, const double density,
+                                         const Material &material)
+{
+  const double nu = material.poisson_ratio;
+  const double shear_modulus = material.young_modulus / (2. * (1. + nu));
+  return M_PI * radius * std::sqrt(density / shear_modulus) / (0.1631 * nu + 0.8766);
+}
+
+double PhysicalProperties::shortest_contact_time(const ParticleType &type) const
+{
+  return shortest_contact_time(type, 0.5 * type.sizes.make()->smallest());
+}
+
+double PhysicalProperties::shortest_contact_time(const ParticleType &type,
+                                                 const double radius) const
+{
+  const double overlap = 0.01 * radius;
+  const double mass = sphere_mass(radius, type.density);
+  const double with_its_like = hertz_tangent_stiffness(
+      effective_young_modulus(type.material, type.material), 0.5 * radius, overlap);
+  double largest = with_its_like / (0.5 * mass);
+  // A partner that is much larger and heavier, like a wall, lends the particle its own radius and
+  // mass.
+  const Materials all = materials();
+  for (int m = 0; m < all.size(); ++m)
+    largest =
+        std::max(largest, hertz_tangent_stiffness(effective_young_modulus(type.material, all[m]),
+                                                  radius, overlap) /
+                              mass);
+  return M_PI / std::sqrt(largest);
+}
+
+double PhysicalProperties::largest_diameter() const
+{
+  double largest = 0.;
+  for (const ParticleType &type : types)
+    largest = std::max(largest, type.sizes.make()->largest());
+  return largest;
+}
+
+void PhysicalProperties::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection(section);
+  declare::vector(prm, "g", gravity, "Acceleration of gravity (m/s2).");
+  prm.declare_entry("number of particle types", std::to_string(types.size()),
+                    declare::Patterns::Integer(1, 5),
+                    "Number of the subsections 'particle type 0', 'particle type 1', ...");
+  for (unsigned int t = 0; t < types.size(); ++t) {
+    ParticleType &type = types[t];
+    prm.enter_subsection(type_section(t));
+    type.sizes.declare(prm);
+    declare::count(prm, "number of particles", type.number,
+                   "Number of particles of this type to insert.");
+    prm.declare_alias("number of particles", "number");
+    declare::positive(prm, "density particles", type.density, "Density (kg/m3).");
+    declare_material(prm, type.material, "particles");
+    prm.add_parameter("surface charge density particles", type.material.surface_charge,
+                      "Charge of a particle over its surface (C/m2), of either sign; see 'model "
+                      "parameters / electrostatic charge'.");
+    prm.leave_subsection();
+  }
+  declare_material(prm, wall, "wall");
+  prm.declare_entry(
+      "number of wall materials", std::to_string(wall_materials.size()),
+      declare::Patterns::Integer(0, 20),
+      "Number of the subsections 'wall material 0', ...: walls and solids that differ "
+      "from the common ones.");
+  for (std::size_t k = 0; k < wall_materials.size(); ++k) {
+    prm.enter_subsection(wall_section(k));
+    declare_wall_material(prm, wall_materials[k]);
+    prm.leave_subsection();
+  }
+  prm.leave_subsection();
+}
+
+void PhysicalProperties::check(const ParameterCheck &check) const
+{
+  check.advise(gravity.x != 0. || gravity.y != 0. || gravity.z != 0. ||
+                   check.is_written({section}, "g"),
+               {section}, "g", "is zero, so that nothing falls.",
+               "Set it, to 0, 0, -9.81 for example, or write 0, 0, 0 if that is meant.");
+  for (unsigned int t = 0; t < types.size(); ++t) {
+    const ParameterCheck::Path path = {section, type_section(t)};
+    types[t].sizes.check(check, path);
+    check_material(check, path, types[t].material, "particles");
+    check.require(types[t].density > 0., path, "density particles",
+                  "is " + format(types[t].density) + " kg/m3.", "Give a positive density.");
+  }
+  check_material(check, {section}, wall, "wall");
+  const Materials all = materials();
+  for (std::size_t k = 0; k < wall_materials.size(); ++k) {
+    check_material(check, {section, wall_section(k)}, all[wall_material(k)], "wall");
+    check.require(!wall_materials[k].surfaces.empty(), {section, wall_section(k)}, "surfaces",
+                  "is empty.", "Name the walls and solids that have this material.");
+  }
+}
+
+} // namespace eunoe
