@@ -138,7 +138,7 @@ inline std::vector<Sphere> spheres_of(Simulation &simulation)
   std::vector<Sphere> spheres(p.n_owned);
   for (std::size_t k = 0; k < p.n_owned; ++k)
     spheres[p.id[k] - 1] = {p.position[k].vec(), p.velocity[k].vec(), p.spin[k].vec(),
-                            2. * p.position[k].w};
+                            2. * p.radius(k)};
   return spheres;
 }
 

@@ -109,7 +109,7 @@ inline std::vector<std::vector<double>> particle_table(Simulation &simulation)
   for (std::size_t k = 0; k < p.n_owned; ++k) {
     const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
     mine.push_back(
-        {static_cast<double>(p.id[k]), x.x, x.y, x.z, x.w, v.x, v.y, v.z, w.x, w.y, w.z});
+        {static_cast<double>(p.id[k]), x.x, x.y, x.z, p.radius(k), v.x, v.y, v.z, w.x, w.y, w.z});
   }
   for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), mine))
     all.insert(all.end(), part.begin(), part.end());

@@ -45,12 +45,12 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
   std::map<int, std::vector<std::int32_t>> rows;
   double largest_radius = 0.;
   for (std::size_t row = 0; row < particles.n_owned; ++row)
-    largest_radius = std::max(largest_radius, particles.position[row].w);
+    largest_radius = std::max(largest_radius, particles.radius(row));
   MPI_Allreduce(MPI_IN_PLACE, &largest_radius, 1, MPI_DOUBLE, MPI_MAX, comm);
   std::vector<int> ranks;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
-    const Quad &x = particles.position[row];
-    store.ranks_near(row, x.vec(), 1.0001 * (x.w + largest_radius + gap), ranks);
+    const double reach = 1.0001 * (particles.radius(row) + largest_radius + gap);
+    store.ranks_near(row, particles.position[row].vec(), reach, ranks);
     for (const int rank : ranks)
       rows[rank].push_back(static_cast<std::int32_t>(row));
   }

@@ -61,11 +61,11 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
     // A pair with an i that is a ghost is seen by the owner of i.
     if (pairs.record[k] == ContactMemory::none || i >= p.n_owned)
       continue;
-    const double ri = p.position[i].w, rj = p.position[j].w;
+    const double ri = p.radius(i), rj = p.radius(j);
     const double overlap = ri + rj - norm(box.shortest(p.position[j].vec() - p.position[i].vec()));
     if (overlap <= 0.)
       continue;
-    const double mi = p.velocity[i].w, mj = p.velocity[j].w;
+    const double mi = p.mass(i), mj = p.mass(j);
     const double stiffness = hertz_tangent_stiffness(
         young_modulus[materials.kind(p.type[i], p.type[j])], ri * rj / (ri + rj), overlap);
     faults.stiffest = std::max(faults.stiffest, stiffness * (mi + mj) / (mi * mj));
@@ -82,16 +82,17 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
   for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates()) {
     if (candidate.n_living == 0)
       continue;
-    const Quad &x = p.position[candidate.particle];
+    const Vec3 x = p.position[candidate.particle].vec();
+    const double radius = p.radius(candidate.particle);
     const Solid &solid = solids[candidate.solid];
-    const double depth = solid_contacts.deepest_overlap(candidate, solid, x.vec(), x.w);
+    const double depth = solid_contacts.deepest_overlap(candidate, solid, x, radius);
     if (depth <= 0.)
       continue;
     const int kind = materials.kind(p.type[candidate.particle], solid.material);
     faults.stiffest =
-        std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], x.w, depth) /
-                                      p.velocity[candidate.particle].w);
-    if (largest_overlap > 0. && depth > largest_overlap * x.w)
+        std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], radius, depth) /
+                                      p.mass(candidate.particle));
+    if (largest_overlap > 0. && depth > largest_overlap * radius)
       faults.squeezed.push_back({static_cast<std::size_t>(candidate.particle),
                                  "overlaps '" + solid.name + "' by " + eunoe::format(depth) +
                                      " m, more than the 'largest overlap'."});

@@ -104,11 +104,11 @@ std::vector<std::size_t> ParticleSystem::count_leaving(const std::vector<std::si
 {
   std::vector<std::size_t> leaving;
   for (const auto &[row, outlet] : beyond_outlets()) {
-    ledger.through_outlet[outlet].count(particles.velocity[row].w);
+    ledger.through_outlet[outlet].count(particles.mass(row));
     leaving.push_back(row);
   }
   for (const std::size_t row : lost) {
-    ledger.lost.count(particles.velocity[row].w);
+    ledger.lost.count(particles.mass(row));
     leaving.push_back(row);
   }
   return leaving;
@@ -150,7 +150,7 @@ ParticleId ParticleSystem::exchange(const Delivery &delivery,
     has_left[row] = true;
   for (const std::size_t row : removed)
     if (!has_left[row]) {
-      ledger.taken_out.count(particles.velocity[row].w);
+      ledger.taken_out.count(particles.mass(row));
       leaving.push_back(row);
     }
   store.remove(leaving);
@@ -242,9 +242,10 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
 
 bool ParticleSystem::is_within_reach(const std::size_t pair) const
 {
-  const Quad &a = particles.position[pairs.i[pair]], &b = particles.position[pairs.j[pair]];
-  const double reach = a.w + b.w + model.range();
-  return norm_square(domain.periods().shortest(b.vec() - a.vec())) <= reach * reach;
+  const std::int32_t i = pairs.i[pair], j = pairs.j[pair];
+  const double reach = particles.radius(i) + particles.radius(j) + model.range();
+  const Vec3 apart = particles.position[j].vec() - particles.position[i].vec();
+  return norm_square(domain.periods().shortest(apart)) <= reach * reach;
 }
 
 void ParticleSystem::make_room_for_contacts()

@@ -57,8 +57,8 @@ void ParticleSystem::save(CheckpointWriter &writer) const
     row.assign(n_fixed, 0.);
     row[id] = p.id[k];
     row[type] = p.type[k];
-    row[radius] = p.position[k].w;
-    row[mass] = p.velocity[k].w;
+    row[radius] = p.radius(k);
+    row[mass] = p.mass(k);
     put(p.reference[k], &row[reference]);
     put(p.position[k].vec(), &row[position]);
     put(p.velocity[k].vec(), &row[velocity]);

@@ -36,15 +36,14 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
   for (std::size_t p = 0; p < particles.n_owned; ++p)
     for (std::size_t s = 0; s < solids.size(); ++s) {
       const Vec3 centre = solids[s].to_own_frame(particles.position[p].vec());
-      const double near = particles.position[p].w + reach;
+      const double near = particles.radius(p) + reach;
       if (!boxes[s].contains(centre, near))
         continue;
       Candidate candidate;
       candidate.particle = static_cast<std::int32_t>(p);
       candidate.solid = static_cast<std::int32_t>(s);
       candidate.first_facet = static_cast<std::int32_t>(facets.size());
-      const double gap =
-          solids[s].shape->find_facets(centre, near, facets) - particles.position[p].w;
+      const double gap = solids[s].shape->find_facets(centre, near, facets) - particles.radius(p);
       candidate.gap = std::nextafter(static_cast<float>(gap), -std::numeric_limits<float>::max());
       candidate.n_facets = static_cast<std::int32_t>(facets.size()) - candidate.first_facet;
       if (candidate.n_facets == 0)
@@ -220,7 +219,7 @@ void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &s
   const std::int32_t p = candidate.particle;
   const Quad &position = particles.position[p], &velocity = particles.velocity[p],
              &spin = particles.spin[p];
-  const double radius = position.w;
+  const double radius = particles.radius(p);
   const Vec3 n = solid.to_space(contact.normal);
   const Vec3 point = position.vec() + contact.distance * n;
   const Vec3 v = velocity.vec() - solid.state.velocity_at(point) + cross(radius * spin.vec(), n);
@@ -235,8 +234,8 @@ void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &s
   b.distance[k] = contact.distance;
   b.overlap[k] = radius - contact.distance;
   b.radius[k] = radius;
-  b.mass[k] = velocity.w;
-  b.inertia[k] = spin.w;
+  b.mass[k] = particles.mass(p);
+  b.inertia[k] = particles.moment_of_inertia(p);
   b.closing_speed[k] = closing;
   b.slip_x[k] = slip.x;
   b.slip_y[k] = slip.y;
@@ -294,7 +293,7 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
     if (!places->feels[k])
       continue;
     particles.force[p].add(-force);
-    particles.torque[p].add(rolling - particles.position[p].w * cross(n, shear));
+    particles.torque[p].add(rolling - particles.radius(p) * cross(n, shear));
     double *const history = memory[places->record[k]];
     for (unsigned int h = 0; h < model.history_size(); ++h)
       history[h] = b.history[h][k];

@@ -101,8 +101,8 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
       continue;
     sleeps[row] = now;
     if (now != 0.) {
-      p.velocity[row] = {0., 0., 0., p.velocity[row].w};
-      p.spin[row] = {0., 0., 0., p.spin[row].w};
+      p.velocity[row] = {0., 0., 0., p.mass(row)};
+      p.spin[row] = {0., 0., 0., p.moment_of_inertia(row)};
     } else
       // Who wakes has been in balance; what was noted meanwhile is no force on it.
       p.force[row] = p.torque[row] = Quad();

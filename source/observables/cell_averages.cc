@@ -179,7 +179,7 @@ private:
       const Quad &x = p.position[k], &v = p.velocity[k];
       const Cell found = cells[store.cell(k)];
       const Cell cell = mesh.has_boxes ? cell_of(found, x.vec()) : found;
-      const Row row = {static_cast<double>(p.id[k]), v.x, v.y, v.z, sphere_mass(x.w, 1.),
+      const Row row = {static_cast<double>(p.id[k]), v.x, v.y, v.z, sphere_mass(p.radius(k), 1.),
                        p.is_awake(k) ? 1. : 0.};
       if (cell->is_locally_owned())
         rows[cell->active_cell_index()].push_back(row);

@@ -50,10 +50,10 @@ private:
     ExactSum kinetic, rotational, potential;
     std::array<ExactSum, 3> momentum;
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      const double mass = p.velocity[k].w;
+      const double mass = p.mass(k);
       const Vec3 v = p.velocity[k].vec();
       kinetic += 0.5 * mass * norm_square(v);
-      rotational += 0.5 * p.spin[k].w * norm_square(p.spin[k].vec());
+      rotational += 0.5 * p.moment_of_inertia(k) * norm_square(p.spin[k].vec());
       potential += -mass * dot(g, p.position[k].vec());
       for (unsigned int d = 0; d < 3; ++d)
         momentum[d] += mass * v[d];

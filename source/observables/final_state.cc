@@ -21,7 +21,7 @@ public:
       mine.push_back(p.id[k]);
       for (const Quad *q : {&p.position[k], &p.velocity[k], &p.spin[k]})
         mine.insert(mine.end(), {q->x, q->y, q->z});
-      mine.push_back(2. * p.position[k].w);
+      mine.push_back(2. * p.radius(k));
     }
     std::vector<double> all = gather_on_first(mine, simulation.communicator());
 

@@ -139,11 +139,11 @@ public:
       if (!is_watched(candidate.solid))
         continue;
       const std::int32_t row = candidate.particle;
-      const Quad &x = p.position[row];
+      const Vec3 x = p.position[row].vec();
       const Vec3 v = p.velocity[row].vec(), w = p.spin[row].vec();
       const bool touches =
-          contacts.deepest_overlap(candidate, simulation.get_solids()[candidate.solid], x.vec(),
-                                   x.w) > 0.;
+          contacts.deepest_overlap(candidate, simulation.get_solids()[candidate.solid], x,
+                                   p.radius(row)) > 0.;
       Approach &approach = approaches[k];
       if (approach.touches && !touches) {
         ended.push_back(approach.row());

@@ -86,9 +86,11 @@ Overlap overlap_of_pairs(const std::vector<Quad> &spheres, const Domain &domain)
   pairs.clear(0);
   grid.find_pairs(rows, 0., pairs);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const Quad &a = rows.position[pairs.i[k]], &b = rows.position[pairs.j[k]];
-    const double distance = norm(domain.periods().shortest(a.vec() - b.vec()));
-    deepest.take(a.w + b.w - distance, std::min(a.w, b.w), a.vec());
+    const std::int32_t i = pairs.i[k], j = pairs.j[k];
+    const Vec3 a = rows.position[i].vec(), b = rows.position[j].vec();
+    const double distance = norm(domain.periods().shortest(a - b));
+    const double radius_a = rows.radius(i), radius_b = rows.radius(j);
+    deepest.take(radius_a + radius_b - distance, std::min(radius_a, radius_b), a);
   }
   return deepest;
 }

@@ -56,8 +56,15 @@ public:
       patch.vertices[0] = dealii::Point<3>(x.x, x.y, x.z);
       patch.patch_index = static_cast<unsigned int>(k);
       patch.data.reinit(static_cast<unsigned int>(names.size()), 1);
-      const double values[] = {
-          static_cast<double>(p.type[k]), 2. * x.w, v.w, v.x, v.y, v.z, w.x, w.y, w.z};
+      const double values[] = {static_cast<double>(p.type[k]),
+                               2. * p.radius(k),
+                               p.mass(k),
+                               v.x,
+                               v.y,
+                               v.z,
+                               w.x,
+                               w.y,
+                               w.z};
       unsigned int c = 0;
       for (const double value : values)
         patch.data(c++, 0) = static_cast<float>(value);

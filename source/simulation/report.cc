@@ -127,9 +127,9 @@ void Simulation::write_summary()
   ExactSum kinetic, rotational;
   const ParticleArrays &p = system.particles;
   for (std::size_t k = 0; k < p.n_owned; ++k) {
-    inside.count(p.velocity[k].w);
-    kinetic += 0.5 * p.velocity[k].w * norm_square(p.velocity[k].vec());
-    rotational += 0.5 * p.spin[k].w * norm_square(p.spin[k].vec());
+    inside.count(p.mass(k));
+    kinetic += 0.5 * p.mass(k) * norm_square(p.velocity[k].vec());
+    rotational += 0.5 * p.moment_of_inertia(k) * norm_square(p.spin[k].vec());
   }
   inside = inside.global(comm);
   kinetic.reduce(comm);

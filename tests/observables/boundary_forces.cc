@@ -45,7 +45,7 @@ double imbalance(Simulation &simulation)
   ExactSum weight;
   std::array<ExactSum, 3> sums;
   for (std::size_t k = 0; k < p.n_owned; ++k) {
-    weight += 9.81 * p.velocity[k].w;
+    weight += 9.81 * p.mass(k);
     for (unsigned int d = 0; d < 3; ++d)
       sums[d] += p.force[k].vec()[d];
   }

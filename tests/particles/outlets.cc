@@ -56,7 +56,7 @@ int main(int argc, char **argv)
   }
   const ParticleArrays &p = rain->complete_step();
   for (std::size_t k = 0; k < p.n_owned; ++k)
-    inside.count(p.velocity[k].w);
+    inside.count(p.mass(k));
   inside = inside.global(comm);
   check("three batches were inserted", inserted.number == 300);
   check("something stayed", inside.number > 0);

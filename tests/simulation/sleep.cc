@@ -24,7 +24,7 @@ public:
   void add(ParticleArrays &p, double time) const override
   {
     if (time > event)
-      p.for_each_awake([&](std::size_t k) { p.force[k].x += 8. * p.velocity[k].w; });
+      p.for_each_awake([&](std::size_t k) { p.force[k].x += 8. * p.mass(k); });
   }
   bool changes(double begin, double end) const override { return begin <= event && end > event; }
 

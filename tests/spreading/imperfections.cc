@@ -105,7 +105,7 @@ Seen look_at(Case &run, const MPI_Comm comm)
     }
     const ParticleArrays &p = simulation.complete_step();
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      const double z = p.position[k].z, r = p.position[k].w;
+      const double z = p.position[k].z, r = p.radius(k);
       seen.deepest_in_wall =
           std::max({seen.deepest_in_wall, (r - z) / r, (z + r - slice_depth) / r});
     }

@@ -45,6 +45,13 @@ struct ParticleArrays
 
   std::size_t size() const { return n_owned + n_ghosts; }
 
+  /// @name What stands beside the vectors, as kernels read it in one access
+  ///@{
+  double radius(std::size_t row) const { return position[row].w; }
+  double mass(std::size_t row) const { return velocity[row].w; }
+  double moment_of_inertia(std::size_t row) const { return spin[row].w; }
+  ///@}
+
   /// All are awake afterwards.
   void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
 

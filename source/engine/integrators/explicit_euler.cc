@@ -13,8 +13,8 @@ public:
     double largest = 0., poison = 0.;
     p.for_each_awake([&](const std::size_t k) {
       p.position[k].add(dt * p.velocity[k].vec());
-      p.velocity[k].add(dt / p.velocity[k].w * p.force[k].vec());
-      p.spin[k].add(dt / p.spin[k].w * p.torque[k].vec());
+      p.velocity[k].add(dt / p.mass(k) * p.force[k].vec());
+      p.spin[k].add(dt / p.moment_of_inertia(k) * p.torque[k].vec());
       const double moved2 = norm_square(p.position[k].vec() - p.reference[k]);
       largest = std::max(largest, moved2);
       poison += 0. * moved2;

@@ -18,7 +18,7 @@ public:
   {
     p.for_each_awake([&](const std::size_t k) {
       const Vec3 v = p.velocity[k].vec();
-      const double radius = p.position[k].w;
+      const double radius = p.radius(k);
       const double stokes = 6. * M_PI * viscosity * radius;
       p.force[k].add(-stokes * correction(2. * radius * norm(v)) * v);
     });

@@ -20,7 +20,7 @@ public:
   void add(ParticleArrays &p, double) const override
   {
     p.for_each_awake([&](const std::size_t k) {
-      const double mass = p.velocity[k].w;
+      const double mass = p.mass(k);
       p.force[k].x += mass * g.x;
       p.force[k].y += mass * g.y;
       p.force[k].z += mass * g.z;

@@ -100,10 +100,10 @@ Findings measure(Simulation &simulation, const HeapParameters &parameters,
   Tally on_disc, clinging, drained;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const Vec3 x = p.position[row].vec();
-    const double radius = p.position[row].w;
+    const double radius = p.radius(row);
     const bool is_on =
         apparatus.is_on_disc(x, radius) && !apparatus.clings_to_tube(x.y, radius, tube_height);
-    (is_on ? on_disc : clinging).count(p.velocity[row].w);
+    (is_on ? on_disc : clinging).count(p.mass(row));
     if (is_on)
       views.add(x, radius);
   }

@@ -36,7 +36,7 @@ bool Heap::is_at_rest(Simulation &simulation)
   // does what swings at the tube, once it is lifted.
   unsigned long long moving = 0, all = 0;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
-    const double radius = particles.position[row].w;
+    const double radius = particles.radius(row);
     if (phase == Phase::resting &&
         apparatus->clings_to_tube(particles.position[row].y, radius, tube_height))
       continue;
@@ -68,7 +68,7 @@ void Heap::begin_lifting(Simulation &simulation)
   const ParticleArrays &particles = simulation.complete_step();
   double top = 0.;
   for (std::size_t row = 0; row < particles.n_owned; ++row)
-    top = std::max(top, particles.position[row].y + particles.position[row].w);
+    top = std::max(top, particles.position[row].y + particles.radius(row));
   MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
   phase = Phase::lifting;
   phase_start = lift_start = simulation.time();

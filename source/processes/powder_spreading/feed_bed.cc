@@ -39,8 +39,7 @@ std::vector<std::size_t> above_level(const ParticleArrays &p, const Apparatus &a
 {
   std::vector<std::size_t> found;
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    if (apparatus.is_in_reservoir(p.position[row].vec()) &&
-        p.position[row].y + p.position[row].w > 0.)
+    if (apparatus.is_in_reservoir(p.position[row].vec()) && p.position[row].y + p.radius(row) > 0.)
       found.push_back(row);
   return found;
 }
@@ -76,8 +75,8 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
     NewParticle particle;
     particle.id = static_cast<ParticleId>(place(p.id[row]));
     particle.type = p.type[row];
-    particle.radius = p.position[row].w;
-    particle.mass = p.velocity[row].w;
+    particle.radius = p.radius(row);
+    particle.mass = p.mass(row);
     particle.position = p.position[row].vec() - Vec3{0., platform_height, 0.};
     particle.velocity = p.velocity[row].vec();
     particle.spin = p.spin[row].vec();

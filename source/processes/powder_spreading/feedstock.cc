@@ -31,7 +31,7 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
 
   double top = -apparatus->bed_depth;
   for (const std::size_t row : in_reservoir(particles, *apparatus))
-    top = std::max(top, particles.position[row].y + particles.position[row].w);
+    top = std::max(top, particles.position[row].y + particles.radius(row));
   MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
 
   VolumeGrid grid;

@@ -86,7 +86,7 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   Tally present, kept;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const Vec3 x = p.position[row].vec();
-    const double mass = p.velocity[row].w;
+    const double mass = p.mass(row);
     const bool is_on = apparatus.is_over_plate(x, plate_height);
     const bool was_on = p.extra[on_plate][row] != 0.;
     double &tag = p.extra[layer_tag][row];
@@ -169,7 +169,7 @@ void LayerLog::take_profile(Simulation &simulation, const double plate_height)
                        n_bins, column_width * sizes->smallest());
   const ParticleArrays &p = simulation.complete_step();
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    profile.add(p.position[row].vec(), p.position[row].w, p.velocity[row].w);
+    profile.add(p.position[row].vec(), p.radius(row), p.mass(row));
   profile.reduce(simulation.communicator());
   for (unsigned int bin = 0; bin < n_bins; ++bin)
     measured.push_back({"surface_height", static_cast<int>(bin), profile.height(bin)});

@@ -176,7 +176,7 @@ private:
       if (surroundings.leaving[row] || !is_near_plane(x, box, reach))
         continue;
       for (std::size_t c = 0; c < cells.size(); ++c)
-        if (takes(x, p.position[row].w, cells[c], box))
+        if (takes(x, p.radius(row), cells[c], box))
           taken[c] = 1;
     }
     dealii::Utilities::MPI::max(taken, comm, taken);
