@@ -202,40 +202,22 @@ unsigned int RepeatedSections::count(const std::vector<InputEntry> &entries) con
   return number;
 }
 
-std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
-                        const std::vector<RepeatedSections> &repeated, Problems &problems)
+namespace {
+
+/// Sets one entry after another and says what is wrong with them.
+class EntrySetter
 {
-  std::set<Path> reported;
-  boost::property_tree::ptree tree; // made when the first name is unknown
-  const auto known_at = [&](const Path &path) {
-    if (tree.empty())
-      tree = tree_of(prm);
-    return look_at(tree, path);
-  };
-  const std::string default_input = complete_text(prm);
-  for (InputEntry &entry : entries) {
-    Path known;
-    bool exists = true;
-    for (const std::string &name : entry.path) {
-      Path next = known;
-      next.push_back(name);
-      if (!prm.subsection_path_exists(next)) {
-        exists = false;
-        if (!reported.insert(next).second)
-          break;
-        std::string mend = advice_on_lookalikes(name);
-        if (mend.empty())
-          mend = suggestion(name, known_at(known).subsections);
-        for (const RepeatedSections &r : repeated)
-          if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
-            mend = "Raise '" + r.entry + "', or remove the subsection.";
-        problems.add(entry.where + ": " + describe(next, ""), "is unknown.", mend);
-        break;
-      }
-      known = next;
-    }
-    if (!exists || entry.name.empty())
-      continue;
+public:
+  EntrySetter(dealii::ParameterHandler &prm, const std::vector<RepeatedSections> &repeated,
+              Problems &problems)
+      : prm(prm), repeated(repeated), problems(problems)
+  {
+  }
+
+  void set(const InputEntry &entry)
+  {
+    if (!find_section(entry) || entry.name.empty())
+      return;
     for (const std::string &name : entry.path)
       prm.enter_subsection(name);
     const std::string place = entry.where + ": " + describe(entry.path, entry.name);
@@ -245,13 +227,7 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
       declared = false;
     } catch (const std::exception &error) {
-      const std::string wanted = wanted_by(error.what());
-      const std::string mistake = usual_mistake(entry.value, wanted);
-      problems.add(place,
-                   entry.value.empty() ? "has no value."
-                                       : "is '" + shortened(entry.value) + "', which does not fit.",
-                   (wanted.empty() ? "" : "Give " + with_limit(wanted, entry.value) + ".") +
-                       (wanted.empty() || mistake.empty() ? "" : " ") + mistake);
+      refuse(place, entry.value, wanted_by(error.what()));
     }
     for (std::size_t k = 0; k < entry.path.size(); ++k)
       prm.leave_subsection();
@@ -261,6 +237,66 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
                    !lookalike.empty() ? lookalike
                                       : suggestion(entry.name, known_at(entry.path).entries));
   }
+
+private:
+  Level known_at(const Path &path)
+  {
+    if (tree.empty())
+      tree = tree_of(prm);
+    return look_at(tree, path);
+  }
+
+  /// Whether the subsections of an entry exist; the first that does not is reported once.
+  bool find_section(const InputEntry &entry)
+  {
+    Path known;
+    for (const std::string &name : entry.path) {
+      Path next = known;
+      next.push_back(name);
+      if (!prm.subsection_path_exists(next)) {
+        if (!reported.insert(next).second)
+          return false;
+        std::string mend = advice_on_lookalikes(name);
+        if (mend.empty())
+          mend = suggestion(name, known_at(known).subsections);
+        for (const RepeatedSections &r : repeated)
+          if (r.path == known && name.compare(0, r.prefix.size(), r.prefix) == 0)
+            mend = "Raise '" + r.entry + "', or remove the subsection.";
+        problems.add(entry.where + ": " + describe(next, ""), "is unknown.", mend);
+        return false;
+      }
+      known = next;
+    }
+    return true;
+  }
+
+  /// @param wanted what the entry asks for, in words
+  void refuse(const std::string &place, const std::string &value, const std::string &wanted)
+  {
+    const std::string mistake = usual_mistake(value, wanted);
+    problems.add(place,
+                 value.empty() ? "has no value."
+                               : "is '" + shortened(value) + "', which does not fit.",
+                 (wanted.empty() ? "" : "Give " + with_limit(wanted, value) + ".") +
+                     (wanted.empty() || mistake.empty() ? "" : " ") + mistake);
+  }
+
+  dealii::ParameterHandler &prm;
+  const std::vector<RepeatedSections> &repeated;
+  Problems &problems;
+  std::set<Path> reported;
+  boost::property_tree::ptree tree; // made when the first name is unknown
+};
+
+} // namespace
+
+std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
+                        const std::vector<RepeatedSections> &repeated, Problems &problems)
+{
+  const std::string default_input = complete_text(prm);
+  EntrySetter setter(prm, repeated, problems);
+  for (const InputEntry &entry : entries)
+    setter.set(entry);
   const std::string complete = complete_text(prm);
   const EntryValues before = values_in(default_input), after = values_in(complete);
   for (InputEntry &entry : entries) {

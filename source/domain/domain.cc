@@ -187,14 +187,20 @@ std::uint64_t Domain::n_cells() const
   return sketched_cells > 0 ? sketched_cells : mesh_data->triangulation.n_global_active_cells();
 }
 
-std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
-                                                  const std::vector<Side> &all_sides)
-{
-  Triangulation &triangulation = mesh_data->triangulation;
-  const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
-  const std::string section = "subsection 'DEM boundary conditions' / ";
-  Problems problems;
+namespace {
 
+std::string place_of_condition(const std::size_t k)
+{
+  return "subsection 'DEM boundary conditions' / subsection 'boundary condition " +
+         std::to_string(k) + "':";
+}
+
+/// Ids of the boundaries that are periodic. Throws a UserError for a condition on a boundary that
+/// the mesh does not have.
+std::set<unsigned int> find_periodic_ids(const BoundaryParameters &boundaries,
+                                         const std::vector<Side> &all_sides)
+{
+  Problems problems;
   std::set<unsigned int> periodic_ids;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
@@ -207,22 +213,31 @@ std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boun
         periodic_ids.insert(id);
       if (std::none_of(all_sides.begin(), all_sides.end(),
                        [&](const Side &s) { return s.id == id; }))
-        problems.add(section + "subsection 'boundary condition " + std::to_string(k) + "':",
-                     "the mesh has no boundary " + std::to_string(id) + ".",
+        problems.add(place_of_condition(k), "the mesh has no boundary " + std::to_string(id) + ".",
                      "Check the ids; for deal.II's generators they differ only with 'colorize' set "
                      "to true in 'grid arguments'.");
     }
   }
   if (!problems.empty())
     throw UserError(problems);
+  return periodic_ids;
+}
 
+} // namespace
+
+std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
+                                                  const std::vector<Side> &all_sides)
+{
+  const std::set<unsigned int> periodic_ids = find_periodic_ids(boundaries, all_sides);
+  Triangulation &triangulation = mesh_data->triangulation;
+  const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
+  Problems problems;
   std::vector<dealii::GridTools::PeriodicFacePair<Triangulation::cell_iterator>> pairs;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
     if (c.type != "periodic")
       continue;
-    const std::string where =
-        section + "subsection 'boundary condition " + std::to_string(k) + "':";
+    const std::string where = place_of_condition(k);
     const unsigned int d = c.periodic_direction;
     const auto is_end = [&](unsigned int id, const Vec3 &corner) {
       return std::all_of(all_sides.begin(), all_sides.end(), [&](const Side &s) {

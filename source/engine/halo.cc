@@ -33,15 +33,10 @@ void Halo::exchange(const int tag)
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
-void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
-                 const double gap)
+std::map<int, std::vector<std::int32_t>> Halo::rows_near(const ParticleArrays &particles,
+                                                         const ParticleStore &store,
+                                                         const double gap) const
 {
-  int n_ranks;
-  MPI_Comm_size(comm, &n_ranks);
-  neighbours.clear();
-  if (n_ranks == 1)
-    return;
-
   std::map<int, std::vector<std::int32_t>> rows;
   double largest_radius = 0.;
   for (std::size_t row = 0; row < particles.n_owned; ++row)
@@ -54,18 +49,25 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     for (const int rank : ranks)
       rows[rank].push_back(static_cast<std::int32_t>(row));
   }
+  return rows;
+}
+
+void Halo::send_new(const ParticleArrays &particles,
+                    const std::map<int, std::vector<std::int32_t>> &rows)
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
   std::vector<int> n_sent(n_ranks, 0), n_received(n_ranks, 0);
   for (const auto &[rank, list] : rows)
     n_sent[rank] = static_cast<int>(list.size());
   MPI_Alltoall(n_sent.data(), 1, MPI_INT, n_received.data(), 1, MPI_INT, comm);
-
-  std::size_t n_ghosts = 0;
   for (int rank = 0; rank < n_ranks; ++rank) {
     if (n_sent[rank] == 0 && n_received[rank] == 0)
       continue;
     Neighbour neighbour;
     neighbour.rank = rank;
-    neighbour.sent = rows[rank];
+    if (n_sent[rank] > 0)
+      neighbour.sent = rows.at(rank);
     neighbour.received.resize(n_received[rank]);
     for (const std::int32_t row : neighbour.sent) {
       append(neighbour.out, particles.position[row], true);
@@ -75,11 +77,13 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
       neighbour.out.push_back(particles.type[row]);
     }
     neighbour.in.resize(build_size * n_received[rank]);
-    n_ghosts += n_received[rank];
     neighbours.push_back(std::move(neighbour));
   }
   exchange(tag_build);
+}
 
+void Halo::append_received(ParticleArrays &particles, const ContactGrid &grid)
+{
   struct Ghost
   {
     std::uint64_t key;
@@ -88,7 +92,6 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     std::int32_t *row;
   };
   std::vector<Ghost> ghosts;
-  ghosts.reserve(n_ghosts);
   for (Neighbour &neighbour : neighbours)
     for (std::size_t k = 0; k < neighbour.received.size(); ++k) {
       const double *const v = &neighbour.in[build_size * k];
@@ -98,8 +101,9 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
   std::sort(ghosts.begin(), ghosts.end(), [](const Ghost &a, const Ghost &b) {
     return a.key != b.key ? a.key < b.key : a.id < b.id;
   });
-  particles.resize(particles.n_owned, n_ghosts, static_cast<unsigned int>(particles.extra.size()));
-  for (std::size_t g = 0; g < n_ghosts; ++g) {
+  particles.resize(particles.n_owned, ghosts.size(),
+                   static_cast<unsigned int>(particles.extra.size()));
+  for (std::size_t g = 0; g < ghosts.size(); ++g) {
     const std::size_t row = particles.n_owned + g;
     const double *const v = ghosts[g].values;
     particles.position[row] = {v[0], v[1], v[2], v[3]};
@@ -110,6 +114,18 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
     particles.type[row] = static_cast<std::int32_t>(v[13]);
     *ghosts[g].row = static_cast<std::int32_t>(row);
   }
+}
+
+void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
+                 const double gap)
+{
+  int n_ranks;
+  MPI_Comm_size(comm, &n_ranks);
+  neighbours.clear();
+  if (n_ranks == 1)
+    return;
+  send_new(particles, rows_near(particles, store, gap));
+  append_received(particles, grid);
   include_sleepers();
 }
 

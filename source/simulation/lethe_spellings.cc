@@ -115,10 +115,32 @@ struct Ignored
   Path path, entries; ///< no entries: all of the subsection
   std::string why;
 };
+
+const std::vector<Ignored> &ignored_for_heat()
+{
+  static const std::string why = "is for heat between particles.";
+  static const std::vector<Ignored> list = {
+      {insertion, {"list temperatures"}, why},
+      {{"insertion info", "initial temperature function"}, {}, why},
+      {type,
+       {"thermal conductivity particles", "specific heat particles", "microhardness particles",
+        "surface slope particles", "surface roughness particles", "thermal accommodation particles",
+        "real young modulus particles"},
+       why},
+      {properties,
+       {"thermal conductivity wall", "microhardness wall", "surface slope wall",
+        "surface roughness wall", "thermal accommodation wall", "real young modulus wall",
+        "thermal conductivity gas", "specific heat gas", "specific heats ratio gas",
+        "molecular mean free path gas"},
+       why},
+      {{"solid objects", "solid surfaces", "solid object *"}, {"thermal boundary type"}, why},
+      {{"solid objects", "solid surfaces", "solid object *", "temperature"}, {}, why}};
+  return list;
+}
+
 const std::vector<Ignored> &ignored()
 {
   static const std::string of_fluids = "is for flows of fluids.";
-  static const std::string of_heat = "is for heat between particles.";
   static const std::string of_tables = "is not needed: what is recorded is in tables.";
   static const std::vector<Ignored> list = {
       {no_section, {"print parameters"}, "is not needed: used.prm holds all parameters."},
@@ -155,25 +177,10 @@ const std::vector<Ignored> &ignored()
       {insertion,
        {"insertion plane threshold distance"},
        "is not needed: a cell takes a particle if it is empty."},
-      {insertion, {"list temperatures"}, of_heat},
-      {{"insertion info", "initial temperature function"}, {}, of_heat},
-      {type,
-       {"thermal conductivity particles", "specific heat particles", "microhardness particles",
-        "surface slope particles", "surface roughness particles", "thermal accommodation particles",
-        "real young modulus particles"},
-       of_heat},
-      {properties,
-       {"thermal conductivity wall", "microhardness wall", "surface slope wall",
-        "surface roughness wall", "thermal accommodation wall", "real young modulus wall",
-        "thermal conductivity gas", "specific heat gas", "specific heats ratio gas",
-        "molecular mean free path gas"},
-       of_heat},
       {properties,
        {"dynamic viscosity gas"},
        "is for heat between particles, not for drag, which has its own in 'model parameters / "
        "drag'."},
-      {{"solid objects", "solid surfaces", "solid object *"}, {"thermal boundary type"}, of_heat},
-      {{"solid objects", "solid surfaces", "solid object *", "temperature"}, {}, of_heat},
       {{"solid objects", "solid volumes"}, {}, "has no effect, as in Lethe."},
       {{"solid objects", "solid volumes", "*"}, {}, "has no effect."},
       {{"solid objects", "solid volumes", "*", "*"}, {}, "has no effect."}};
@@ -333,7 +340,12 @@ private:
           problems.add(place(entry), "is '" + shortened(entry.value) + "'.", rule.why);
         return true;
       }
-    for (const Ignored &rule : ignored()) {
+    return ignores(entry, ignored()) || ignores(entry, ignored_for_heat());
+  }
+
+  bool ignores(const InputEntry &entry, const std::vector<Ignored> &rules)
+  {
+    for (const Ignored &rule : rules) {
       const bool of_section = rule.entries.empty();
       if (!fits(entry.path, rule.path) ||
           (!of_section &&

@@ -59,19 +59,43 @@ struct TriangulatedSurface::Touch
   std::array<std::int32_t, 2> corner = {{-1, -1}};
 };
 
+/// The triangles around every edge.
+struct TriangulatedSurface::Edges
+{
+  std::map<Edge, std::vector<std::int32_t>> around;
+
+  const std::vector<std::int32_t> &at(const Facet &facet, unsigned int e) const
+  {
+    return around.at(edge_of(facet.vertex, e));
+  }
+};
+
 TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
 {
   box = Box::around(mesh.vertices);
   const double tolerance = 1e-10 * norm(box.upper - box.lower);
   mesh.merge_vertices(tolerance);
+  const Edges edges = make_facets(mesh);
+  find_planes(edges, tolerance);
+  find_smooth_parts(edges);
+  find_borders(edges);
+  find_flat_vertices(edges, mesh.vertices.size());
 
-  std::map<Edge, std::vector<std::int32_t>> around_edge;
+  std::vector<std::pair<BoostBox, std::int32_t>> boxes;
+  for (std::size_t t = 0; t < facets.size(); ++t)
+    boxes.emplace_back(boost_box(Box::around(facets[t].corner)), static_cast<std::int32_t>(t));
+  tree = std::make_unique<const Tree>(boxes);
+}
+
+TriangulatedSurface::Edges TriangulatedSurface::make_facets(const TriangleMesh &mesh)
+{
+  Edges edges;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     Facet facet;
     facet.vertex = mesh.triangles[t];
     for (unsigned int c = 0; c < 3; ++c) {
       facet.corner[c] = mesh.vertices[facet.vertex[c]];
-      around_edge[edge_of(facet.vertex, c)].push_back(static_cast<std::int32_t>(t));
+      edges.around[edge_of(facet.vertex, c)].push_back(static_cast<std::int32_t>(t));
     }
     const Vec3 normal = cross(facet.corner[1] - facet.corner[0], facet.corner[2] - facet.corner[0]);
     facet.normal = normal / norm(normal);
@@ -79,30 +103,36 @@ TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
     facet.plane = facet.smooth = -1;
     facets.push_back(facet);
   }
+  return edges;
+}
 
-  // Unites neighbours: `joins(seed, facet, edge)` decides whether a facet belongs to the seed's
-  // group, `enter(seed, facet)` takes it in.
-  const auto flood = [&](std::int32_t Facet::*group, const auto &joins, const auto &enter) {
-    for (std::size_t seed = 0; seed < facets.size(); ++seed) {
-      if (facets[seed].*group >= 0)
-        continue;
-      facets[seed].*group = static_cast<std::int32_t>(seed);
-      std::vector<std::int32_t> front = {static_cast<std::int32_t>(seed)};
-      while (!front.empty()) {
-        const std::int32_t here = front.back();
-        front.pop_back();
-        for (unsigned int e = 0; e < 3; ++e)
-          for (const std::int32_t next : around_edge.at(edge_of(facets[here].vertex, e)))
-            if (facets[next].*group < 0 && joins(seed, here, next)) {
-              facets[next].*group = static_cast<std::int32_t>(seed);
-              enter(seed, next);
-              front.push_back(next);
-            }
-      }
+template <typename Joins, typename Enter>
+void TriangulatedSurface::unite(std::int32_t Facet::*group, const Edges &edges, const Joins &joins,
+                                const Enter &enter)
+{
+  for (std::size_t seed = 0; seed < facets.size(); ++seed) {
+    if (facets[seed].*group >= 0)
+      continue;
+    facets[seed].*group = static_cast<std::int32_t>(seed);
+    std::vector<std::int32_t> front = {static_cast<std::int32_t>(seed)};
+    while (!front.empty()) {
+      const std::int32_t here = front.back();
+      front.pop_back();
+      for (unsigned int e = 0; e < 3; ++e)
+        for (const std::int32_t next : edges.at(facets[here], e))
+          if (facets[next].*group < 0 && joins(seed, here, next)) {
+            facets[next].*group = static_cast<std::int32_t>(seed);
+            enter(seed, next);
+            front.push_back(next);
+          }
     }
-  };
-  flood(
-      &Facet::plane,
+  }
+}
+
+void TriangulatedSurface::find_planes(const Edges &edges, const double tolerance)
+{
+  unite(
+      &Facet::plane, edges,
       [&](std::size_t seed, std::int32_t, std::int32_t next) {
         return std::all_of(
             facets[next].corner.begin(), facets[next].corner.end(), [&](const Vec3 &x) {
@@ -113,35 +143,39 @@ TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
         facets[next].normal = facets[seed].normal;
         facets[next].offset = facets[seed].offset;
       });
-  flood(
-      &Facet::smooth,
+}
+
+void TriangulatedSurface::find_smooth_parts(const Edges &edges)
+{
+  unite(
+      &Facet::smooth, edges,
       [&](std::size_t, std::int32_t here, std::int32_t next) {
         return std::abs(dot(facets[here].normal, facets[next].normal)) >= smooth_cosine;
       },
       [](std::size_t, std::int32_t) {});
+}
 
+void TriangulatedSurface::find_borders(const Edges &edges)
+{
   for (Facet &facet : facets)
     for (unsigned int e = 0; e < 3; ++e) {
-      const std::vector<std::int32_t> &around = around_edge.at(edge_of(facet.vertex, e));
+      const std::vector<std::int32_t> &around = edges.at(facet, e);
       facet.is_border[e] = around.size() != 2 || facets[around[0]].plane != facets[around[1]].plane;
     }
+}
 
-  flat_vertex.assign(mesh.vertices.size(), true);
-  std::vector<std::int32_t> plane_of_vertex(mesh.vertices.size(), -1);
+void TriangulatedSurface::find_flat_vertices(const Edges &edges, const std::size_t n_vertices)
+{
+  flat_vertex.assign(n_vertices, true);
+  std::vector<std::int32_t> plane_of_vertex(n_vertices, -1);
   for (const Facet &facet : facets)
     for (unsigned int c = 0; c < 3; ++c) {
       std::int32_t &plane = plane_of_vertex[facet.vertex[c]];
-      if ((plane >= 0 && plane != facet.plane) ||
-          around_edge.at(edge_of(facet.vertex, c)).size() != 2 ||
-          around_edge.at(edge_of(facet.vertex, (c + 2) % 3)).size() != 2)
+      if ((plane >= 0 && plane != facet.plane) || edges.at(facet, c).size() != 2 ||
+          edges.at(facet, (c + 2) % 3).size() != 2)
         flat_vertex[facet.vertex[c]] = false;
       plane = facet.plane;
     }
-
-  std::vector<std::pair<BoostBox, std::int32_t>> boxes;
-  for (std::size_t t = 0; t < facets.size(); ++t)
-    boxes.emplace_back(boost_box(Box::around(facets[t].corner)), static_cast<std::int32_t>(t));
-  tree = std::make_unique<const Tree>(boxes);
 }
 
 TriangulatedSurface::~TriangulatedSurface() = default;
@@ -242,6 +276,130 @@ TriangulatedSurface::Touch TriangulatedSurface::closest(const Vec3 &centre,
   return touch;
 }
 
+/// The places of several facets that are near a sphere's centre, and which of them are contacts.
+class TriangulatedSurface::NearPlaces
+{
+public:
+  /// @param touches ordered by their distance
+  NearPlaces(const TriangulatedSurface &surface, const std::vector<Touch> &touches,
+             const Vec3 &centre, const double radius, const double reach)
+      : facets(surface.facets), flat_vertex(surface.flat_vertex), touches(touches), centre(centre),
+        tolerance(1e-10 * radius), same_place(1e-4 * radius), reach(reach)
+  {
+  }
+
+  /// Number of contacts; the arguments are those of `find_contacts`.
+  unsigned int contacts(SurfaceContact *found, std::int32_t *owners)
+  {
+    for (const Touch &touch : touches) {
+      if (!is_minimum(touch) || !take_in(touch))
+        continue;
+      if (owners != nullptr)
+        owners[n - 1] = touch.facet;
+      found[n - 1].normal = accepted[n - 1].normal;
+    }
+    for (unsigned int k = 0; k < n; ++k) {
+      found[k].distance = accepted[k].distance;
+      if (accepted[k].blended)
+        found[k].normal = accepted[k].direction / norm(accepted[k].direction);
+    }
+    return n;
+  }
+
+private:
+  struct Accepted
+  {
+    std::int32_t plane, smooth;     ///< plane is -1 for an edge or corner
+    Vec3 offset, normal, direction; ///< direction: sum of normals weighted by depth
+    double distance;
+    bool blended;
+  };
+
+  bool shares(std::int32_t facet, std::int32_t corner) const
+  {
+    const auto &vertex = facets[facet].vertex;
+    return vertex[0] == corner || vertex[1] == corner || vertex[2] == corner;
+  }
+
+  /// An edge or corner counts if no triangle that shares it comes nearer: then the distance to
+  /// the whole surface has a minimum there.
+  bool is_minimum(const Touch &touch) const
+  {
+    return touch.n_corners == 0 ||
+           std::none_of(touches.begin(), touches.end(), [&](const Touch &other) {
+             return other.distance < touch.distance - tolerance &&
+                    shares(other.facet, touch.corner[0]) &&
+                    (touch.n_corners == 1 || shares(other.facet, touch.corner[1]));
+           });
+  }
+
+  /// Inside a plane an edge or corner is no place of its own: it gives what the plane gives.
+  bool is_in_plane(const Touch &touch) const
+  {
+    if (touch.n_corners == 0)
+      return true;
+    if (touch.n_corners == 1)
+      return static_cast<bool>(flat_vertex[touch.corner[0]]);
+    unsigned int neighbours = 0;
+    for (const Touch &other : touches)
+      if (other.facet != touch.facet && shares(other.facet, touch.corner[0]) &&
+          shares(other.facet, touch.corner[1]))
+      {
+        if (facets[other.facet].plane != facets[touch.facet].plane)
+          return false;
+        ++neighbours;
+      }
+    return neighbours == 1;
+  }
+
+  /// Takes a place in as a contact of its own, or blends it with one of the same smooth part.
+  /// @return whether it is a contact of its own
+  bool take_in(Touch touch)
+  {
+    const Facet &facet = facets[touch.facet];
+    const bool plane = is_in_plane(touch);
+    if (plane) {
+      const double height = dot(facet.normal, centre) - facet.offset;
+      touch.offset = -height * facet.normal;
+      touch.distance = std::abs(height);
+    }
+    // A centre that lies exactly in the surface has no side; the facet's normal decides.
+    const Vec3 normal = touch.distance == 0. ? -facet.normal
+                        : plane
+                            ? (dot(touch.offset, facet.normal) > 0. ? facet.normal : -facet.normal)
+                            : touch.offset / touch.distance;
+    for (unsigned int k = 0; k < n; ++k) {
+      Accepted &other = accepted[k];
+      const bool same =
+          (plane && other.plane == facet.plane) || norm(touch.offset - other.offset) < same_place;
+      const bool curved = other.smooth == facet.smooth &&
+                          dot(normal, other.direction) >= smooth_cosine * norm(other.direction);
+      if (curved && !same) {
+        other.direction += (reach - touch.distance) * normal;
+        other.blended = true;
+      }
+      if (same || curved)
+        return false;
+    }
+    if (n == max_contacts)
+      return false;
+    accepted[n++] = {plane ? facet.plane : -1,          facet.smooth,   touch.offset, normal,
+                     (reach - touch.distance) * normal, touch.distance, false};
+    return true;
+  }
+
+  const std::vector<Facet> &facets;
+  const std::vector<bool> &flat_vertex;
+  const std::vector<Touch> &touches;
+  const Vec3 &centre;
+  const double tolerance;
+  /// Places that the tolerance lets pass as equally near lie sqrt(2 tolerance distance) apart.
+  const double same_place;
+  const double reach;
+  std::array<Accepted, max_contacts> accepted;
+  unsigned int n = 0;
+};
+
 unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double radius,
                                                 const double reach, const Facets &near,
                                                 SurfaceContact *contacts,
@@ -268,96 +426,10 @@ unsigned int TriangulatedSurface::find_contacts(const Vec3 &centre, const double
       owners[0] = touches[0].facet;
     return 1;
   }
-
-  // An edge or corner counts if no triangle that shares it comes nearer: then the distance to
-  // the whole surface has a minimum there.
-  const double tolerance = 1e-10 * radius;
-  // Places that the tolerance lets pass as equally near lie sqrt(2 tolerance distance) apart.
-  const double same_place = 1e-4 * radius;
-  const auto shares = [&](std::int32_t facet, std::int32_t corner) {
-    const auto &vertex = facets[facet].vertex;
-    return vertex[0] == corner || vertex[1] == corner || vertex[2] == corner;
-  };
-  const auto is_minimum = [&](const Touch &touch) {
-    return touch.n_corners == 0 ||
-           std::none_of(touches.begin(), touches.end(), [&](const Touch &other) {
-             return other.distance < touch.distance - tolerance &&
-                    shares(other.facet, touch.corner[0]) &&
-                    (touch.n_corners == 1 || shares(other.facet, touch.corner[1]));
-           });
-  };
-  // Inside a plane an edge or corner is no place of its own: it gives what the plane gives.
-  const auto in_plane = [&](const Touch &touch) {
-    if (touch.n_corners == 0)
-      return true;
-    if (touch.n_corners == 1)
-      return static_cast<bool>(flat_vertex[touch.corner[0]]);
-    unsigned int neighbours = 0;
-    for (const Touch &other : touches)
-      if (other.facet != touch.facet && shares(other.facet, touch.corner[0]) &&
-          shares(other.facet, touch.corner[1]))
-      {
-        if (facets[other.facet].plane != facets[touch.facet].plane)
-          return false;
-        ++neighbours;
-      }
-    return neighbours == 1;
-  };
-
-  struct Accepted
-  {
-    std::int32_t plane, smooth; ///< plane is -1 for an edge or corner
-    Vec3 offset, direction;     ///< direction: sum of normals weighted by depth
-    double distance;
-    bool blended;
-  };
-  std::array<Accepted, max_contacts> accepted;
-  unsigned int n = 0;
   std::sort(touches.begin(), touches.end(), [](const Touch &a, const Touch &b) {
     return a.distance != b.distance ? a.distance < b.distance : a.facet < b.facet;
   });
-  for (Touch touch : touches) {
-    if (!is_minimum(touch))
-      continue;
-    const Facet &facet = facets[touch.facet];
-    const bool plane = in_plane(touch);
-    if (plane) {
-      const double height = dot(facet.normal, centre) - facet.offset;
-      touch.offset = -height * facet.normal;
-      touch.distance = std::abs(height);
-    }
-    // A centre that lies exactly in the surface has no side; the facet's normal decides.
-    const Vec3 normal = touch.distance == 0. ? -facet.normal
-                        : plane
-                            ? (dot(touch.offset, facet.normal) > 0. ? facet.normal : -facet.normal)
-                            : touch.offset / touch.distance;
-    bool is_new = true;
-    for (unsigned int k = 0; k < n && is_new; ++k) {
-      Accepted &other = accepted[k];
-      const bool same =
-          (plane && other.plane == facet.plane) || norm(touch.offset - other.offset) < same_place;
-      const bool curved = other.smooth == facet.smooth &&
-                          dot(normal, other.direction) >= smooth_cosine * norm(other.direction);
-      if (curved && !same) {
-        other.direction += (reach - touch.distance) * normal;
-        other.blended = true;
-      }
-      is_new = !same && !curved;
-    }
-    if (is_new && n < max_contacts) {
-      accepted[n] = {plane ? facet.plane : -1,          facet.smooth,   touch.offset,
-                     (reach - touch.distance) * normal, touch.distance, false};
-      if (owners != nullptr)
-        owners[n] = touch.facet;
-      contacts[n++].normal = normal;
-    }
-  }
-  for (unsigned int k = 0; k < n; ++k) {
-    contacts[k].distance = accepted[k].distance;
-    if (accepted[k].blended)
-      contacts[k].normal = accepted[k].direction / norm(accepted[k].direction);
-  }
-  return n;
+  return NearPlaces(*this, touches, centre, radius, reach).contacts(contacts, owners);
 }
 
 } // namespace eunoe

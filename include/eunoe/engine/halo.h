@@ -5,6 +5,7 @@
 #include <eunoe/contact/pair_list.h>
 #include <eunoe/engine/particle_store.h>
 
+#include <map>
 #include <mpi.h>
 
 namespace eunoe {
@@ -48,6 +49,14 @@ private:
     std::vector<double> out, in;
   };
 
+  /// Rows of owned particles that other ranks need, by rank; collective.
+  std::map<int, std::vector<std::int32_t>> rows_near(const ParticleArrays &particles,
+                                                     const ParticleStore &store, double gap) const;
+  /// Makes the neighbours and sends them all that they need to know of these rows; collective.
+  void send_new(const ParticleArrays &particles,
+                const std::map<int, std::vector<std::int32_t>> &rows);
+  /// Appends the ghosts that have come to the arrays, in their order.
+  void append_received(ParticleArrays &particles, const ContactGrid &grid);
   /// Sends `out` to and fills `in` from every neighbour; both have their sizes already.
   void exchange(int tag);
 

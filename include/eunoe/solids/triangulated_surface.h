@@ -57,6 +57,19 @@ private:
   };
   struct Touch;
   struct Tree;
+  struct Edges;
+  class NearPlaces;
+
+  Edges make_facets(const TriangleMesh &mesh);
+  /// Unites facets that are neighbours: `joins(seed, facet, neighbour)` decides whether one belongs
+  /// to the seed's group, `enter(seed, neighbour)` takes it in.
+  template <typename Joins, typename Enter>
+  void unite(std::int32_t Facet::*group, const Edges &edges, const Joins &joins,
+             const Enter &enter);
+  void find_planes(const Edges &edges, double tolerance);
+  void find_smooth_parts(const Edges &edges);
+  void find_borders(const Edges &edges);
+  void find_flat_vertices(const Edges &edges, std::size_t n_vertices);
 
   Touch closest(const Vec3 &centre, std::int32_t facet) const;
 
