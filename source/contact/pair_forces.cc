@@ -39,13 +39,14 @@ struct Candidates
   unsigned int n;
 
   /// The pairs of the list from @p first on.
-  void take(const PairList &pairs, const std::size_t first)
+  /// @param places of the pairs that count, null for all
+  void take(const PairList &pairs, const std::vector<std::int32_t> *places, const std::size_t first)
   {
-    const std::size_t size = pairs.some_sleep ? pairs.awake.size() : pairs.size();
+    const std::size_t size = places != nullptr ? places->size() : pairs.size();
     n = static_cast<unsigned int>(std::min<std::size_t>(B, size - first));
     for (unsigned int k = 0; k < B; ++k)
       place[k] = static_cast<std::int32_t>(first + k);
-    if (!pairs.some_sleep && n == B) {
+    if (places == nullptr && n == B) {
       i = &pairs.i[first];
       j = &pairs.j[first];
       record = &pairs.record[first];
@@ -53,7 +54,7 @@ struct Candidates
     }
     for (unsigned int k = 0; k < B; ++k) {
       const std::size_t at = std::min<std::size_t>(first + k, size - 1);
-      place[k] = pairs.some_sleep ? pairs.awake[at] : static_cast<std::int32_t>(at);
+      place[k] = places != nullptr ? (*places)[at] : static_cast<std::int32_t>(at);
       own_i[k] = pairs.i[place[k]];
       own_j[k] = pairs.j[place[k]];
       own_record[k] = pairs.record[place[k]];
@@ -206,75 +207,120 @@ EUNOE_MULTIVERSION void scatter(const PairBlock &b, ParticleArrays &p, const std
   }
 }
 
+/// Walks along the list: `end(place)` is called for pairs that have a contact and are out of reach,
+/// `run(places, n)` with up to B pairs within reach at a time.
+/// @param chosen places of the pairs that count, null for all
+template <typename End, typename Run>
+void walk(const Quad *position, const PairList &pairs, const std::vector<std::int32_t> *chosen,
+          const Period &period, const double range, const End &end, const Run &run)
+{
+  std::int32_t active[2 * B], ended[2 * B];
+  const std::size_t n_pairs = chosen != nullptr ? chosen->size() : pairs.size();
+  unsigned int n_active = 0;
+  Candidates candidates;
+  for (std::size_t first = 0; first < n_pairs; first += B) {
+    candidates.take(pairs, chosen, first);
+    unsigned int n_ended = 0;
+    select(position, candidates, period, range, active, n_active, ended, n_ended);
+    for (unsigned int e = 0; e < n_ended; ++e)
+      end(ended[e]);
+    if (n_active >= B) {
+      run(active, B);
+      n_active -= B;
+      std::copy_n(active + B, n_active, active);
+    }
+  }
+  if (n_active > 0)
+    run(active, n_active);
+}
+
+/// The particles of a block's pairs and their radii.
+struct PairRows
+{
+  std::int32_t i[B], j[B];
+  alignas(64) Lanes ri, rj;
+};
+
+/// Fills a block with all but what the contacts remember.
+void fill(PairBlock &block, PairRows &rows, const ParticleArrays &particles, const PairList &pairs,
+          const std::int32_t *places, const unsigned int n, const Materials &materials,
+          const Period &period)
+{
+  for (unsigned int k = 0; k < B; ++k) {
+    const std::int32_t pair = places[std::min(k, n - 1)];
+    rows.i[k] = pairs.i[pair];
+    rows.j[k] = pairs.j[pair];
+  }
+  block.n = n;
+  block.uniform_kind = materials.only_particle_kind();
+  if (block.uniform_kind < 0)
+    for (unsigned int k = 0; k < B; ++k)
+      block.kind[k] = materials.kind(particles.type[rows.i[k]], particles.type[rows.j[k]]);
+  describe(block, particles, rows.i, rows.j, period, rows.ri, rows.rj);
+}
+
 } // namespace
 
 PairForces::PairForces(const ContactModel &model, const PeriodicBox &box)
-    : model(model), box(box), block(std::make_unique<PairBlock>()), active(2 * B), ended(2 * B)
+    : model(model), box(box), block(std::make_unique<PairBlock>())
 {
-}
-
-void PairForces::run_block(ParticleArrays &particles, PairList &pairs, const std::int32_t *active,
-                           const unsigned int n, const double dt)
-{
-  alignas(64) std::int32_t i[B], j[B], record[B];
-  alignas(64) Lanes ri, rj;
-  const Period period{box.length, box.half()};
-
-  for (unsigned int k = 0; k < B; ++k) {
-    const std::int32_t pair = active[std::min(k, n - 1)];
-    i[k] = pairs.i[pair];
-    j[k] = pairs.j[pair];
-    if (pairs.record[pair] == ContactMemory::none)
-      pairs.record[pair] = pairs.memory.create();
-    record[k] = pairs.record[pair];
-  }
-  block->n = n;
-  block->uniform_kind = model.get_materials().only_particle_kind();
-  if (block->uniform_kind < 0)
-    for (unsigned int k = 0; k < B; ++k)
-      block->kind[k] = model.get_materials().kind(particles.type[i[k]], particles.type[j[k]]);
-  recall(*block, pairs.memory, record);
-
-  describe(*block, particles, i, j, period, ri, rj);
-  model.apply(*block, dt);
-  scatter(*block, particles, i, j, ri, rj);
-  remember(*block, pairs.memory, record);
-  if (recorded != nullptr)
-    for (unsigned int k = 0; k < n; ++k)
-      recorded->push_back({i[k],
-                           j[k],
-                           -1,
-                           {block->nx[k], block->ny[k], block->nz[k]},
-                           block->distance[k],
-                           block->overlap[k],
-                           block->contact_force[k] - block->cohesion[k],
-                           {block->shear_x[k], block->shear_y[k], block->shear_z[k]}});
 }
 
 void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt)
 {
   const Period period{box.length, box.half()};
-  const double range = model.range();
-  const std::size_t n_pairs = pairs.some_sleep ? pairs.awake.size() : pairs.size();
-  unsigned int n_active = 0;
-  Candidates candidates;
-  for (std::size_t first = 0; first < n_pairs; first += B) {
-    candidates.take(pairs, first);
-    unsigned int n_ended = 0;
-    select(particles.position.data(), candidates, period, range, active.data(), n_active,
-           ended.data(), n_ended);
-    for (unsigned int e = 0; e < n_ended; ++e) {
-      pairs.memory.release(pairs.record[ended[e]]);
-      pairs.record[ended[e]] = ContactMemory::none;
+  const auto end = [&pairs](const std::int32_t pair) {
+    pairs.memory.release(pairs.record[pair]);
+    pairs.record[pair] = ContactMemory::none;
+  };
+  const auto run = [&](const std::int32_t *places, const unsigned int n) {
+    PairRows rows;
+    alignas(64) std::int32_t record[B];
+    fill(*block, rows, particles, pairs, places, n, model.get_materials(), period);
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::int32_t pair = places[std::min(k, n - 1)];
+      if (pairs.record[pair] == ContactMemory::none)
+        pairs.record[pair] = pairs.memory.create();
+      record[k] = pairs.record[pair];
     }
-    if (n_active >= B) {
-      run_block(particles, pairs, active.data(), B, dt);
-      n_active -= B;
-      std::copy_n(active.begin() + B, n_active, active.begin());
+    recall(*block, pairs.memory, record);
+    model.apply(*block, dt);
+    scatter(*block, particles, rows.i, rows.j, rows.ri, rows.rj);
+    remember(*block, pairs.memory, record);
+  };
+  walk(particles.position.data(), pairs, pairs.some_sleep ? &pairs.awake : nullptr, period,
+       model.range(), end, run);
+}
+
+void PairForces::evaluate(const ParticleArrays &particles, const PairList &pairs,
+                          const std::vector<std::int32_t> *places,
+                          const ContactForceSink &sink) const
+{
+  const Period period{box.length, box.half()};
+  const auto own = std::make_unique<PairBlock>();
+  PairBlock &b = *own;
+  const auto run = [&](const std::int32_t *active, const unsigned int n) {
+    PairRows rows;
+    fill(b, rows, particles, pairs, active, n, model.get_materials(), period);
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::int32_t record = pairs.record[active[std::min(k, n - 1)]];
+      for (unsigned int h = 0; h < model.history_size(); ++h)
+        b.history[h][k] = record == ContactMemory::none ? 0. : pairs.memory[record][h];
     }
-  }
-  if (n_active > 0)
-    run_block(particles, pairs, active.data(), n_active, dt);
+    model.apply(b, 0.);
+    for (unsigned int k = 0; k < n; ++k)
+      sink({rows.i[k],
+            rows.j[k],
+            -1,
+            {b.nx[k], b.ny[k], b.nz[k]},
+            b.distance[k],
+            b.overlap[k],
+            b.contact_force[k] - b.cohesion[k],
+            {b.shear_x[k], b.shear_y[k], b.shear_z[k]},
+            {b.torque_x[k], b.torque_y[k], b.torque_z[k]}});
+  };
+  walk(
+      particles.position.data(), pairs, places, period, model.range(), [](std::int32_t) {}, run);
 }
 
 } // namespace eunoe

@@ -177,51 +177,78 @@ ParticleId ParticleSystem::exchange(const Delivery &delivery,
   return first_new;
 }
 
-void ParticleSystem::add_forces_on_new(const ParticleId first_new,
-                                       const std::vector<std::unique_ptr<Load>> &loads,
-                                       const std::vector<Solid> &solids, const double time)
+void ParticleSystem::add_loads(const std::vector<std::size_t> &list,
+                               const std::vector<std::unique_ptr<Load>> &loads, const double time)
+{
+  ParticleArrays some;
+  some.resize(list.size(), 0, static_cast<unsigned int>(particles.extra.size()));
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    const std::size_t row = list[k];
+    some.position[k] = particles.position[row];
+    some.velocity[k] = particles.velocity[row];
+    some.spin[k] = particles.spin[row];
+    some.id[k] = particles.id[row];
+    some.type[k] = particles.type[row];
+    some.reference[k] = particles.reference[row];
+    for (std::size_t e = 0; e < some.extra.size(); ++e)
+      some.extra[e][k] = particles.extra[e][row];
+  }
+  for (const auto &load : loads)
+    load->add(some, time);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    particles.force[list[k]].add(some.force[k].vec());
+    particles.torque[list[k]].add(some.torque[k].vec());
+  }
+}
+
+void ParticleSystem::start_forces_on_new(const ParticleId first_new,
+                                         const std::vector<std::unique_ptr<Load>> &loads,
+                                         const std::vector<Solid> &solids, const double time)
 {
   ParticleArrays &p = particles;
-  const auto forces = p.force, torques = p.torque;
-  const PairList pairs_before = pairs;
-  const SolidContacts::Memory solids_before = solid_contacts.save();
-  std::fill(p.force.begin(), p.force.end(), Quad());
-  std::fill(p.torque.begin(), p.torque.end(), Quad());
-  for (const auto &load : loads)
-    load->add(p, time);
-  add_contact_forces(solids, time, 0., nullptr);
+  const auto is_new = [&](const std::int32_t row) {
+    return static_cast<std::size_t>(row) < p.n_owned && p.id[row] >= first_new;
+  };
+  std::vector<std::size_t> awake;
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    if (p.id[row] < first_new) {
-      p.force[row] = forces[row];
-      p.torque[row] = torques[row];
+    if (p.id[row] >= first_new) {
+      p.force[row] = p.torque[row] = Quad();
+      if (p.is_awake(row))
+        awake.push_back(row);
     }
-  pairs = pairs_before;
-  solid_contacts.reset(solids_before);
+  add_loads(awake, loads, time);
+
+  std::vector<std::int32_t> places;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const std::int32_t i = pairs.i[k], j = pairs.j[k];
+    if ((is_new(i) || is_new(j)) && (p.is_awake(i) || p.is_awake(j)))
+      places.push_back(static_cast<std::int32_t>(k));
+  }
+  pair_forces.evaluate(p, pairs, &places, [&](const ContactForce &contact) {
+    if (is_new(contact.first)) {
+      p.force[contact.first].add(-contact.force());
+      p.torque[contact.first].add(contact.torque_on_first(p.radius(contact.first)));
+    }
+    if (is_new(contact.second)) {
+      p.force[contact.second].add(contact.force());
+      p.torque[contact.second].add(contact.torque_on_second(p.radius(contact.second)));
+    }
+  });
+  solid_contacts.evaluate(p, solids, time, [&](const ContactForce &contact) {
+    if (!is_new(contact.first) || !p.is_awake(contact.first))
+      return;
+    p.force[contact.first].add(-contact.force());
+    p.torque[contact.first].add(contact.torque_on_first(p.radius(contact.first)));
+  });
 }
 
 std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid> &solids,
-                                                         const double time)
+                                                         const double time) const
 {
-  const auto forces = particles.force, torques = particles.torque;
-  const auto velocities = particles.velocity, spins = particles.spin;
-  const PairList pairs_before = pairs;
-  const SolidContacts::Memory solids_before = solid_contacts.save();
-  // The velocities of ghosts are behind those of owned particles, which are of the present time.
-  halo.update(particles);
-  // Those of sleepers, too.
-  pairs.some_sleep = false;
   std::vector<ContactForce> list;
-  pair_forces.record_to(&list);
-  solid_contacts.record_to(&list);
-  add_contact_forces(solids, time, 0., nullptr);
-  pair_forces.record_to(nullptr);
-  solid_contacts.record_to(nullptr);
-  particles.force = forces;
-  particles.torque = torques;
-  particles.velocity = velocities;
-  particles.spin = spins;
-  pairs = pairs_before;
-  solid_contacts.reset(solids_before);
+  const auto append = [&list](const ContactForce &contact) { list.push_back(contact); };
+  pair_forces.evaluate(particles, pairs, nullptr, append);
+  solid_contacts.evaluate(particles, solids, time, append);
   return list;
 }
 

@@ -14,7 +14,7 @@ constexpr double least_cosine = 0.9;
 } // namespace
 
 SolidContacts::SolidContacts(const ContactModel &model)
-    : model(model), block(std::make_unique<PairBlock>()), places(std::make_unique<Places>())
+    : model(model), batch(std::make_unique<Batch>())
 {
   memory.clear(model.history_size());
 }
@@ -104,13 +104,6 @@ void SolidContacts::forget()
   normals.clear();
 }
 
-void SolidContacts::reset(const Memory &saved)
-{
-  candidates = saved.candidates;
-  memory = saved.records;
-  normals = saved.normals;
-}
-
 void SolidContacts::restore(const std::int32_t particle, const std::int32_t solid,
                             const Vec3 &normal, const double *history)
 {
@@ -169,52 +162,89 @@ void SolidContacts::go_on(Candidate &candidate, const SurfaceContact *found,
   candidate.n_living = n_found;
 }
 
+std::vector<double> SolidContacts::ways(const std::vector<Solid> &solids) const
+{
+  std::vector<double> way;
+  for (std::size_t s = 0; s < solids.size(); ++s)
+    way.push_back(displacement(solids[s], solids_at_search[s], solids[s].state));
+  return way;
+}
+
+bool SolidContacts::is_far(const Candidate &candidate, const ParticleArrays &particles,
+                           const double way) const
+{
+  // Too far for a contact, as long as both together have not gone the gap that there was.
+  const double spare = candidate.gap - model.range() - way;
+  return spare > 0. && candidate.n_living == 0 &&
+         norm_square(particles.position[candidate.particle].vec() -
+                     particles.reference[candidate.particle]) < spare * spare;
+}
+
 void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Solid> &solids,
                                const double time, const double dt, std::vector<SolidLoad> *loads)
 {
-  block->n = 0;
-  std::vector<double> way(solids.size());
-  for (std::size_t s = 0; s < solids.size(); ++s)
-    way[s] = displacement(solids[s], solids_at_search[s], solids[s].state);
-  Candidate asleep = {}; // a copy, from which contacts may be taken
+  const std::vector<double> way = ways(solids);
+  std::array<SurfaceContact, Shape::max_contacts> found;
+  batch->n = 0;
   for (Candidate &candidate : candidates) {
     // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
-    if (loads == nullptr && recorded == nullptr && !particles.is_awake(candidate.particle))
-      continue;
-    // Too far for a contact, as long as both together have not gone the gap that there was.
-    const double spare = candidate.gap - model.range() - way[candidate.solid];
-    if (spare > 0. && candidate.n_living == 0 &&
-        norm_square(particles.position[candidate.particle].vec() -
-                    particles.reference[candidate.particle]) < spare * spare)
+    const bool is_awake = particles.is_awake(candidate.particle);
+    if ((loads == nullptr && !is_awake) || is_far(candidate, particles, way[candidate.solid]))
       continue;
     const Solid &solid = solids[candidate.solid];
-    const Quad &position = particles.position[candidate.particle];
-    std::array<SurfaceContact, Shape::max_contacts> found;
     const unsigned int n_found =
-        solid.is_active(time) ? find(candidate, solid, position, found.data()) : 0;
-
-    const bool is_awake = particles.is_awake(candidate.particle);
+        solid.is_active(time)
+            ? find(candidate, solid, particles.position[candidate.particle], found.data())
+            : 0;
     if (is_awake)
       go_on(candidate, found.data(), n_found);
-    else
-      asleep = candidate;
+    Candidate asleep = candidate; // a copy, from which contacts may be taken
     for (unsigned int k = 0; k < n_found; ++k) {
-      add_to_block(particles, solid, candidate, found[k],
-                   is_awake ? candidate.living[k] : take_living(asleep, found[k].normal));
-      places->feels[block->n - 1] = is_awake;
-      if (block->n == PairBlock::size)
-        run_block(particles, solids, dt, loads);
+      const std::int32_t record =
+          is_awake ? candidate.living[k] : take_living(asleep, found[k].normal);
+      add_to(*batch, particles, solid, candidate, found[k], record);
+      if (!is_awake)
+        batch->record[batch->n - 1] = ContactMemory::none;
+      if (batch->n == PairBlock::size)
+        finish(particles, solids, dt, loads);
     }
   }
-  if (block->n > 0)
-    run_block(particles, solids, dt, loads);
+  if (batch->n > 0)
+    finish(particles, solids, dt, loads);
 }
 
-void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &solid,
-                                 const Candidate &candidate, const SurfaceContact &contact,
-                                 const std::int32_t record)
+void SolidContacts::evaluate(const ParticleArrays &particles, const std::vector<Solid> &solids,
+                             const double time, const ContactForceSink &sink) const
 {
-  PairBlock &b = *block;
+  const std::vector<double> way = ways(solids);
+  const auto own = std::make_unique<Batch>();
+  const auto give = [&] {
+    apply_laws(*own, 0.);
+    for (unsigned int k = 0; k < own->n; ++k)
+      sink(force_of(*own, k));
+    own->n = 0;
+  };
+  std::array<SurfaceContact, Shape::max_contacts> found;
+  for (Candidate candidate : candidates) { // copies, from which contacts may be taken
+    const Solid &solid = solids[candidate.solid];
+    if (!solid.is_active(time) || is_far(candidate, particles, way[candidate.solid]))
+      continue;
+    const unsigned int n_found =
+        find(candidate, solid, particles.position[candidate.particle], found.data());
+    for (unsigned int k = 0; k < n_found; ++k) {
+      add_to(*own, particles, solid, candidate, found[k], take_living(candidate, found[k].normal));
+      if (own->n == PairBlock::size)
+        give();
+    }
+  }
+  if (own->n > 0)
+    give();
+}
+
+void SolidContacts::add_to(Batch &b, const ParticleArrays &particles, const Solid &solid,
+                           const Candidate &candidate, const SurfaceContact &contact,
+                           const std::int32_t record) const
+{
   const unsigned int k = b.n++;
   const std::int32_t p = candidate.particle;
   const Quad &position = particles.position[p], &velocity = particles.velocity[p],
@@ -248,16 +278,14 @@ void SolidContacts::add_to_block(const ParticleArrays &particles, const Solid &s
   for (unsigned int h = 0; h < model.history_size(); ++h)
     b.history[h][k] = history == nullptr ? 0. : history[h];
 
-  places->particle[k] = p;
-  places->solid[k] = candidate.solid;
-  places->record[k] = record;
-  places->point[k] = point;
+  b.particle[k] = p;
+  b.solid[k] = candidate.solid;
+  b.record[k] = record;
+  b.point[k] = point;
 }
 
-void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid> &solids,
-                              const double dt, std::vector<SolidLoad> *loads)
+void SolidContacts::apply_laws(Batch &b, const double dt) const
 {
-  PairBlock &b = *block;
   for (unsigned int k = b.n; k < PairBlock::size; ++k) {
     for (double *lanes :
          {b.nx, b.ny, b.nz, b.distance, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
@@ -271,30 +299,44 @@ void SolidContacts::run_block(ParticleArrays &particles, const std::vector<Solid
                        ? static_cast<int>(b.kind[0])
                        : -1;
   model.apply(b, dt);
+}
 
+ContactForce SolidContacts::force_of(const Batch &b, const unsigned int k)
+{
+  return {b.particle[k],
+          -1,
+          b.solid[k],
+          {b.nx[k], b.ny[k], b.nz[k]},
+          b.distance[k],
+          b.overlap[k],
+          b.contact_force[k] - b.cohesion[k],
+          {b.shear_x[k], b.shear_y[k], b.shear_z[k]},
+          {b.torque_x[k], b.torque_y[k], b.torque_z[k]}};
+}
+
+void SolidContacts::finish(ParticleArrays &particles, const std::vector<Solid> &solids,
+                           const double dt, std::vector<SolidLoad> *loads)
+{
+  Batch &b = *batch;
+  apply_laws(b, dt);
   for (unsigned int k = 0; k < b.n; ++k) {
-    const std::int32_t p = places->particle[k];
-    const Vec3 n = {b.nx[k], b.ny[k], b.nz[k]};
-    const Vec3 shear = {b.shear_x[k], b.shear_y[k], b.shear_z[k]};
-    const Vec3 rolling = {b.torque_x[k], b.torque_y[k], b.torque_z[k]};
-    const Vec3 force = (b.contact_force[k] - b.cohesion[k]) * n + shear;
-    if (recorded != nullptr)
-      recorded->push_back({p, -1, places->solid[k], n, b.distance[k], b.overlap[k],
-                           b.contact_force[k] - b.cohesion[k], shear});
+    const ContactForce contact = force_of(b, k);
+    const Vec3 force = contact.force();
     if (loads != nullptr) {
-      SolidLoad &load = (*loads)[places->solid[k]];
+      SolidLoad &load = (*loads)[contact.solid];
       const Vec3 torque =
-          cross(places->point[k] - solids[places->solid[k]].state.centre, force) - rolling;
+          cross(b.point[k] - solids[contact.solid].state.centre, force) - contact.rolling_torque;
       for (unsigned int d = 0; d < 3; ++d) {
         load.force[d] += force[d];
         load.torque[d] += torque[d];
       }
     }
-    if (!places->feels[k])
+    if (b.record[k] == ContactMemory::none)
       continue;
+    const std::int32_t p = contact.first;
     particles.force[p].add(-force);
-    particles.torque[p].add(rolling - particles.radius(p) * cross(n, shear));
-    double *const history = memory[places->record[k]];
+    particles.torque[p].add(contact.torque_on_first(particles.radius(p)));
+    double *const history = memory[b.record[k]];
     for (unsigned int h = 0; h < model.history_size(); ++h)
       history[h] = b.history[h][k];
   }

@@ -29,8 +29,7 @@ public:
   {
     const ParticleArrays &p = simulation.complete_step();
     std::vector<double> number(p.n_owned, 0.), normal = number, tangential = number;
-    for (const ContactForce &contact :
-         simulation.get_system().contact_forces(simulation.get_solids(), simulation.time()))
+    for (const ContactForce &contact : simulation.contact_forces())
       if (contact.overlap > 0.)
         for (const std::int32_t row : {contact.first, contact.second})
           if (row >= 0 && static_cast<std::size_t>(row) < p.n_owned) {

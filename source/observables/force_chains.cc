@@ -83,8 +83,7 @@ public:
   void draw(Simulation &simulation) override
   {
     const ParticleArrays &p = simulation.complete_step();
-    std::vector<ContactForce> contacts =
-        simulation.get_system().contact_forces(simulation.get_solids(), simulation.time());
+    std::vector<ContactForce> contacts = simulation.contact_forces();
     const auto is_drawn = [&p](const ContactForce &c) {
       // A contact of two ranks is drawn by that of the first particle.
       return static_cast<std::size_t>(c.first) < p.n_owned &&

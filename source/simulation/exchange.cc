@@ -34,7 +34,7 @@ void Simulation::exchange(const Delivery &delivery, const std::vector<std::size_
   n_particles = system.n_global();
   if (sparse.is_enabled())
     update_sleep(true);
-  system.add_forces_on_new(first_new, loads, solids, present_time);
+  system.start_forces_on_new(first_new, loads, solids, present_time);
 }
 
 void Simulation::insert_if_due()

@@ -18,6 +18,14 @@ std::vector<SolidLoad> Simulation::global_solid_loads() const
   return sums;
 }
 
+std::vector<ContactForce> Simulation::contact_forces()
+{
+  complete_step();
+  // The velocities of ghosts are behind those of owned particles, which are of the present time.
+  system.update_ghosts();
+  return system.contact_forces(solids, present_time);
+}
+
 std::vector<Measurement> Simulation::measurements() const
 {
   std::vector<Measurement> all;

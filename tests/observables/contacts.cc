@@ -26,8 +26,7 @@ std::vector<std::vector<double>> all_contacts(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
   std::vector<std::vector<double>> mine, all;
-  for (const ContactForce &c :
-       simulation.get_system().contact_forces(simulation.get_solids(), simulation.time()))
+  for (const ContactForce &c : simulation.contact_forces())
     if (static_cast<std::size_t>(c.first) < p.n_owned) {
       const Vec3 end = p.position[c.first].vec() + c.distance * c.normal;
       mine.push_back({double(p.id[c.first]), c.second < 0 ? -1. : double(p.id[c.second]),
@@ -97,9 +96,7 @@ void test_packing()
     const auto before = p.force;
     std::vector<Vec3> sums(p.size());
     double scale = 0.;
-    for (const ContactForce &c :
-         simulation.get_system().contact_forces(simulation.get_solids(), simulation.time()))
-    {
+    for (const ContactForce &c : simulation.contact_forces()) {
       const Vec3 force = c.normal_force * c.normal + c.tangential_force;
       sums[c.first] -= force;
       if (c.second >= 0)

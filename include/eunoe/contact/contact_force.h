@@ -4,6 +4,7 @@
 #include <eunoe/core/vec3.h>
 
 #include <cstdint>
+#include <functional>
 
 namespace eunoe {
 
@@ -18,7 +19,24 @@ struct ContactForce
   double overlap = 0.;      ///< negative across a gap (m)
   double normal_force = 0.; ///< repulsion positive (N)
   Vec3 tangential_force;    ///< on the second body (N)
+  Vec3 rolling_torque;      ///< resistance against rolling, on the first body (N m)
+
+  /// On the second body (N); the first feels the opposite.
+  Vec3 force() const { return normal_force * normal + tangential_force; }
+  /// On the first body, a sphere of @p radius (m), about its centre (N m).
+  Vec3 torque_on_first(double radius) const
+  {
+    return rolling_torque - radius * cross(normal, tangential_force);
+  }
+  /// Likewise on the second body.
+  Vec3 torque_on_second(double radius) const
+  {
+    return -rolling_torque - radius * cross(normal, tangential_force);
+  }
 };
+
+/// Takes in one contact after another.
+using ContactForceSink = std::function<void(const ContactForce &)>;
 
 } // namespace eunoe
 

@@ -11,7 +11,7 @@
 
 namespace eunoe {
 
-/// Adds the forces and torques of all particle-particle contacts.
+/// The forces and torques of all particle-particle contacts.
 class PairForces
 {
 public:
@@ -21,18 +21,16 @@ public:
   /// sums without meaning) and advances the memory of the contacts by @p dt.
   void add(ParticleArrays &particles, PairList &pairs, double dt);
 
-  /// From now on `add` appends every contact to @p list; null: no longer.
-  void record_to(std::vector<ContactForce> *list) { recorded = list; }
+  /// Gives what acts at this moment in the contacts to @p sink, in the order of the list. Contacts
+  /// remember what they remember; one that has not begun has nothing to remember.
+  /// @param places of the pairs that are asked for, ascending; null: all
+  void evaluate(const ParticleArrays &particles, const PairList &pairs,
+                const std::vector<std::int32_t> *places, const ContactForceSink &sink) const;
 
 private:
-  void run_block(ParticleArrays &particles, PairList &pairs, const std::int32_t *active,
-                 unsigned int n, double dt);
-
   const ContactModel &model;
   const PeriodicBox box;
   std::unique_ptr<PairBlock> block;
-  std::vector<std::int32_t> active, ended;
-  std::vector<ContactForce> *recorded = nullptr;
 };
 
 } // namespace eunoe

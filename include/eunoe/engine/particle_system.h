@@ -87,14 +87,14 @@ public:
   void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,
                           std::vector<SolidLoad> *loads);
 
-  /// Computes the forces on the particles with ids from @p first_new on, which a scheme with an
-  /// opening half step needs; forces on the others and the memory of all contacts stay as they are.
-  void add_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
-                         const std::vector<Solid> &solids, double time);
+  /// Computes the forces on the owned particles with ids from @p first_new on, which a scheme with
+  /// an opening half step needs.
+  void start_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
+                           const std::vector<Solid> &solids, double time);
 
-  /// What acts at present in all contacts of owned particles; changes nothing. A contact of two
-  /// ranks is known to both.
-  std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time);
+  /// What acts at present in all contacts of owned particles. A contact of two ranks is known to
+  /// both. Velocities, of ghosts too, must belong to the present time.
+  std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time) const;
 
   /// Adds all particles, with what their contacts remember and where they were at the last search,
   /// to a checkpoint; collective. Velocities must belong to the present time.
@@ -133,6 +133,9 @@ private:
   /// Counts those who leave through outlets, and those who are lost.
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
+  /// Adds what the loads alone do to the particles of some rows.
+  void add_loads(const std::vector<std::size_t> &rows,
+                 const std::vector<std::unique_ptr<Load>> &loads, double time);
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);

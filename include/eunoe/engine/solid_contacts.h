@@ -39,8 +39,10 @@ public:
   void add_forces(ParticleArrays &particles, const std::vector<Solid> &solids, double time,
                   double dt, std::vector<SolidLoad> *loads);
 
-  /// From now on `add_forces` appends every contact to @p list; null: no longer.
-  void record_to(std::vector<ContactForce> *list) { recorded = list; }
+  /// Gives what acts at this moment in all contacts, those of sleepers, too, to @p sink. Contacts
+  /// remember what they remember.
+  void evaluate(const ParticleArrays &particles, const std::vector<Solid> &solids, double time,
+                const ContactForceSink &sink) const;
 
   /// @name Memory of the living contacts
   ///@{
@@ -51,17 +53,8 @@ public:
   /// Depth of a sphere in a solid near it (m), negative across a gap.
   double deepest_overlap(const Candidate &candidate, const Solid &solid, const Vec3 &centre,
                          double radius) const;
-  /// All that the contacts remember, to be put back by `reset`.
-  struct Memory
-  {
-    std::vector<Candidate> candidates;
-    ContactMemory records;
-    std::vector<Vec3> normals;
-  };
   /// Lets every contact begin anew.
   void forget();
-  Memory save() const { return {candidates, memory, normals}; }
-  void reset(const Memory &saved);
   /// Gives the candidate (particle, solid) a contact with a memory; without effect if the two are
   /// no longer near each other.
   void restore(std::int32_t particle, std::int32_t solid, const Vec3 &normal,
@@ -69,21 +62,32 @@ public:
   ///@}
 
 private:
-  /// What the block of laws does not hold of its contacts.
-  struct Places
+  /// A block for the laws, and what it does not hold of its contacts.
+  struct Batch : public PairBlock
   {
-    std::array<std::int32_t, PairBlock::size> particle, solid, record;
-    std::array<Vec3, PairBlock::size> point;
-    std::array<bool, PairBlock::size> feels; ///< the particle is awake
+    std::array<std::int32_t, size> particle, solid;
+    std::array<std::int32_t, size> record; ///< in which the memory is kept, none for a sleeper's
+    std::array<Vec3, size> point;
   };
 
+  /// How far each solid has moved since the search (m).
+  std::vector<double> ways(const std::vector<Solid> &solids) const;
+  /// Whether a candidate cannot have touched since the search and has no contact that could end.
+  /// @param way that its solid has moved since (m)
+  bool is_far(const Candidate &candidate, const ParticleArrays &particles, double way) const;
   /// The contacts of a sphere with the solid that it is near.
   unsigned int find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
                     SurfaceContact *found) const;
-  void add_to_block(const ParticleArrays &particles, const Solid &solid, const Candidate &candidate,
-                    const SurfaceContact &contact, std::int32_t record);
-  void run_block(ParticleArrays &particles, const std::vector<Solid> &solids, double dt,
-                 std::vector<SolidLoad> *loads);
+  /// Adds a contact to a batch.
+  /// @param memory from which its history is taken, none for a contact that has just begun
+  void add_to(Batch &batch, const ParticleArrays &particles, const Solid &solid,
+              const Candidate &candidate, const SurfaceContact &contact, std::int32_t memory) const;
+  /// Runs the laws.
+  void apply_laws(Batch &batch, double dt) const;
+  static ContactForce force_of(const Batch &batch, unsigned int k);
+  /// Adds the batch's forces, keeps what its contacts remember and empties it.
+  void finish(ParticleArrays &particles, const std::vector<Solid> &solids, double dt,
+              std::vector<SolidLoad> *loads);
   std::int32_t create(const Vec3 &normal);
   /// Takes the living contact with nearly the same normal out of a candidate: a contact moves by a
   /// tiny part of the particle's size in a step, over whatever edge. None if there is none.
@@ -98,9 +102,7 @@ private:
   std::vector<Plane> planes;
   ContactMemory memory;
   std::vector<Vec3> normals;
-  std::unique_ptr<PairBlock> block;
-  std::unique_ptr<Places> places;
-  std::vector<ContactForce> *recorded = nullptr;
+  std::unique_ptr<Batch> batch;
 };
 
 } // namespace eunoe

@@ -82,6 +82,10 @@ public:
   /// Owned particles whose extra doubles (see Process::fields) may be changed.
   ParticleArrays &changeable_particles();
 
+  /// What acts at present in all contacts of owned particles, of which one of two ranks is known to
+  /// both; collective.
+  std::vector<ContactForce> contact_forces();
+
   /// Adds and removes particles at the present time; those that stay go on as if nothing had been.
   /// Particles that have gone wrong are found and treated as before a search.
   void exchange(const Delivery &delivery, const std::vector<std::size_t> &removed);
