@@ -1,6 +1,7 @@
 #include <eunoe/domain/mesh.h>
 #include <eunoe/solids/enclosure.h>
 #include <eunoe/solids/half_space.h>
+#include <eunoe/solids/saved_states.h>
 #include <eunoe/solids/surface_part.h>
 
 #include <deal.II/fe/mapping_cartesian.h>
@@ -101,6 +102,17 @@ void Domain::move_to(const double time)
 {
   if (motion)
     pose = motion->at(time);
+}
+
+nlohmann::ordered_json Domain::save() const
+{
+  return moves() ? to_json(earlier) : nlohmann::ordered_json();
+}
+
+void Domain::load(const nlohmann::ordered_json &saved)
+{
+  if (moves())
+    pose = earlier = state_in(saved);
 }
 
 Box Domain::box_from_centre() const

@@ -1,8 +1,9 @@
-#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/declare.h>
 #include <eunoe/engine/particle_guard.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe {
 
@@ -20,16 +21,29 @@ std::string format(const Vec3 &v)
 
 } // namespace
 
-ParticleGuard::ParticleGuard(const Domain &domain, const Materials &materials,
-                             const double largest_overlap)
-    : domain(domain), materials(materials), young_modulus(materials.table(effective_young_modulus)),
-      largest_overlap(largest_overlap)
+void FaultParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("model parameters");
+  declare::choice(prm, "lost particles", lost_particles, "stop|remove|ignore",
+                  "What happens when a particle has left the mesh other than through an outlet, or "
+                  "is not a number any more: the run stops, or the particle is taken out and "
+                  "counted, with or without a warning.");
+  declare::positive(prm, "largest overlap", largest_overlap,
+                    "Overlap over the radius of the smaller particle above which the run stops, as "
+                    "no contact law holds there; 0: never.");
+  prm.leave_subsection();
+}
+
+ParticleGuard::ParticleGuard(const FaultParameters &parameters, const Domain &domain,
+                             const Materials &materials, const double longest_way, const double dt)
+    : parameters(parameters), domain(domain), materials(materials),
+      young_modulus(materials.table(effective_young_modulus)), longest_way(longest_way), dt(dt)
 {
 }
 
 Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
-                              const SolidContacts &solid_contacts, const std::vector<Solid> &solids,
-                              const double longest_way, const double dt) const
+                              const SolidContacts &solid_contacts,
+                              const std::vector<Solid> &solids) const
 {
   Faults faults;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
@@ -56,6 +70,7 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
                                   Faults &faults) const
 {
   const PeriodicBox &box = domain.periods();
+  const double largest = parameters.largest_overlap;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto i = static_cast<std::size_t>(pairs.i[k]), j = static_cast<std::size_t>(pairs.j[k]);
     // A pair with an i that is a ghost is seen by the owner of i.
@@ -69,7 +84,7 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
     const double stiffness = hertz_tangent_stiffness(
         young_modulus[materials.kind(p.type[i], p.type[j])], ri * rj / (ri + rj), overlap);
     faults.stiffest = std::max(faults.stiffest, stiffness * (mi + mj) / (mi * mj));
-    if (largest_overlap > 0. && overlap > largest_overlap * std::min(ri, rj))
+    if (largest > 0. && overlap > largest * std::min(ri, rj))
       faults.squeezed.push_back({i, "overlaps particle " + std::to_string(p.id[j]) + " by " +
                                         eunoe::format(overlap) +
                                         " m, more than the 'largest overlap'."});
@@ -79,6 +94,7 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
 void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &solid_contacts,
                                   const std::vector<Solid> &solids, Faults &faults) const
 {
+  const double largest = parameters.largest_overlap;
   for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates()) {
     if (candidate.n_living == 0)
       continue;
@@ -92,11 +108,64 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
     faults.stiffest =
         std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], radius, depth) /
                                       p.mass(candidate.particle));
-    if (largest_overlap > 0. && depth > largest_overlap * radius)
+    if (largest > 0. && depth > largest * radius)
       faults.squeezed.push_back({static_cast<std::size_t>(candidate.particle),
                                  "overlaps '" + solid.name + "' by " + eunoe::format(depth) +
                                      " m, more than the 'largest overlap'."});
   }
+}
+
+Verdict ParticleGuard::judge(const Faults &faults, const ParticleArrays &particles,
+                             const std::function<std::string(std::size_t)> &describe) const
+{
+  MPI_Comm comm = domain.communicator();
+  std::vector<Fault> grave = faults.squeezed;
+  if (parameters.lost_particles == "stop")
+    grave.insert(grave.end(), faults.lost.begin(), faults.lost.end());
+  std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
+  MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
+  Verdict verdict;
+  if (numbers[0] + numbers[1] == 0)
+    return verdict;
+  verdict.stops = numbers[0] > 0;
+  verdict.warns = !verdict.stops && parameters.lost_particles == "remove";
+  verdict.number = verdict.stops ? numbers[0] : numbers[1];
+  for (const Fault &fault : faults.lost)
+    verdict.lost.push_back(fault.row);
+
+  // The one with the smallest id is named, whichever rank it is on.
+  ParticleId mine = std::numeric_limits<ParticleId>::max();
+  for (const Fault &fault : verdict.stops ? grave : faults.lost) {
+    const ParticleId id = particles.id[fault.row];
+    if (id < mine) {
+      mine = id;
+      verdict.first = describe(fault.row) + " " + fault.what;
+    }
+  }
+  ParticleId smallest = mine;
+  MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPI_UINT32_T, MPI_MIN, comm);
+  int rank = std::numeric_limits<int>::max();
+  if (mine == smallest)
+    MPI_Comm_rank(comm, &rank);
+  MPI_Allreduce(MPI_IN_PLACE, &rank, 1, MPI_INT, MPI_MIN, comm);
+  int length = static_cast<int>(verdict.first.size());
+  MPI_Bcast(&length, 1, MPI_INT, rank, comm);
+  verdict.first.resize(length);
+  MPI_Bcast(verdict.first.data(), length, MPI_CHAR, rank, comm);
+  return verdict;
+}
+
+std::optional<double> ParticleGuard::newly_too_short(double stiffest)
+{
+  if (found_too_short)
+    return std::nullopt;
+  MPI_Allreduce(MPI_IN_PLACE, &stiffest, 1, MPI_DOUBLE, MPI_MAX, domain.communicator());
+  const double half_period =
+      stiffest > 0. ? M_PI / std::sqrt(stiffest) : std::numeric_limits<double>::infinity();
+  if (dt <= half_period / steps_per_contact)
+    return std::nullopt;
+  found_too_short = true;
+  return half_period;
 }
 
 std::string describe_particle(const ParticleArrays &p, const std::size_t row, const PairList &pairs,

@@ -4,31 +4,38 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace eunoe {
 
-ParticleSystem::ParticleSystem(Domain &domain, const ContactModel &model,
-                               const unsigned int n_extra, const int asleep, const double skin,
-                               const double largest_diameter, Ledger &ledger, Timers &timers)
-    : domain(domain), model(model), skin(skin), ledger(ledger), timers(timers),
-      store(domain, n_extra, asleep), halo(domain.communicator()),
+ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const double skin,
+                               const double largest_diameter, Timers &timers)
+    : domain(domain), physics(std::move(physics_)), model(physics.model), skin(skin),
+      ledger(domain.outlets().size()), timers(timers),
+      store(domain, n_components(physics.fields), physics.asleep), halo(domain.communicator()),
       grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
            largest_diameter + skin + model.range()),
-      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
-      extra_defaults(n_extra, 0.)
+      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size())
 {
   pairs.clear(model.history_size());
+  for (const ParticleField &field : physics.fields)
+    extra_defaults.insert(extra_defaults.end(), field.n_components, field.initial);
 }
 
-void ParticleSystem::add_contact_forces(const std::vector<Solid> &solids, const double time,
-                                        const double dt, std::vector<SolidLoad> *loads)
+void ParticleSystem::add_forces(const std::vector<Solid> &solids, const double time,
+                                const double dt, std::vector<SolidLoad> *on_solids)
 {
+  {
+    const Timers::Scope scope(timers, Section::loads);
+    for (const auto &load : physics.loads)
+      load->add(particles, time);
+  }
   {
     const Timers::Scope scope(timers, Section::pairs);
     pair_forces.add(particles, pairs, dt);
   }
   const Timers::Scope scope(timers, Section::solids);
-  solid_contacts.add_forces(particles, solids, time, dt, loads);
+  solid_contacts.add_forces(particles, solids, time, dt, on_solids);
 }
 
 void ParticleSystem::forget_contacts()
@@ -137,10 +144,10 @@ void ParticleSystem::search(const std::vector<Solid> &solids,
   rebuild(solids, balance);
 }
 
-ParticleId ParticleSystem::exchange(const Delivery &delivery,
-                                    const std::vector<std::size_t> &removed,
-                                    const std::vector<std::size_t> &lost,
-                                    const std::vector<Solid> &solids)
+ParticleId ParticleSystem::insert_and_remove(const Delivery &delivery,
+                                             const std::vector<std::size_t> &removed,
+                                             const std::vector<std::size_t> &lost,
+                                             const std::vector<Solid> &solids)
 {
   rows.collect(particles, pairs, solid_contacts);
   store.write(particles, work());
@@ -177,8 +184,7 @@ ParticleId ParticleSystem::exchange(const Delivery &delivery,
   return first_new;
 }
 
-void ParticleSystem::add_loads(const std::vector<std::size_t> &list,
-                               const std::vector<std::unique_ptr<Load>> &loads, const double time)
+void ParticleSystem::add_loads(const std::vector<std::size_t> &list, const double time)
 {
   ParticleArrays some;
   some.resize(list.size(), 0, static_cast<unsigned int>(particles.extra.size()));
@@ -193,7 +199,7 @@ void ParticleSystem::add_loads(const std::vector<std::size_t> &list,
     for (std::size_t e = 0; e < some.extra.size(); ++e)
       some.extra[e][k] = particles.extra[e][row];
   }
-  for (const auto &load : loads)
+  for (const auto &load : physics.loads)
     load->add(some, time);
   for (std::size_t k = 0; k < list.size(); ++k) {
     particles.force[list[k]].add(some.force[k].vec());
@@ -202,7 +208,6 @@ void ParticleSystem::add_loads(const std::vector<std::size_t> &list,
 }
 
 void ParticleSystem::start_forces_on_new(const ParticleId first_new,
-                                         const std::vector<std::unique_ptr<Load>> &loads,
                                          const std::vector<Solid> &solids, const double time)
 {
   ParticleArrays &p = particles;
@@ -216,7 +221,7 @@ void ParticleSystem::start_forces_on_new(const ParticleId first_new,
       if (p.is_awake(row))
         awake.push_back(row);
     }
-  add_loads(awake, loads, time);
+  add_loads(awake, time);
 
   std::vector<std::int32_t> places;
   for (std::size_t k = 0; k < pairs.size(); ++k) {

@@ -72,12 +72,14 @@ void ParticleSystem::save(CheckpointWriter &writer) const
     keys.push_back(p.id[k]);
   }
   writer.add_rows("particles", keys, all);
+  writer.head["ledger"] = ledger.save(domain.communicator());
 }
 
 void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
                           const LoadBalancingParameters &balancing, const SparseContacts &sparse)
 {
   MPI_Comm comm = domain.communicator();
+  ledger.load(checkpoint.head.at("ledger"), comm);
   int rank;
   MPI_Comm_rank(comm, &rank);
   const Rows share = checkpoint.rows("particles");

@@ -75,40 +75,53 @@ std::vector<DiameterRange> find_diameters(const Parameters &parameters,
   return diameters;
 }
 
+/// Largest speed of a wall or of a solid of the process, as far as it can be known (m/s).
+double fastest_wall(const Parameters &parameters, const Domain &domain)
+{
+  const double dt = parameters.control.time_step;
+  double fastest = parameters.process() != nullptr ? parameters.process()->fastest_solid() : 0.;
+  for (const Solid &wall : domain.walls())
+    fastest = std::max(fastest, displacement(wall, wall.motion->at(0.), wall.motion->at(dt)) / dt);
+  return fastest;
+}
+
 } // namespace
 
 Forecast Simulation::foresee(const bool writes) const
 {
   Forecast forecast;
   std::vector<std::vector<NewParticle>> events;
-  if (insertion && (!checkpoint || gives_particles(parameters)))
+  const Insertion *const insertion = inserter.get_method();
+  const bool is_continued = checkpoints.opened() != nullptr;
+  if (insertion != nullptr && (!is_continued || gives_particles(parameters)))
     events = insertion->known_events();
-  const std::vector<DiameterRange> diameters = find_diameters(parameters, events, comm);
+  const std::vector<DiameterRange> diameters = find_diameters(parameters, events, communicator());
   judge_time_step(parameters, diameters, forecast);
   forecast.facts.push_back("Domain: " + describe(Box{domain.lower(), domain.upper()}) + ", " +
                            format_count(domain.n_cells(), "cell", "cells") + " of at least " +
                            format(1e6 * domain.smallest_cell_width()) + " um, " +
-                           format_count(solids.size(), "solid or wall", "solids and walls") + ", " +
-                           format_count(domain.outlets().size(), "outlet", "outlets"));
+                           format_count(solids.list().size(), "solid or wall", "solids and walls") +
+                           ", " + format_count(domain.outlets().size(), "outlet", "outlets"));
   const Vec3 &g = parameters.physics.gravity;
   forecast.facts.push_back("Gravity: (" + format(g.x) + ", " + format(g.y) + ", " + format(g.z) +
                            ") m/s2" + (norm_square(g) > 0. ? "" : ", so that nothing falls"));
   double smallest_radius = std::numeric_limits<double>::max();
   for (const DiameterRange &range : diameters)
     smallest_radius = std::min(smallest_radius, 0.5 * range.smallest);
-  const double fastest = judge_solids(parameters, solids, domain, smallest_radius, forecast);
-  judge_jump(fastest_wall(), parameters, smallest_radius, "", "", forecast.problems);
-  judge_searches(std::max(fastest, fastest_wall()), allowed_displacement,
-                 parameters.control.time_step, forecast);
-  if (insertion && !checkpoint)
-    judge_insertion(parameters, *insertion, events, solids, domain, forecast);
+  const double of_walls = fastest_wall(parameters, domain);
+  const double fastest = judge_solids(parameters, solids.list(), domain, smallest_radius, forecast);
+  judge_jump(of_walls, parameters, smallest_radius, "", "", forecast.problems);
+  judge_searches(std::max(fastest, of_walls), criterion.allowed_displacement(), clock.time_step(),
+                 forecast);
+  if (insertion != nullptr && !is_continued)
+    judge_insertion(parameters, *insertion, events, solids.list(), domain, forecast);
   if (parameters.process_name == "none" && parameters.control.n_steps() == 0)
     forecast.problems.warn("subsection 'simulation control':", "no step is taken.",
                            "Set 'time end' or 'iteration end'.");
   const RunEstimate cost = estimate();
-  judge_resources(parameters, cost, domain.n_cells(), comm, forecast);
+  judge_resources(parameters, cost, domain.n_cells(), communicator(), forecast);
   if (writes)
-    judge_output(parameters, cost, n_components(fields), comm, forecast);
+    judge_output(parameters, cost, n_components(system.fields()), communicator(), forecast);
   return forecast;
 }
 

@@ -227,7 +227,7 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
     if (e == 0)
       with_solids = overlap_with_solids(spheres, solids);
   }
-  const double largest_overlap = parameters.model.largest_overlap;
+  const double largest_overlap = parameters.faults.largest_overlap;
   judge_overlap(of_pairs, "a particle overlaps another", largest_overlap, problems);
   judge_overlap(with_solids, "a particle overlaps a wall or solid", largest_overlap, problems);
 }

@@ -1,4 +1,4 @@
-// What a run has measured, as observables and discovery ask for it.
+// What observables, processes and discovery read of a run.
 
 #include <eunoe/simulation/simulation.h>
 
@@ -7,15 +7,21 @@
 
 namespace eunoe {
 
+const ParticleArrays &Simulation::complete_step()
+{
+  integrator->complete(system.particles, clock.time_step());
+  return system.particles;
+}
+
+ParticleArrays &Simulation::changeable_particles()
+{
+  complete_step();
+  return system.particles;
+}
+
 std::vector<SolidLoad> Simulation::global_solid_loads() const
 {
-  std::vector<SolidLoad> sums = solid_loads;
-  for (SolidLoad &load : sums)
-    for (unsigned int d = 0; d < 3; ++d) {
-      load.force[d].reduce(comm);
-      load.torque[d].reduce(comm);
-    }
-  return sums;
+  return solids.global_loads(communicator());
 }
 
 std::vector<ContactForce> Simulation::contact_forces()
@@ -23,32 +29,33 @@ std::vector<ContactForce> Simulation::contact_forces()
   complete_step();
   // The velocities of ghosts are behind those of owned particles, which are of the present time.
   system.update_ghosts();
-  return system.contact_forces(solids, present_time);
+  return system.contact_forces(solids.list(), clock.time());
+}
+
+void Simulation::write_pictures(PictureSeries &series)
+{
+  complete_step();
+  const Timers::Scope scope(progress.timers, Section::output);
+  series.write(clock.time(), system.particles, system.fields(), outputs.fields(*this));
 }
 
 std::vector<Measurement> Simulation::measurements() const
 {
   std::vector<Measurement> all;
-  const auto append = [&all](const std::vector<Measurement> &more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
   if (const Process *const process = parameters.process())
-    append(process->measurements());
-  for (const auto &[name, observable] : observable_list)
-    append(observable->measurements());
+    all = process->measurements();
+  const std::vector<Measurement> more = outputs.measurements();
+  all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
 std::vector<ObservableDescription> Simulation::described_observables() const
 {
   std::vector<ObservableDescription> all;
-  const auto append = [&all](const std::vector<ObservableDescription> &more) {
-    all.insert(all.end(), more.begin(), more.end());
-  };
   if (const Process *const process = parameters.process())
-    append(process->observables());
-  for (const auto &[name, observable] : observable_list)
-    append(observable->descriptions());
+    all = process->observables();
+  const std::vector<ObservableDescription> more = outputs.descriptions();
+  all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
@@ -67,7 +74,7 @@ void Simulation::write_measurements()
     text += m.observable + "," + std::to_string(m.index) + "," + value + "," + units[m.observable] +
             "\n";
   }
-  output.write("measurements.csv", text);
+  outputs.folder.write("measurements.csv", text);
 }
 
 } // namespace eunoe

@@ -102,13 +102,6 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
                   "al. (2011) use the contact point.");
   declare::choice(prm, "integration method", integration_method, "velocity_verlet|explicit_euler",
                   "Time integration.");
-  declare::choice(prm, "lost particles", lost_particles, "stop|remove|ignore",
-                  "What happens when a particle has left the mesh other than through an outlet, or "
-                  "is not a number any more: the run stops, or the particle is taken out and "
-                  "counted, with or without a warning.");
-  declare::positive(prm, "largest overlap", largest_overlap,
-                    "Overlap over the radius of the smaller particle above which the run stops, as "
-                    "no contact law holds there; 0: never.");
   prm.add_action("epsd inertia", [this](const std::string &value) {
     options.epsd_inertia_about_contact = value == "contact point";
   });
@@ -119,29 +112,6 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
                     "Gap at which the force between two charged particles has fallen to zero, over "
                     "the largest radius. The larger, the longer the lists of pairs.");
   prm.leave_subsection();
-
-  prm.enter_subsection("contact detection");
-  declare::choice(prm, "contact detection method", detection_method, "constant|dynamic",
-                  "Search for pairs every so many steps, or when a particle has moved too far.");
-  declare::count(prm, "frequency", detection_frequency,
-                 "Steps between searches (constant) or between looks at the displacement "
-                 "(dynamic).",
-                 1);
-  prm.add_parameter("dynamic contact search size coefficient", displacement_share,
-                    "Share of the safe displacement after which the search is repeated.",
-                    declare::Patterns::Double(1e-3, 1.));
-  prm.add_parameter("neighborhood threshold", neighborhood_threshold,
-                    "The search lists pairs with gaps up to (threshold - 1) times the largest "
-                    "diameter. Larger: longer lists, fewer searches.",
-                    declare::Patterns::Double(1.));
-  prm.leave_subsection();
-
-  prm.enter_subsection("contact history");
-  declare::count(prm, "forget interval", forget_interval,
-                 "Steps after which every contact forgets what it remembers (slip, rolling, "
-                 "bridges), as in programs that lose it when they share out the work anew: for "
-                 "studies of what that changes. 0: never.");
-  prm.leave_subsection();
   prm.leave_subsection();
 }
 
@@ -151,9 +121,6 @@ void ModelParameters::check(const ParameterCheck &check) const
   check.require(wall_method == model.wall_name, {section}, "particle wall contact force method",
                 "is '" + wall_method + "' while particles use '" + contact_method + "'.",
                 "Walls take the laws of the particles: set it to '" + model.wall_name + "'.");
-  check.require(neighborhood_threshold > 1., {section, "contact detection"},
-                "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
-                "Give a value above 1, for example 1.1.");
   const ParameterCheck::Path bridges = {section, capillary_section};
   check.require(options.contact_angle < 90., bridges, "contact angle",
                 "is " + format(options.contact_angle) + " degrees.",

@@ -1,13 +1,11 @@
+// What a simulation is made of, and how it goes through time.
+
 #include <eunoe/core/files.h>
-#include <eunoe/core/stop_request.h>
+#include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
 
 #include "announcements.h"
 #include "judgements.h"
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace eunoe {
 
@@ -55,136 +53,156 @@ Background background_of(const Parameters &parameters, const bool is_check, Log 
   return background;
 }
 
-} // namespace
-
-Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const Purpose purpose)
-    : parameters(prepare(parameters_)), comm(comm), log(log), start_of_run(MPI_Wtime()),
-      insertion(make_insertion(parameters, comm, log)),
-      largest_diameter(insertion ? insertion->largest_diameter()
-                                 : parameters.physics.largest_diameter()),
-      skin(parameters.model.skin(largest_diameter)),
-      domain(background_of(parameters, purpose == Purpose::check, log), parameters.boundaries,
-             parameters.physics.wall_material(), comm),
-      model(parameters.contact_model(largest_diameter)),
-      guard(domain, model.get_materials(), parameters.model.largest_overlap),
-      fields(make_fields(parameters)),
-      sparse(parameters.sparse_contacts, fields, parameters.control.time_step),
-      ledger(domain.outlets()), system(domain, model, n_components(fields), sparse.flag(), skin,
-                                       largest_diameter, ledger, timers),
-      integrator(integrators().make(parameters.model.integration_method)),
-      output(parameters.control.output_path, comm),
-      checkpoints(parameters.control.output_path, parameters.restart.filename,
-                  parameters.restart.keep, comm),
-      allowed_displacement(parameters.model.displacement_share * skin)
+std::vector<std::unique_ptr<Load>> make_loads(const Parameters &parameters)
 {
-  Problems problems;
-  check_domain(domain, parameters, largest_diameter + skin + model.range(), problems);
-  if (insertion) {
-    check_places(domain, insertion->known_places(), comm, problems);
-    insertion->check(domain, problems);
-  }
-  const int wall = parameters.physics.wall_material();
-  solids = domain.walls();
-  const auto append = [this](const std::vector<Solid> &more) {
-    solids.insert(solids.end(), more.begin(), more.end());
-  };
-  append(parameters.floating_walls.make(wall));
-  append(parameters.solids.make(wall, parameters.control.time_step, comm, problems));
-  find_checkpoint(problems);
-  if (!problems.empty())
-    throw UserError(problems);
-  if (Process *const process = parameters.process()) {
-    const std::size_t n_given = solids.size();
-    append(process->make_solids(parameters));
-    check_crossings(solids, n_given, problems);
-  }
-  give_materials(solids, parameters.physics, problems);
-  std::vector<double> defaults;
-  for (const ParticleField &field : fields)
-    defaults.insert(defaults.end(), field.n_components, field.initial);
-  system.set_extra_defaults(defaults);
-  if (!problems.empty())
-    throw UserError(problems);
-  solid_loads.resize(solids.size());
+  std::vector<std::unique_ptr<Load>> loads;
   for (const auto &[name, section] : parameters.loads)
     if (auto load = section->make(parameters.physics))
       loads.push_back(std::move(load));
+  return loads;
+}
+
+double largest_diameter(const Parameters &parameters, const Inserter &inserter)
+{
+  return inserter.get_method() != nullptr ? inserter.get_method()->largest_diameter()
+                                          : parameters.physics.largest_diameter();
+}
+
+double skin(const Parameters &parameters, const Inserter &inserter)
+{
+  return parameters.detection.skin(largest_diameter(parameters, inserter));
+}
+
+ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter,
+                           const Sleeper &sleeper)
+{
+  return {parameters.contact_model(largest_diameter(parameters, inserter)), make_loads(parameters),
+          make_fields(parameters), sleeper.get().flag()};
+}
+
+} // namespace
+
+Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const Purpose purpose)
+    : parameters(prepare(parameters_)), log(log), progress(log, parameters.control.log_frequency),
+      inserter(parameters.insertion, make_insertion(parameters, comm, log)),
+      domain(background_of(parameters, purpose == Purpose::check, log), parameters.boundaries,
+             parameters.physics.wall_material(), comm),
+      clock(parameters.control.time_step, parameters.control.n_steps()),
+      sleeper(parameters.sparse_contacts, make_fields(parameters), clock.time_step()),
+      system(domain, physics_of(parameters, inserter, sleeper), skin(parameters, inserter),
+             largest_diameter(parameters, inserter), progress.timers),
+      integrator(integrators().make(parameters.model.integration_method)),
+      criterion(parameters.detection, skin(parameters, inserter), comm),
+      balancer(parameters.load_balancing),
+      // Two bodies must not come closer by more than the skin without a search; half of it is the
+      // way of each.
+      guard(parameters.faults, domain, system.contact_model().get_materials(),
+            0.5 * skin(parameters, inserter), clock.time_step()),
+      checkpoints(parameters.restart, parameters.control.output_path, comm),
+      outputs(parameters.control, progress.timers, comm)
+{
+  Problems problems;
+  check_domain(domain, parameters,
+               largest_diameter(parameters, inserter) + skin(parameters, inserter) +
+                   system.contact_model().range(),
+               problems);
+  if (const Insertion *const method = inserter.get_method()) {
+    check_places(domain, method->known_places(), comm, problems);
+    method->check(domain, problems);
+  }
+  std::vector<Solid> all = given_solids(problems);
+  checkpoints.find(parameters.as_input_file(), parameters.control.n_steps(), log, problems);
+  if (!problems.empty())
+    throw UserError(problems);
+  if (Process *const process = parameters.process()) {
+    const std::size_t n_given = all.size();
+    const std::vector<Solid> more = process->make_solids(parameters);
+    all.insert(all.end(), more.begin(), more.end());
+    check_crossings(all, n_given, problems);
+  }
+  give_materials(all, parameters.physics, problems);
+  if (!problems.empty())
+    throw UserError(problems);
+  solids.take(std::move(all));
   // A trial without a folder finds what is wrong with them before anything is written.
   for (const auto &[name, section] : parameters.observables)
     section->make(*this);
 }
 
+Simulation::~Simulation() = default;
+
+/// Walls of the domain and solids of the input.
+std::vector<Solid> Simulation::given_solids(Problems &problems) const
+{
+  const int wall = parameters.physics.wall_material();
+  std::vector<Solid> all = domain.walls();
+  for (const std::vector<Solid> &more :
+       {parameters.floating_walls.make(wall),
+        parameters.solids.make(wall, clock.time_step(), communicator(), problems)})
+    all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
 RunEstimate Simulation::estimate() const
 {
-  if (!insertion)
+  const Insertion *const method = inserter.get_method();
+  if (method == nullptr)
     return parameters.process()->estimate(parameters);
   RunEstimate estimate;
   estimate.steps = static_cast<double>(parameters.control.n_steps());
-  estimate.most_particles = static_cast<double>(insertion->supply(number_of_events(parameters)));
+  estimate.most_particles = static_cast<double>(method->supply(number_of_events(parameters)));
   estimate.particles = estimate.most_particles;
   return estimate;
 }
 
 void Simulation::open_output()
 {
-  output.open();
+  if (checkpoints.opened() == nullptr)
+    outputs.open(nullptr);
+  else
+    checkpoints.understand(
+        [this](const nlohmann::ordered_json &head) { outputs.open(&head.at("outputs")); });
   int rank;
-  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_rank(communicator(), &rank);
   if (rank == 0)
     // One of an earlier run would make this one look finished.
-    remove_file(output.file("summary.json"));
-  if (checkpoint)
-    resume_output();
-  particle_pictures = output.pictures(parameters.control.output_name);
-  solid_pictures = output.pictures(parameters.control.output_name + "_solids");
+    remove_file(outputs.folder.file("summary.json"));
   make_observables();
 }
 
 void Simulation::make_observables()
 {
-  for (const auto &[name, section] : parameters.observables)
-    if (auto observable = section->make(*this))
-      observable_list[name] = std::move(observable);
-}
-
-Simulation::~Simulation() = default;
-
-int Simulation::find_solid(const std::string &name) const
-{
-  const auto it =
-      std::find_if(solids.begin(), solids.end(), [&](const Solid &s) { return s.name == name; });
-  return it == solids.end() ? -1 : static_cast<int>(it - solids.begin());
+  outputs.make_observables(parameters.observables, *this);
 }
 
 bool Simulation::run(const std::function<void(Simulation &)> &look)
 {
-  if (!output.is_open() && observable_list.empty())
+  if (!outputs.folder.is_open() && !outputs.has_observables())
     make_observables();
-  print_overview();
-  if (parameters.restart.checkpoint)
-    stop_request::listen();
-  if (checkpoint)
+  int n_ranks;
+  MPI_Comm_size(communicator(), &n_ranks);
+  log.line("Eunoe " + std::string(version()) + " on " + format_count(n_ranks, "rank", "ranks"));
+  outputs.folder.write("used.prm", parameters.as_input_file());
+  checkpoints.begin();
+  if (checkpoints.opened() != nullptr)
     resume();
   else
     start();
-  last_checkpoint = MPI_Wtime();
   if (look)
     look(*this);
-  timers = Timers();
-  const double start_of_loop = MPI_Wtime();
-  while (!finished() && !stopped) {
+  progress.begin_loop();
+  while (!finished() && !checkpoints.is_stopped()) {
     advance();
     do_what_is_due();
     if (look)
       look(*this);
     checkpoint_if_due();
   }
-  loop_seconds = MPI_Wtime() - start_of_loop;
+  progress.end_loop();
   complete_step();
-  if (stopped)
+  if (checkpoints.is_stopped())
     return false;
-  for (const auto &[name, observable] : observable_list)
-    observable->finish(*this);
+  outputs.finish(*this);
   report_progress(true);
   write_measurements();
   write_summary();
@@ -197,188 +215,132 @@ void Simulation::start()
   if (parameters.process() != nullptr)
     parameters.process()->start(*this);
   else
-    exchange({}, {});
+    insert_and_remove({}, {});
   do_what_is_due();
 }
 
-/// The time step.
 void Simulation::advance()
 {
-  const double dt = parameters.control.time_step;
-  ++step;
-  present_time = static_cast<double>(step) * dt;
+  clock.advance();
   move_solids();
 
   double moved2;
   {
-    const Timers::Scope scope(timers, Section::integration);
-    moved2 = integrator->begin_step(system.particles, dt);
+    const Timers::Scope scope(progress.timers, Section::integration);
+    moved2 = integrator->begin_step(system.particles, clock.time_step());
   }
-  ask_for_search(moved2);
-  const bool look_is_due =
-      sparse.is_enabled() && (step % sparse.frequency() == 0 || solid_starts());
+  // Sleepers stay where they have drifted to. Where it is no number, it stays none.
+  if (moved2 < system.particles.sleepers_moved2)
+    moved2 = system.particles.sleepers_moved2;
+  criterion.ask(clock.step(), moved2);
+  const bool look_is_due = sleeper.is_look_due(clock, solids.list());
   if (!look_is_due) {
     // While the answers of all ranks come; in vain if they want a search.
-    const Timers::Scope scope(timers, Section::ghosts);
+    const Timers::Scope scope(progress.timers, Section::ghosts);
     system.update_ghosts();
   }
-  const bool searches = search_is_due();
-  const bool looks = look_is_due || (sparse.is_enabled() && searches);
-  if (searches) {
-    const Timers::Scope scope(timers, Section::search);
-    const std::vector<std::size_t> lost = inspect();
-    if (sparse.is_enabled())
-      system.stir_around_leaving(sparse, lost, step);
-    system.search(solids, balance_if_due(), lost);
-    for (std::size_t s = 0; s < solids.size(); ++s)
-      solids_at_search[s] = solids[s].state;
-    domain.keep_pose();
-    n_particles = system.n_global();
-  }
-  if (looks)
+  const bool searches = criterion.is_due(solids);
+  if (searches)
+    search();
+  if (look_is_due || (sleeper.is_enabled() && searches))
     update_sleep(false);
 
-  if (parameters.model.forgets_at(step))
+  if (parameters.contact_history.forgets_at(clock.step()))
     system.forget_contacts();
-  compute_forces(dt);
+  compute_forces();
   integrator->end_step();
-  particle_steps += static_cast<double>(n_particles);
-  sleeping_steps += static_cast<double>(system.particles.n_owned - system.particles.n_awake());
+  progress.count_step(system.n_global(), system.particles.n_owned - system.particles.n_awake());
 }
 
 void Simulation::move_solids()
 {
-  domain.move_to(present_time);
-  for (Solid &solid : solids)
-    solid.state = solid.motion->at(present_time);
+  domain.move_to(clock.time());
+  solids.move_to(clock.time());
 }
 
-void Simulation::compute_forces(const double dt)
+void Simulation::search()
 {
-  {
-    const Timers::Scope scope(timers, Section::loads);
-    for (const auto &load : loads)
-      load->add(system.particles, present_time);
-  }
+  const Timers::Scope scope(progress.timers, Section::search);
+  const std::vector<std::size_t> lost = inspect();
+  if (sleeper.is_enabled())
+    system.stir_around_leaving(sleeper.get(), lost, clock.step());
+  const auto imbalance = [this] { return system.imbalance(parameters.load_balancing); };
+  system.search(solids.list(), balancer.at_search(clock.step(), imbalance), lost);
+  note_search();
+}
+
+void Simulation::note_search()
+{
+  solids.note_search();
+  domain.note_search();
+}
+
+void Simulation::update_sleep(const bool wake_all)
+{
+  const Timers::Scope scope(progress.timers, Section::sleep);
+  system.update_sleep(sleeper.get(), sleeper.look(clock, solids.list(), system.loads(), wake_all));
+}
+
+void Simulation::compute_forces()
+{
   const Process *const process = parameters.process();
-  const bool wanted =
-      (process != nullptr && process->wants_solid_loads(step)) ||
-      std::any_of(observable_list.begin(), observable_list.end(),
-                  [this](const auto &entry) { return entry.second->wants_solid_loads(step); });
-  if (wanted)
-    solid_loads.assign(solids.size(), SolidLoad());
-  system.add_contact_forces(solids, present_time, dt, wanted ? &solid_loads : nullptr);
+  const bool wanted = (process != nullptr && process->wants_solid_loads(clock.step())) ||
+                      outputs.want_solid_loads(clock.step());
+  system.add_forces(solids.list(), clock.time(), clock.time_step(),
+                    wanted ? &solids.new_loads() : nullptr);
 }
 
-/// Asks how far particles have moved on any rank since the last search.
-/// @param moved2 square of the largest displacement of those who are awake on this one (m2)
-void Simulation::ask_for_search(double moved2)
+void Simulation::insert_and_remove(const Delivery &delivery,
+                                   const std::vector<std::size_t> &removed)
 {
-  // Sleepers stay where they have drifted to. Where it is no number, it stays none.
-  if (moved2 < system.particles.sleepers_moved2)
-    moved2 = system.particles.sleepers_moved2;
-  const ModelParameters &p = parameters.model;
-  largest_displacement = 0.;
-  if (step % p.detection_frequency != 0)
-    return;
-  // How the largest over ranks treats what is no number depends on the MPI.
-  if (p.detection_method == "constant" || std::isnan(moved2))
-    largest_displacement = std::numeric_limits<double>::infinity();
-  else
-    largest_displacement = std::sqrt(moved2);
-  MPI_Iallreduce(MPI_IN_PLACE, &largest_displacement, 1, MPI_DOUBLE, MPI_MAX, comm, &answer);
-}
-
-bool Simulation::search_is_due()
-{
-  if (answer == MPI_REQUEST_NULL)
-    return false;
-  MPI_Wait(&answer, MPI_STATUS_IGNORE);
-  double solid_moved = 0.;
-  for (std::size_t s = 0; s < solids.size(); ++s)
-    solid_moved =
-        std::max(solid_moved, displacement(solids[s], solids_at_search[s], solids[s].state));
-  const double moved = largest_displacement;
-  return !(moved + std::max(moved, solid_moved) <= allowed_displacement);
-}
-
-const LoadBalancingParameters *Simulation::balance_if_due()
-{
-  const LoadBalancingParameters &p = parameters.load_balancing;
-  bool due = false;
-  if (p.method == "once")
-    due = !balanced_once && step >= p.step;
-  else if (p.method == "frequent")
-    due = step >= last_balance + p.frequency;
-  else if (p.method == "dynamic" && step >= last_balance + p.check_frequency) {
-    last_balance = step;
-    due = system.imbalance(p) > p.threshold;
+  complete_step();
+  const std::vector<std::size_t> lost = inspect();
+  ParticleId first_new;
+  {
+    const Timers::Scope scope(progress.timers, Section::search);
+    first_new = system.insert_and_remove(delivery, removed, lost, solids.list());
+    // The mesh was shared out before there were particles. This changes no result.
+    const LoadBalancingParameters *const balance =
+        clock.step() == 0 ? balancer.at_start(system.imbalance(parameters.load_balancing))
+                          : nullptr;
+    if (balance != nullptr)
+      system.search(solids.list(), balance);
   }
-  if (!due)
-    return nullptr;
-  balanced_once = true;
-  last_balance = step;
-  return &p;
+  note_search();
+  if (sleeper.is_enabled())
+    update_sleep(true);
+  system.start_forces_on_new(first_new, solids.list(), clock.time());
 }
 
-const ParticleArrays &Simulation::complete_step()
-{
-  integrator->complete(system.particles, parameters.control.time_step);
-  return system.particles;
-}
-
-ParticleArrays &Simulation::changeable_particles()
-{
-  complete_step();
-  return system.particles;
-}
-
-void Simulation::write_pictures(PictureSeries &series)
-{
-  complete_step();
-  const Timers::Scope scope(timers, Section::output);
-  std::vector<PictureField> more;
-  for (const auto &[name, observable] : observable_list)
-    for (PictureField &field : observable->fields(*this))
-      more.push_back(std::move(field));
-  series.write(present_time, system.particles, fields, more);
-}
-
-/// What happens between two steps, at the present time.
 void Simulation::do_what_is_due()
 {
-  insert_if_due();
+  if (inserter.is_due(clock.step())) {
+    const Inserter::Event event =
+        inserter.next_event(domain, system.particles, solids.list(), clock.time());
+    insert_and_remove(event.delivery, event.removed);
+  }
   if (parameters.process() != nullptr) {
-    const Timers::Scope scope(timers, Section::process);
+    const Timers::Scope scope(progress.timers, Section::process);
     parameters.process()->step(*this);
   }
-  for (const auto &[name, observable] : observable_list)
-    observable->step(*this);
-
-  const ControlParameters &control = parameters.control;
-  const double half_step = 0.5 * control.time_step;
-  const bool output_due =
-      control.output_control == "time"
-          ? present_time >= next_output - half_step
-          : control.output_frequency > 0 && step % control.output_frequency == 0;
-  const bool in_window = present_time >= control.output_window[0] - half_step &&
-                         present_time <= control.output_window[1] + half_step;
-  if (output_due)
-    next_output += control.output_time;
-  if (output_due && in_window && output.is_open()) {
-    write_pictures(*particle_pictures);
-    const Timers::Scope scope(timers, Section::output);
-    solid_pictures->write(present_time, solids);
-    for (const auto &[name, observable] : observable_list)
-      observable->draw(*this);
-  }
+  outputs.step(*this);
+  if (outputs.are_pictures_due(clock))
+    outputs.draw(*this);
   report_progress(false);
 }
 
 bool Simulation::finished() const
 {
-  return step >= parameters.control.n_steps() ||
-         (parameters.process() != nullptr && parameters.process()->finished());
+  return clock.is_at_end() || (parameters.process() != nullptr && parameters.process()->finished());
+}
+
+void Simulation::report_progress(const bool at_end)
+{
+  if (!progress.is_report_due(clock.step(), at_end))
+    return;
+  const Process *const process = parameters.process();
+  const double share = process == nullptr ? clock.share() : at_end ? 1. : process->progress(*this);
+  progress.report(clock, system.n_global(), share, process == nullptr ? "" : process->stage());
 }
 
 } // namespace eunoe

@@ -6,7 +6,7 @@ import json
 import struct
 from typing import Callable
 
-TITLE = b"Eunoe checkpoint 2\n"
+TITLE = b"Eunoe checkpoint 3\n"
 
 
 def checksum(data: bytes) -> int:
@@ -47,8 +47,15 @@ def forged(data: bytes, change: Callable[[dict, list], None]) -> bytes:
     return assembled(json.dumps(head, separators=(",", ":")).encode(), sections)
 
 
-def set_head(name: str, value) -> Callable[[dict, list], None]:
-    return lambda head, rows: head.__setitem__(name, value)
+def set_head(path: str, value) -> Callable[[dict, list], None]:
+    """@param path names of the keys from the outermost on, "insertion/next_id" """
+    *outer, name = path.split("/")
+
+    def change(head: dict, rows: list) -> None:
+        for key in outer:
+            head = head[key]
+        head[name] = value
+    return change
 
 
 def set_number(place: int, value: float) -> Callable[[dict, list], None]:
@@ -75,7 +82,7 @@ def claim(name: str, number: int) -> Callable[[dict, list], None]:
 
 
 def wrong_words(head: dict, rows: list) -> None:
-    head["inserted"]["mass"] = [1, 0, 2**63 - 1, 2**63 - 1]
+    head["ledger"]["inserted"]["mass"] = [1, 0, 2**63 - 1, 2**63 - 1]
 
 
 NO_HEAD = "is damaged: its head is not understood."
@@ -87,14 +94,14 @@ FORGERIES = (
     ("values that wrap around", claim("values", 2**61), "its sections do not fit into it."),
     ("half a row", claim("rows", 0.5), NO_HEAD),
     ("fewer rows", claim("rows", 0), "its sections do not fill it."),
-    ("no step", lambda head, rows: head.pop("step"), "its head lacks what the case needs."),
-    ("half a step", set_head("step", 0.5), NO_NUMBER),
-    ("a step far away", set_head("step", 10**18), "is of step 1000000000000000000, and the run ends"),
+    ("no step", lambda head, rows: head["clock"].pop("step"), "its head lacks what the case needs."),
+    ("half a step", set_head("clock/step", 0.5), NO_NUMBER),
+    ("a step far away", set_head("clock/step", 10**18), "is of step 1000000000000000000, and the run ends"),
     ("no input", set_head("input", None), "it does not hold the input of its run."),
-    ("no tally", set_head("lost", []), "its head lacks what the case needs."),
+    ("no tally", set_head("ledger/lost", []), "its head lacks what the case needs."),
     ("a sum that overflows", wrong_words, NO_NUMBER),
-    ("ids that run over", set_head("next_id", 2**32), NO_NUMBER),
-    ("no pictures", set_head("output", {}), "its head lacks what the case needs."),
+    ("ids that run over", set_head("insertion/next_id", 2**32), NO_NUMBER),
+    ("no pictures", set_head("outputs", {}), "its head lacks what the case needs."),
     ("an id", set_number(0, -1.), NOT_OF_CASE),
     ("a type", set_number(1, 1.), NOT_OF_CASE),
     ("a radius", set_number(2, float("nan")), NOT_OF_CASE),

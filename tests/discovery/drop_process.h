@@ -62,7 +62,7 @@ public:
   {
     const ParticleType &type = simulation.get_parameters().physics.types[0];
     const auto sizes = type.sizes.make();
-    const ParticleId first = simulation.particle_ids().take(n_particles);
+    const ParticleId first = simulation.take_ids(n_particles);
     const auto [begin, end] = share_of(n_particles, simulation.communicator());
     Delivery delivery;
     for (std::size_t k = begin; k < end; ++k) {
@@ -78,7 +78,7 @@ public:
                            -5e-3 + place(k / 4 % 4, 2)};
       delivery.particles.push_back(particle);
     }
-    simulation.exchange(delivery, {});
+    simulation.insert_and_remove(delivery, {});
   }
 
   void step(Simulation &simulation) override

@@ -31,7 +31,7 @@ def continued(begun: Case, folder: Path, next_id: int) -> Case:
     case = Case(begun.program, CASE, folder, [])
     shutil.copytree(begun.results, case.results)
     checkpoint = case.results / "restart_000000000010.checkpoint"
-    checkpoint.write_bytes(forged(checkpoint.read_bytes(), set_head("next_id", next_id)))
+    checkpoint.write_bytes(forged(checkpoint.read_bytes(), set_head("insertion/next_id", next_id)))
     return case
 
 

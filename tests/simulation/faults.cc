@@ -128,18 +128,17 @@ void test_insertion()
 /// Inserts a particle with an id of more than 31 bits at step 10.
 void insert_late(Simulation &simulation, const Vec3 &velocity)
 {
-  ParticleIds &ids = simulation.particle_ids();
-  ids.take((1u << 31) + 5 - ids.next());
+  simulation.take_ids((1u << 31) + 5 - simulation.particle_ids().next());
   Delivery delivery;
   NewParticle guest;
-  guest.id = ids.take(1);
+  guest.id = simulation.take_ids(1);
   guest.radius = 0.5e-3;
   guest.mass = sphere_mass(guest.radius, 1000.);
   guest.position = {0., 0., -5e-3};
   guest.velocity = velocity;
   if (is_first_rank())
     delivery.particles.push_back(guest);
-  simulation.exchange(delivery, {});
+  simulation.insert_and_remove(delivery, {});
 }
 
 void test_large_ids()
@@ -163,9 +162,8 @@ void test_large_ids()
   std::string message;
   try {
     test_case.run([](Simulation &simulation) {
-      ParticleIds &ids = simulation.particle_ids();
       if (simulation.step_number() == 15)
-        ids.take(ParticleIds::last - ids.next() - 2);
+        simulation.take_ids(ParticleIds::last - simulation.particle_ids().next() - 2);
     });
   } catch (const UserError &error) {
     message = error.what();

@@ -35,13 +35,13 @@ int main(int argc, char **argv)
     if (simulation.step_number() != 50)
       return;
     NewParticle guest;
-    guest.id = simulation.particle_ids().take(1);
+    guest.id = simulation.take_ids(1);
     guest.radius = 0.5e-3;
     guest.mass = sphere_mass(guest.radius, scene.density);
     guest.position = {5e-3, 5e-3, 5e-3};
     Delivery delivery;
     delivery.particles.push_back(guest);
-    simulation.exchange(delivery, {});
+    simulation.insert_and_remove(delivery, {});
   });
   check("one more in the end", disturbed.size() == 3 && undisturbed.size() == 2);
   for (std::size_t k = 0; k < 2; ++k)

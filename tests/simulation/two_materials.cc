@@ -69,10 +69,10 @@ int main(int argc, char **argv)
       if (simulation.step_number() == 0) {
         Delivery delivery;
         delivery.particles = {guest};
-        delivery.particles[0].id = simulation.particle_ids().take(1);
+        delivery.particles[0].id = simulation.take_ids(1);
         delivery.particles[0].position = start[1].x;
         delivery.particles[0].velocity = start[1].v;
-        simulation.exchange(delivery, {});
+        simulation.insert_and_remove(delivery, {});
       }
       const std::vector<Sphere> now = spheres_of(simulation);
       deepest = std::max(deepest, touching - now[upper].x.z + lower_body(now, lower).x.z);

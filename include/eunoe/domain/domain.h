@@ -6,6 +6,8 @@
 #include <eunoe/solids/placement.h>
 #include <eunoe/solids/solid.h>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <map>
 #include <memory>
 #include <mpi.h>
@@ -141,19 +143,17 @@ public:
   Vec3 to_own_frame(const Vec3 &x) const { return in_frame(pose, x); }
   /// A place of that frame in space.
   Vec3 to_space(const Vec3 &x) const { return motion ? pose.rotation.apply(x) + pose.centre : x; }
-  /// Where the mesh was when `passed_outlet` begins to look.
-  ///@{
-  const RigidState &earlier_pose() const { return earlier; }
-  void set_earlier_pose(const RigidState &state) { earlier = state; }
-  void keep_pose() { earlier = pose; }
+  /// Notes that contacts are searched with the mesh where it is; from there `passed_outlet` looks.
+  void note_search() { earlier = pose; }
+  /// Where it was at the last search; null for a mesh at rest.
+  nlohmann::ordered_json save() const;
   /// Takes the mesh back there.
-  void return_to_earlier_pose() { pose = earlier; }
-  ///@}
+  void load(const nlohmann::ordered_json &saved);
 
   /// Whether a position lies in the mesh; in periodic directions every one does.
   bool contains(const Vec3 &x) const;
-  /// The outlet through which a particle has left on its straight way from one place, at the
-  /// earlier pose of the mesh, to another, -1 if it has left through none.
+  /// The outlet through which a particle has left on its straight way from one place, at the last
+  /// search, to another, -1 if it has left through none.
   int passed_outlet(const Vec3 &from, const Vec3 &x) const;
   /// Smallest distance of two cells that do not touch (m); of boxes, their smallest width.
   double smallest_cell_width() const { return cell_width; }

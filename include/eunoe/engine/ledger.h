@@ -2,9 +2,11 @@
 #define eunoe_engine_ledger_h
 
 #include <eunoe/core/exact_sum.h>
-#include <eunoe/domain/domain.h>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <cstdint>
+#include <mpi.h>
 #include <vector>
 
 namespace eunoe {
@@ -42,7 +44,12 @@ struct Tally
 /// number and, without any rounding, in mass.
 struct Ledger
 {
-  explicit Ledger(const std::vector<Outlet> &outlets) : through_outlet(outlets.size()) {}
+  explicit Ledger(std::size_t n_outlets) : through_outlet(n_outlets) {}
+
+  /// Of all ranks; collective.
+  nlohmann::ordered_json save(MPI_Comm comm) const;
+  /// Gives what was saved to the first rank.
+  void load(const nlohmann::ordered_json &saved, MPI_Comm comm);
 
   Tally inserted;
   Tally taken_out;                   ///< by a process

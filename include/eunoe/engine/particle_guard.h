@@ -2,12 +2,24 @@
 #define eunoe_engine_particle_guard_h
 
 #include <eunoe/contact/pair_list.h>
+#include <eunoe/core/parameter_section.h>
 #include <eunoe/domain/domain.h>
 #include <eunoe/engine/solid_contacts.h>
 
+#include <functional>
+#include <optional>
 #include <string>
 
 namespace eunoe {
+
+/// What is done about particles that go wrong: entries of `subsection model parameters`.
+struct FaultParameters : public ParameterSection
+{
+  std::string lost_particles = "stop"; ///< stop, remove or ignore
+  double largest_overlap = 0.5;        ///< over the radius of the smaller particle; 0: any
+
+  void declare(dealii::ParameterHandler &prm) override;
+};
 
 /// A particle of which something is wrong.
 struct Fault
@@ -26,28 +38,52 @@ struct Faults
   double stiffest = 0.;
 };
 
-/// Looks for particles that no correct simulation has.
+/// What is done about the faults of all ranks; but for the rows the same on every rank.
+struct Verdict
+{
+  bool stops = false;       ///< the run
+  bool warns = false;       ///< of particles that are taken out
+  std::uint64_t number = 0; ///< of particles for which that is so
+  std::string first;        ///< the one of them with the smallest id, and what is wrong with it
+  std::vector<std::size_t> lost; ///< rows of this rank's lost particles, which are taken out
+};
+
+/// Looks for particles that no correct simulation has, and for contacts that are too stiff.
 class ParticleGuard
 {
 public:
-  /// @param largest_overlap over the radius of the smaller particle; 0: any
-  ParticleGuard(const Domain &domain, const Materials &materials, double largest_overlap);
+  /// Time steps that the half period of a contact should have at least.
+  static constexpr double steps_per_contact = 10.;
 
   /// @param longest_way that a particle may have gone between the last search and the last step (m)
   /// @param dt time step (s)
+  ParticleGuard(const FaultParameters &parameters, const Domain &domain, const Materials &materials,
+                double longest_way, double dt);
+
+  /// What is wrong on this rank.
   Faults inspect(const ParticleArrays &particles, const PairList &pairs,
-                 const SolidContacts &solid_contacts, const std::vector<Solid> &solids,
-                 double longest_way, double dt) const;
+                 const SolidContacts &solid_contacts, const std::vector<Solid> &solids) const;
+
+  /// What is to be done about it; collective.
+  /// @param describe names the particle of a row in words
+  Verdict judge(const Faults &faults, const ParticleArrays &particles,
+                const std::function<std::string(std::size_t)> &describe) const;
+
+  /// Half period of the stiffest contact of all ranks (s) where it is too short for the time step
+  /// and has not been before; collective.
+  std::optional<double> newly_too_short(double stiffest);
 
 private:
   void find_overlaps(const ParticleArrays &particles, const PairList &pairs, Faults &faults) const;
   void find_overlaps(const ParticleArrays &particles, const SolidContacts &solid_contacts,
                      const std::vector<Solid> &solids, Faults &faults) const;
 
+  const FaultParameters &parameters;
   const Domain &domain;
   const Materials &materials;
   const std::vector<double> young_modulus; ///< effective, one a kind of pair
-  const double largest_overlap;
+  const double longest_way, dt;
+  bool found_too_short = false; ///< a half period
 };
 
 /// "particle 7 at (0, 1e-3, 0) m with velocity (0, 0, 1) m/s, which touches particle 9 and ..."

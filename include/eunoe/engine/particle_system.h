@@ -26,19 +26,29 @@ struct Delivery
   bool has_rows = false;
 };
 
+/// What acts on the particles of a run, and what is attached to each.
+struct ParticlePhysics
+{
+  ContactModel model;
+  std::vector<std::unique_ptr<Load>> loads;
+  std::vector<ParticleField> fields;
+  int asleep = -1; ///< place of the sleepers' flag among the extra doubles, -1 if nobody sleeps
+};
+
 /// All particles of a run and their contacts: the store of record, the arrays of the hot loop, the
 /// ghosts, the lists of what can touch, and the search that rebuilds them all.
 class ParticleSystem
 {
 public:
-  /// @param asleep place of the sleepers' flag among the extra doubles, -1 if nobody sleeps
   /// @param skin gap up to which pairs are listed (m)
   /// @param largest_diameter of all particles ever (m)
-  ParticleSystem(Domain &domain, const ContactModel &model, unsigned int n_extra, int asleep,
-                 double skin, double largest_diameter, Ledger &ledger, Timers &timers);
+  ParticleSystem(Domain &domain, ParticlePhysics physics, double skin, double largest_diameter,
+                 Timers &timers);
 
-  /// Sets the initial values of the extra doubles of particles to come.
-  void set_extra_defaults(const std::vector<double> &values) { extra_defaults = values; }
+  const ContactModel &contact_model() const { return physics.model; }
+  const std::vector<std::unique_ptr<Load>> &loads() const { return physics.loads; }
+  const std::vector<ParticleField> &fields() const { return physics.fields; }
+  const Ledger &get_ledger() const { return ledger; }
 
   /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
   /// memory. Particles beyond an outlet leave. Collective.
@@ -47,10 +57,9 @@ public:
               const std::vector<std::size_t> &lost = {});
 
   /// What is wrong with this rank's particles.
-  Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids, double longest_way,
-                 double dt) const
+  Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const
   {
-    return guard.inspect(particles, pairs, solid_contacts, solids, longest_way, dt);
+    return guard.inspect(particles, pairs, solid_contacts, solids);
   }
   std::string describe(std::size_t row, const std::vector<Solid> &solids) const
   {
@@ -62,8 +71,9 @@ public:
   /// @param removed rows of owned particles
   /// @param lost rows of those that are taken out and counted as lost
   /// @return the smallest id of the new particles of all ranks
-  ParticleId exchange(const Delivery &delivery, const std::vector<std::size_t> &removed,
-                      const std::vector<std::size_t> &lost, const std::vector<Solid> &solids);
+  ParticleId insert_and_remove(const Delivery &delivery, const std::vector<std::size_t> &removed,
+                               const std::vector<std::size_t> &lost,
+                               const std::vector<Solid> &solids);
 
   /// Brings the ghosts up to date; collective.
   void update_ghosts() { halo.update(particles); }
@@ -82,22 +92,21 @@ public:
   /// Lets every contact begin anew.
   void forget_contacts();
 
-  /// Adds the forces of all contacts and advances their memory by @p dt (s).
-  /// @param loads if not null: forces on the solids, one a solid
-  void add_contact_forces(const std::vector<Solid> &solids, double time, double dt,
-                          std::vector<SolidLoad> *loads);
+  /// Adds the forces of the loads and of all contacts and advances their memory by @p dt (s).
+  /// @param on_solids if not null: forces on the solids, one a solid
+  void add_forces(const std::vector<Solid> &solids, double time, double dt,
+                  std::vector<SolidLoad> *on_solids);
 
   /// Computes the forces on the owned particles with ids from @p first_new on, which a scheme with
   /// an opening half step needs.
-  void start_forces_on_new(ParticleId first_new, const std::vector<std::unique_ptr<Load>> &loads,
-                           const std::vector<Solid> &solids, double time);
+  void start_forces_on_new(ParticleId first_new, const std::vector<Solid> &solids, double time);
 
   /// What acts at present in all contacts of owned particles. A contact of two ranks is known to
   /// both. Velocities, of ghosts too, must belong to the present time.
   std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time) const;
 
   /// Adds all particles, with what their contacts remember and where they were at the last search,
-  /// to a checkpoint; collective. Velocities must belong to the present time.
+  /// and the ledger to a checkpoint; collective. Velocities must belong to the present time.
   void save(CheckpointWriter &writer) const;
 
   /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
@@ -134,8 +143,7 @@ private:
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
   /// Adds what the loads alone do to the particles of some rows.
-  void add_loads(const std::vector<std::size_t> &rows,
-                 const std::vector<std::unique_ptr<Load>> &loads, double time);
+  void add_loads(const std::vector<std::size_t> &rows, double time);
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
@@ -146,9 +154,10 @@ private:
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
 
   Domain &domain;
+  const ParticlePhysics physics;
   const ContactModel &model;
   const double skin;
-  Ledger &ledger;
+  Ledger ledger;
   Timers &timers;
   ParticleStore store;
   Halo halo;

@@ -3,8 +3,11 @@
 
 #include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/domain/domain.h>
+#include <eunoe/engine/contact_history.h>
 #include <eunoe/engine/load.h>
 #include <eunoe/engine/load_balancing.h>
+#include <eunoe/engine/particle_guard.h>
+#include <eunoe/engine/search_criterion.h>
 #include <eunoe/engine/sparse_contacts.h>
 #include <eunoe/simulation/control_parameters.h>
 #include <eunoe/simulation/insertion.h>
@@ -62,6 +65,9 @@ public:
   PhysicalProperties physics;
   InsertionParameters insertion;
   ModelParameters model;
+  ContactDetectionParameters detection;
+  FaultParameters faults;
+  ContactHistoryParameters contact_history;
   LoadBalancingParameters load_balancing;
   SparseContactParameters sparse_contacts;
   FloatingWallParameters floating_walls;

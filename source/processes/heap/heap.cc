@@ -56,7 +56,7 @@ void Heap::prepare(Parameters &parameters)
   const Apparatus &a = *apparatus;
   parameters.mesh = box_mesh(
       "heap", {-a.half_width, a.y_bottom, -a.half_width}, {a.half_width, a.y_top, a.half_width},
-      largest, parameters.model.skin(largest) + parameters.contact_model(largest).range());
+      largest, parameters.detection.skin(largest) + parameters.contact_model(largest).range());
   parameters.boundaries.conditions.clear();
   for (unsigned int side = 0; side < 6; ++side) {
     BoundaryCondition outlet;

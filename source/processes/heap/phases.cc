@@ -11,7 +11,7 @@ void Heap::fill(Simulation &simulation)
 {
   const ParticleType &type = simulation.get_parameters().physics.types[0];
   const auto sizes = type.sizes.make();
-  const ParticleId first = simulation.particle_ids().take(apparatus->n_particles);
+  const ParticleId first = simulation.take_ids(apparatus->n_particles);
   const auto [begin, end] = share_of(apparatus->n_particles, simulation.communicator());
   Delivery delivery;
   for (std::size_t k = begin; k < end; ++k) {
@@ -23,7 +23,7 @@ void Heap::fill(Simulation &simulation)
     particle.velocity = {0., -p.insertion_speed, 0.};
     delivery.particles.push_back(particle);
   }
-  simulation.exchange(delivery, {});
+  simulation.insert_and_remove(delivery, {});
 }
 
 bool Heap::is_at_rest(Simulation &simulation)

@@ -118,7 +118,7 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
     const double shift = !has_walls ? apparatus.depth * uniform(seed, Draw::feed_copy, draw, 0)
                          : mirrored ? apparatus.depth
                                     : 0.;
-    const ParticleId first = simulation.particle_ids().take(n_global);
+    const ParticleId first = simulation.take_ids(n_global);
     for (std::size_t k = 0; k < particles.size(); ++k) {
       NewParticle particle = particles[k];
       particle.position.y += platform_height + copy * depth;

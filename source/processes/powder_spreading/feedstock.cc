@@ -47,7 +47,7 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
       grid.capacity(),
       static_cast<std::size_t>(loose_excess * bed_particles(parameters, missing)) + 1);
 
-  const ParticleId first = simulation.particle_ids().take(n);
+  const ParticleId first = simulation.take_ids(n);
   const auto [begin, end] = share_of(n, simulation.communicator());
   Delivery delivery;
   for (std::size_t k = begin; k < end; ++k) {
@@ -59,16 +59,16 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
     particle.velocity = {0., -p.insertion_speed, 0.};
     delivery.particles.push_back(particle);
   }
-  simulation.exchange(delivery, {});
+  simulation.insert_and_remove(delivery, {});
   phase_start = simulation.time();
   ++n_fillings;
 }
 
 void PowderSpreading::fill_reservoir(Simulation &simulation, const double platform_height)
 {
-  simulation.exchange(bed.stack(simulation, *apparatus, platform_height, p.seed,
-                                static_cast<unsigned int>(next_feed)),
-                      in_reservoir(simulation.complete_step(), *apparatus));
+  simulation.insert_and_remove(bed.stack(simulation, *apparatus, platform_height, p.seed,
+                                         static_cast<unsigned int>(next_feed)),
+                               in_reservoir(simulation.complete_step(), *apparatus));
 }
 
 bool PowderSpreading::has_settled(Simulation &simulation)
@@ -105,7 +105,7 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
     insert_loose_bed(simulation);
     return;
   }
-  simulation.exchange({}, above);
+  simulation.insert_and_remove({}, above);
   if (phase == Phase::settling_bed) {
     bed.take(simulation, *apparatus, -apparatus->bed_depth);
     simulation.get_log().line("The feedstock bed is at rest after " + format(simulation.time()) +

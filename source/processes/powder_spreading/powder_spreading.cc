@@ -41,7 +41,7 @@ void PowderSpreading::check_with(const Parameters &parameters, const ParameterCh
                 "is " + format(p.depth) + " m, less than two of the largest particles.",
                 "Give a larger depth, 2e-3 in the paper.");
   const double reach =
-      largest + parameters.model.skin(largest) + parameters.contact_model(largest).range();
+      largest + parameters.detection.skin(largest) + parameters.contact_model(largest).range();
   check.require(p.side_walls || p.depth >= 2. * reach || p.depth < 2. * largest, {section}, "depth",
                 "is " + format(p.depth) + " m, less than twice the " + format(reach) +
                     " m that particles can reach (largest diameter, skin and range of cohesion), "
@@ -83,7 +83,7 @@ void PowderSpreading::prepare(Parameters &parameters)
 
   parameters.mesh =
       box_mesh("powder spreading", {0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
-               parameters.model.skin(largest) + parameters.contact_model(largest).range());
+               parameters.detection.skin(largest) + parameters.contact_model(largest).range());
 
   set_boundaries(parameters);
   // The process decides when all is done; this is no more than an upper bound.

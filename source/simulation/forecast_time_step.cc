@@ -13,8 +13,7 @@ namespace {
 constexpr double suspicious_diameter = 0.2;
 /// Share of the Rayleigh time up to which contacts keep their energy.
 constexpr double largest_rayleigh_share = 0.25;
-/// Time steps that the half period of a contact should have at least.
-constexpr double steps_per_contact = 10.;
+constexpr double steps_per_contact = ParticleGuard::steps_per_contact;
 /// Share of the smallest radius that a solid may go in one step, or it jumps into particles.
 constexpr double largest_jump = 0.1;
 /// Steps between two searches below which they cost more than the forces.
@@ -101,32 +100,6 @@ void judge_jump(const double speed, const Parameters &parameters, const double s
                      ", more than a tenth of the " + format(smallest_radius) +
                      " m of the smallest particle's radius, so that it would jump into particles.",
                  mend.empty() ? "Lower the time step or the solid's velocity." : mend);
-}
-
-double Simulation::fastest_wall() const
-{
-  const double dt = parameters.control.time_step;
-  double fastest = parameters.process() != nullptr ? parameters.process()->fastest_solid() : 0.;
-  for (const Solid &wall : domain.walls())
-    fastest = std::max(fastest, displacement(wall, wall.motion->at(0.), wall.motion->at(dt)) / dt);
-  return fastest;
-}
-
-void Simulation::compare_time_step(double stiffest)
-{
-  if (warned_of_stiffness)
-    return;
-  MPI_Allreduce(MPI_IN_PLACE, &stiffest, 1, MPI_DOUBLE, MPI_MAX, comm);
-  const double dt = parameters.control.time_step;
-  const double contact_time =
-      stiffest > 0. ? M_PI / std::sqrt(stiffest) : std::numeric_limits<double>::infinity();
-  if (dt <= contact_time / steps_per_contact)
-    return;
-  log.warning("at t = " + format(present_time) + " s the stiffest contact takes " +
-              format(contact_time) + " s, no more than " + format(contact_time / dt) +
-              " time steps, and may gain energy. At most " +
-              format(contact_time / steps_per_contact) + " s is advised.");
-  warned_of_stiffness = true;
 }
 
 } // namespace eunoe

@@ -1,0 +1,40 @@
+#ifndef eunoe_engine_clock_h
+#define eunoe_engine_clock_h
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace eunoe {
+
+/// The steps of a run and the time that they make.
+class Clock
+{
+public:
+  /// @param time_step (s)
+  /// @param n_steps of the whole run
+  Clock(double time_step, unsigned long long n_steps) : dt(time_step), last(n_steps) {}
+
+  void advance() { ++present; }
+
+  unsigned long long step() const { return present; }
+  double time() const { return static_cast<double>(present) * dt; }
+  double time_step() const { return dt; }
+  /// Whether the last step is done.
+  bool is_at_end() const { return present >= last; }
+  /// Share of the steps that are done.
+  double share() const { return static_cast<double>(present) / static_cast<double>(last); }
+  /// At which this part of the run began.
+  unsigned long long first_step() const { return first; }
+
+  nlohmann::ordered_json save() const;
+  /// Goes on at a step that was saved.
+  void load(const nlohmann::ordered_json &saved);
+
+private:
+  const double dt;
+  const unsigned long long last;
+  unsigned long long present = 0, first = 0;
+};
+
+} // namespace eunoe
+
+#endif

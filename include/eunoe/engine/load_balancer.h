@@ -1,0 +1,43 @@
+#ifndef eunoe_engine_load_balancer_h
+#define eunoe_engine_load_balancer_h
+
+#include <eunoe/engine/load_balancing.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <functional>
+
+namespace eunoe {
+
+/// Decides at which searches the cells are shared out anew over the ranks.
+class LoadBalancer
+{
+public:
+  explicit LoadBalancer(const LoadBalancingParameters &parameters) : parameters(parameters) {}
+
+  /// The parameters if the search of a step shares the cells out anew, else null; collective.
+  /// @param imbalance largest load of a rank less the smallest, over the mean; asked for only where
+  ///                  it decides
+  const LoadBalancingParameters *at_search(unsigned long long step,
+                                           const std::function<double()> &imbalance);
+
+  /// Likewise when the first particles have come.
+  const LoadBalancingParameters *at_start(double imbalance) const
+  {
+    return imbalance > LoadBalancingParameters::threshold_at_start ? &parameters : nullptr;
+  }
+
+  const LoadBalancingParameters &get_parameters() const { return parameters; }
+
+  nlohmann::ordered_json save() const;
+  void load(const nlohmann::ordered_json &saved);
+
+private:
+  const LoadBalancingParameters &parameters;
+  bool balanced_once = false;
+  unsigned long long last_look = 0; ///< step of the last balance or look at the loads
+};
+
+} // namespace eunoe
+
+#endif

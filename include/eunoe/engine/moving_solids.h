@@ -1,0 +1,50 @@
+#ifndef eunoe_engine_moving_solids_h
+#define eunoe_engine_moving_solids_h
+
+#include <eunoe/solids/solid.h>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <mpi.h>
+#include <vector>
+
+namespace eunoe {
+
+/// All solids of a run, walls among them: where they are, where they were when contacts were
+/// searched, and what particles do to them.
+class MovingSolids
+{
+public:
+  /// Takes the solids of a run, once they are all known.
+  void take(std::vector<Solid> &&all);
+
+  const std::vector<Solid> &list() const { return solids; }
+  /// Number of a solid by its name, -1 if there is none.
+  int find(const std::string &name) const;
+
+  void move_to(double time);
+
+  /// Notes that contacts are searched with the solids where they are.
+  void note_search();
+  /// Largest displacement of a point of a solid since (m).
+  double moved_since_search() const;
+
+  /// Where the forces of the coming evaluation are summed, from zero.
+  std::vector<SolidLoad> &new_loads();
+  /// Force and torque on every solid, of all ranks; collective.
+  std::vector<SolidLoad> global_loads(MPI_Comm comm) const;
+
+  /// Where they were at the last search.
+  nlohmann::ordered_json save() const;
+  /// Takes the solids back there.
+  void load(const nlohmann::ordered_json &saved);
+
+private:
+  std::vector<Solid> solids;
+  std::vector<RigidState> at_search;
+  std::vector<SolidLoad> loads;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,59 @@
+#ifndef eunoe_engine_search_criterion_h
+#define eunoe_engine_search_criterion_h
+
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/engine/moving_solids.h>
+
+namespace eunoe {
+
+/// When contacts are searched and how far: `subsection contact detection`.
+struct ContactDetectionParameters : public ParameterSection
+{
+  std::string method = "dynamic"; ///< constant or dynamic
+  unsigned int frequency = 1;
+  double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
+  double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
+
+  /// Gap up to which the search lists pairs (m), for particles of at most @p largest_diameter.
+  double skin(double largest_diameter) const
+  {
+    return (neighborhood_threshold - 1.) * largest_diameter;
+  }
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
+
+/// Decides when two bodies may have come closer than the skin allows, so that contacts must be
+/// searched. All ranks are asked while they do something else.
+class SearchCriterion
+{
+public:
+  /// @param skin gap up to which pairs are listed (m)
+  SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm)
+      : parameters(parameters), allowed(parameters.displacement_share * skin), comm(comm)
+  {
+  }
+
+  /// Largest sum of the displacements of two bodies before the next search (m).
+  double allowed_displacement() const { return allowed; }
+
+  /// Asks how far particles have moved on any rank since the last search; collective.
+  /// @param moved2 square of the largest displacement on this one (m2), no number if one is none
+  void ask(unsigned long long step, double moved2);
+
+  /// Whether a search is due, once all ranks have answered; collective.
+  /// @param solids which have moved, too
+  bool is_due(const MovingSolids &solids);
+
+private:
+  const ContactDetectionParameters &parameters;
+  const double allowed;
+  MPI_Comm comm;
+  double largest = 0.; ///< displacement of a particle since the last search, on any rank (m)
+  MPI_Request answer = MPI_REQUEST_NULL;
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,47 @@
+#ifndef eunoe_engine_sleeper_h
+#define eunoe_engine_sleeper_h
+
+#include <eunoe/engine/clock.h>
+#include <eunoe/engine/load.h>
+#include <eunoe/engine/sparse_contacts.h>
+
+namespace eunoe {
+
+/// Decides when it is looked at who sleeps, and what has stirred outside the particles since the
+/// last look.
+class Sleeper
+{
+public:
+  Sleeper(const SparseContactParameters &parameters, const std::vector<ParticleField> &fields,
+          double time_step)
+      : sparse(parameters, fields, time_step)
+  {
+  }
+
+  bool is_enabled() const { return sparse.is_enabled(); }
+  const SparseContacts &get() const { return sparse; }
+
+  /// Whether it is time for a look, without a search.
+  bool is_look_due(const Clock &clock, const std::vector<Solid> &solids) const;
+
+  /// What has stirred since the last look; this is a look from now on.
+  /// @param wake_all whether particles have come or gone
+  Stirring look(const Clock &clock, const std::vector<Solid> &solids,
+                const std::vector<std::unique_ptr<Load>> &loads, bool wake_all);
+
+  nlohmann::ordered_json save() const;
+  /// @param n_solids number of solids of the run
+  void load(const nlohmann::ordered_json &saved, std::size_t n_solids);
+
+private:
+  /// Whether a solid has begun to move, has come or gone since the last look.
+  bool solid_starts(double time, const std::vector<Solid> &solids) const;
+
+  const SparseContacts sparse;
+  double last_time = 0.;               ///< of the last look (s)
+  std::vector<RigidState> last_states; ///< of the solids then
+};
+
+} // namespace eunoe
+
+#endif

@@ -1,0 +1,18 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/engine/contact_history.h>
+
+namespace eunoe {
+
+void ContactHistoryParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("model parameters");
+  prm.enter_subsection("contact history");
+  declare::count(prm, "forget interval", forget_interval,
+                 "Steps after which every contact forgets what it remembers (slip, rolling, "
+                 "bridges), as in programs that lose it when they share out the work anew: for "
+                 "studies of what that changes. 0: never.");
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+} // namespace eunoe

@@ -1,0 +1,58 @@
+#include <eunoe/core/declare.h>
+#include <eunoe/engine/search_criterion.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eunoe {
+
+void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("model parameters");
+  prm.enter_subsection("contact detection");
+  declare::choice(prm, "contact detection method", method, "constant|dynamic",
+                  "Search for pairs every so many steps, or when a particle has moved too far.");
+  declare::count(prm, "frequency", frequency,
+                 "Steps between searches (constant) or between looks at the displacement "
+                 "(dynamic).",
+                 1);
+  prm.add_parameter("dynamic contact search size coefficient", displacement_share,
+                    "Share of the safe displacement after which the search is repeated.",
+                    declare::Patterns::Double(1e-3, 1.));
+  prm.add_parameter("neighborhood threshold", neighborhood_threshold,
+                    "The search lists pairs with gaps up to (threshold - 1) times the largest "
+                    "diameter. Larger: longer lists, fewer searches.",
+                    declare::Patterns::Double(1.));
+  prm.leave_subsection();
+  prm.leave_subsection();
+}
+
+void ContactDetectionParameters::check(const ParameterCheck &check) const
+{
+  check.require(neighborhood_threshold > 1., {"model parameters", "contact detection"},
+                "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
+                "Give a value above 1, for example 1.1.");
+}
+
+void SearchCriterion::ask(const unsigned long long step, const double moved2)
+{
+  if (step % parameters.frequency != 0)
+    return;
+  // How the largest over ranks treats what is no number depends on the MPI.
+  if (parameters.method == "constant" || std::isnan(moved2))
+    largest = std::numeric_limits<double>::infinity();
+  else
+    largest = std::sqrt(moved2);
+  MPI_Iallreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm, &answer);
+}
+
+bool SearchCriterion::is_due(const MovingSolids &solids)
+{
+  if (answer == MPI_REQUEST_NULL)
+    return false;
+  MPI_Wait(&answer, MPI_STATUS_IGNORE);
+  return !(largest + std::max(largest, solids.moved_since_search()) <= allowed);
+}
+
+} // namespace eunoe
