@@ -1,0 +1,35 @@
+// The clock of a run: steps, their time, the end, and how it goes on from a checkpoint.
+
+#include <eunoe/engine/clock.h>
+
+#include "../tests.h"
+#include <nlohmann/json.hpp>
+
+using namespace test;
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Clock clock(0.1, 5);
+  check("a run of no step is at its end", Clock(0.1, 0).is_at_end());
+  for (unsigned int step = 0; step < 3; ++step)
+    clock.advance();
+  check("time without summed rounding", clock.time() == 3. * 0.1);
+  check("three of five steps", clock.step() == 3 && clock.share() == 0.6 && !clock.is_at_end());
+
+  Clock continued(0.1, 5);
+  continued.load(clock.save());
+  check("it goes on", continued.step() == 3 && continued.time() == clock.time());
+  check("this part began there", continued.first_step() == 3 && clock.first_step() == 0);
+  continued.advance();
+  continued.advance();
+  check("the end", continued.is_at_end() && continued.first_step() == 3);
+
+  bool refused = false;
+  try {
+    continued.load({{"step", 0.5}, {"other", 1}});
+  } catch (const std::invalid_argument &) {
+    refused = true;
+  }
+  check("half a step is refused", refused);
+}

@@ -1,0 +1,70 @@
+// When the regular pictures are due, by steps and by time and within a window, also after a
+// restart.
+
+#include <eunoe/simulation/outputs.h>
+
+#include "../tests.h"
+#include <nlohmann/json.hpp>
+
+using namespace test;
+
+namespace {
+
+ControlParameters control()
+{
+  ControlParameters c;
+  c.output_path = "outputs_of_test";
+  return c;
+}
+
+/// Steps of 0.1 s of which there are pictures.
+/// @param restart step after which another one goes on, from what this one saves
+std::string pictures(const ControlParameters &c, unsigned long long restart = 0)
+{
+  Timers timers;
+  auto outputs = std::make_unique<Outputs>(c, timers, MPI_COMM_WORLD);
+  outputs->open(nullptr);
+  Clock clock(0.1, 100);
+  std::string steps;
+  while (true) {
+    if (outputs->are_pictures_due(clock))
+      steps += " " + std::to_string(clock.step());
+    if (clock.step() == 20)
+      return steps;
+    if (restart > 0 && clock.step() == restart) {
+      const auto saved = nlohmann::ordered_json::parse(outputs->save().dump());
+      outputs = std::make_unique<Outputs>(c, timers, MPI_COMM_WORLD);
+      outputs->open(&saved);
+      outputs->load(saved);
+    }
+    clock.advance();
+  }
+}
+
+void expect(const std::string &name, const std::string &found, const std::string &expected)
+{
+  check(name, found == expected, "at" + found);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  ControlParameters c = control();
+  expect("none", pictures(c), "");
+  c.output_frequency = 7;
+  expect("by steps", pictures(c), " 0 7 14");
+  c.output_window = {0.65, 1.35};
+  expect("within the window, half a step wider", pictures(c), " 7");
+  c = control();
+  c.output_control = "time";
+  c.output_time = 0.5;
+  expect("by time", pictures(c), " 0 5 10 15 20");
+  expect("by time, restarted", pictures(c, 7), " 0 5 10 15 20");
+  c.output_window = {0.9, 1e308};
+  expect("by time, from a moment on", pictures(c), " 10 15 20");
+  Timers timers;
+  Outputs closed(c, timers, MPI_COMM_WORLD);
+  check("none without a folder", !closed.are_pictures_due(Clock(0.1, 100)));
+}

@@ -1,0 +1,88 @@
+// What is done about particles that go wrong, decided by all ranks together, and the warning of
+// contacts that are too stiff.
+// Reference: half period of an oscillator, pi over the root of stiffness over mass.
+
+#include <eunoe/engine/particle_guard.h>
+
+#include "../tests.h"
+
+using namespace test;
+
+namespace {
+
+constexpr double dt = 1e-3;
+
+/// Verdict on the particles 10, 11, ... of the first rank and 20, 21, ... of the second.
+struct Trial
+{
+  explicit Trial(const Domain &domain) : domain(domain), materials({Material()}, 1)
+  {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+    particles.resize(3, 0, 0);
+    for (unsigned int row = 0; row < 3; ++row)
+      particles.id[row] = static_cast<ParticleId>(10 + 10 * rank) + row;
+  }
+
+  ParticleGuard guard() const { return {parameters, domain, materials, 1., dt}; }
+  Verdict judge(const Faults &faults) const
+  {
+    return guard().judge(faults, particles, [this](std::size_t row) {
+      return "particle " + std::to_string(particles.id[row]);
+    });
+  }
+
+  FaultParameters parameters;
+  const Domain &domain;
+  const Materials materials;
+  ParticleArrays particles;
+  int rank, n_ranks;
+};
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Case box(box_input(1e-6, 1e-6, ""));
+  Trial trial(box->get_domain());
+  const bool is_last = trial.rank + 1 == trial.n_ranks;
+  const std::string last = std::to_string(10 * trial.n_ranks);
+
+  Verdict verdict = trial.judge({});
+  check("nothing is wrong", !verdict.stops && !verdict.warns && verdict.number == 0);
+
+  // On the last rank only, where the smaller id stands behind the larger.
+  Faults lost;
+  if (is_last)
+    lost.lost = {{2, "is lost"}, {0, "is lost, too"}};
+  verdict = trial.judge(lost);
+  check("lost ones stop the run", verdict.stops && !verdict.warns && verdict.number == 2);
+  check("the smallest id is named", verdict.first == "particle " + last + " is lost, too",
+        verdict.first);
+  trial.parameters.lost_particles = "remove";
+  verdict = trial.judge(lost);
+  check("or are taken out with a warning", !verdict.stops && verdict.warns && verdict.number == 2);
+  check("where they are", verdict.lost.size() == (is_last ? 2u : 0u));
+  trial.parameters.lost_particles = "ignore";
+  verdict = trial.judge(lost);
+  check("or without", !verdict.stops && !verdict.warns);
+
+  Faults squeezed = lost;
+  if (trial.rank == 0)
+    squeezed.squeezed = {{1, "is squeezed"}};
+  verdict = trial.judge(squeezed);
+  check("squeezed ones stop the run in any case", verdict.stops && verdict.number == 1);
+  check("and are named", verdict.first == "particle 11 is squeezed", verdict.first);
+
+  // Ten steps a half period, and a little less, on one rank.
+  ParticleGuard guard = trial.guard();
+  const auto stiffness = [&](double half_period) {
+    return is_last ? M_PI * M_PI / (half_period * half_period) : 0.;
+  };
+  check("no contact", !guard.newly_too_short(0.));
+  check("slow enough", !guard.newly_too_short(stiffness(10.01 * dt)));
+  const auto found = guard.newly_too_short(stiffness(9.9 * dt));
+  check_relative("too stiff", found.value_or(0.), 9.9 * dt, 1e-12);
+  check("said once", !guard.newly_too_short(stiffness(5. * dt)));
+}

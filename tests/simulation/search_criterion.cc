@@ -1,0 +1,54 @@
+// When contacts are searched: as soon as two bodies together may have gone the allowed share of the
+// skin, on whatever rank they are.
+
+#include <eunoe/engine/search_criterion.h>
+
+#include "moving_solids.h"
+
+#include <limits>
+
+using namespace test;
+
+namespace {
+
+constexpr double skin = 1.;
+
+/// @param moved largest displacement of a particle on the last rank, none on the others
+/// @param solid_moved displacement of a solid
+bool is_due(const ContactDetectionParameters &parameters, double moved, double solid_moved,
+            unsigned long long step = 1)
+{
+  MovingSolids solids;
+  solids.take({rising("floor", 1.)});
+  solids.note_search();
+  solids.move_to(solid_moved);
+  int n_ranks, rank;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  SearchCriterion criterion(parameters, skin, MPI_COMM_WORLD);
+  criterion.ask(step, rank + 1 == n_ranks ? moved * moved : 0.);
+  return criterion.is_due(solids);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  ContactDetectionParameters parameters;
+  check_close("skin of a threshold of 1.3", parameters.skin(2.), 0.6, 1e-15);
+  check_close("allowed share of the skin",
+              SearchCriterion(parameters, skin, MPI_COMM_WORLD).allowed_displacement(), 0.8, 1e-15);
+  check("two particles towards each other",
+        !is_due(parameters, 0.39, 0.) && is_due(parameters, 0.41, 0.));
+  check("a particle and a faster solid",
+        !is_due(parameters, 0.2, 0.59) && is_due(parameters, 0.2, 0.61));
+  check("a solid alone", !is_due(parameters, 0., 0.79) && is_due(parameters, 0., 0.81));
+  check("a slower solid is none of the two", !is_due(parameters, 0.39, 0.3));
+  check("no number", is_due(parameters, std::numeric_limits<double>::quiet_NaN(), 0.));
+  parameters.frequency = 10;
+  check("asked every ten steps only",
+        !is_due(parameters, 1., 1., 9) && is_due(parameters, 1., 1., 10));
+  parameters.method = "constant";
+  check("constant: then always", !is_due(parameters, 1., 1., 9) && is_due(parameters, 0., 0., 10));
+}

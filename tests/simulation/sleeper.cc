@@ -1,0 +1,75 @@
+// When it is looked at who sleeps, and what counts as having stirred since the last look, also
+// after a restart.
+
+#include <eunoe/engine/sleeper.h>
+
+#include "moving_solids.h"
+#include <nlohmann/json.hpp>
+
+using namespace test;
+
+namespace {
+
+/// A load that changes at a moment.
+class Gust : public Load
+{
+public:
+  explicit Gust(double moment) : moment(moment) {}
+
+  void add(ParticleArrays &, double) const override {}
+  bool changes(double begin, double end) const override { return begin < moment && moment <= end; }
+
+private:
+  const double moment;
+};
+
+/// What a sleeper says of steps of 1 s with a floor that begins to rise at 15 s and a gust at 35 s,
+/// with a check frequency of 10.
+std::string looks(unsigned long long restart)
+{
+  SparseContactParameters parameters;
+  parameters.enabled = true;
+  parameters.frequency = 10;
+  MovingSolids solids;
+  solids.take({rising("floor", 1., 15.), rising("other", 0.)});
+  std::vector<std::unique_ptr<Load>> loads;
+  loads.push_back(std::make_unique<Gust>(35.));
+  Clock clock(1., 100);
+  auto sleeper = std::make_unique<Sleeper>(parameters, SparseContacts::fields(), 1.);
+  std::string all;
+  const auto look = [&](bool wake_all) {
+    const Stirring stirring = sleeper->look(clock, solids.list(), loads, wake_all);
+    all += " " + std::to_string(stirring.step) + (stirring.everything ? "all" : "") +
+           (stirring.solid_moves[0] ? "floor" : "") + (stirring.solid_moves[1] ? "other" : "");
+  };
+  solids.move_to(0.);
+  look(true);
+  while (clock.step() < 40) {
+    clock.advance();
+    solids.move_to(clock.time());
+    if (sleeper->is_look_due(clock, solids.list()))
+      look(false);
+    if (clock.step() == restart) {
+      const std::string saved = sleeper->save().dump();
+      sleeper = std::make_unique<Sleeper>(parameters, SparseContacts::fields(), 1.);
+      sleeper->load(nlohmann::ordered_json::parse(saved), 2);
+    }
+  }
+  return all;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const std::string found = looks(0);
+  check("looks and what they find",
+        found == " 0allfloorother 10 15floor 20floor 30floor 40allfloor", found);
+  check("restarted before the floor starts", looks(12) == found, looks(12));
+  check("restarted before the gust", looks(33) == found, looks(33));
+  const SparseContactParameters off;
+  MovingSolids solids;
+  check("never where nobody sleeps",
+        !Sleeper(off, {{"other", 2, 0.}}, 1.).is_look_due(Clock(1., 1), solids.list()));
+}

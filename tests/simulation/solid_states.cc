@@ -1,0 +1,50 @@
+// The solids of a run: where they are, how far they have gone since the last search, what particles
+// do to them on all ranks, and their return from a checkpoint.
+// Reference: the way of a steady motion.
+
+#include <eunoe/engine/moving_solids.h>
+
+#include "moving_solids.h"
+#include <nlohmann/json.hpp>
+
+using namespace test;
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  MovingSolids solids;
+  solids.take({rising("slow", 1.), rising("fast", 3.)});
+  check("found by name", solids.find("fast") == 1 && solids.find("none") == -1);
+
+  solids.move_to(2.);
+  solids.note_search();
+  check_close("nothing has moved since the search", solids.moved_since_search(), 0., 0.);
+  solids.move_to(2.5);
+  check_close("the fastest counts", solids.moved_since_search(), 1.5, 1e-15);
+
+  MovingSolids continued;
+  continued.take({rising("slow", 1.), rising("fast", 3.)});
+  continued.load(nlohmann::ordered_json::parse(solids.save().dump()));
+  check("back where they were at the search", continued.list()[1].state.centre.z == 6.);
+  continued.move_to(2.5);
+  check("and as far from there", continued.moved_since_search() == solids.moved_since_search());
+
+  std::string refused;
+  try {
+    MovingSolids more;
+    more.take({rising("a", 0.), rising("b", 0.), rising("c", 0.)});
+    more.load(solids.save());
+  } catch (const nlohmann::json::exception &) {
+    refused = "yes";
+  }
+  check("too few states are refused", refused == "yes");
+
+  int n_ranks, rank;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  solids.new_loads()[1].force[2] += rank + 1.;
+  check_close("loads of all ranks", solids.global_loads(MPI_COMM_WORLD)[1].force[2].value(),
+              0.5 * n_ranks * (n_ranks + 1.), 0.);
+  solids.new_loads();
+  check_close("summed from zero", solids.global_loads(MPI_COMM_WORLD)[1].force[2].value(), 0., 0.);
+}
