@@ -7,18 +7,6 @@
 
 namespace eunoe {
 
-const ParticleArrays &Simulation::complete_step()
-{
-  integrator->complete(system.particles, clock.time_step());
-  return system.particles;
-}
-
-ParticleArrays &Simulation::changeable_particles()
-{
-  complete_step();
-  return system.particles;
-}
-
 std::vector<SolidLoad> Simulation::global_solid_loads() const
 {
   return solids.global_loads(communicator());

@@ -1,9 +1,9 @@
 #include <eunoe/checkpoint/head_values.h>
-#include <eunoe/core/files.h>
 #include <eunoe/simulation/outputs.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace eunoe {
 

@@ -252,6 +252,18 @@ void Simulation::advance()
   progress.count_step(system.n_global(), system.particles.n_owned - system.particles.n_awake());
 }
 
+const ParticleArrays &Simulation::complete_step()
+{
+  integrator->complete(system.particles, clock.time_step());
+  return system.particles;
+}
+
+ParticleArrays &Simulation::changeable_particles()
+{
+  complete_step();
+  return system.particles;
+}
+
 void Simulation::move_solids()
 {
   domain.move_to(clock.time());

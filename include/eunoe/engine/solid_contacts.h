@@ -79,9 +79,9 @@ private:
   unsigned int find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
                     SurfaceContact *found) const;
   /// Adds a contact to a batch.
-  /// @param memory from which its history is taken, none for a contact that has just begun
+  /// @param record of its history, none for a contact that has just begun
   void add_to(Batch &batch, const ParticleArrays &particles, const Solid &solid,
-              const Candidate &candidate, const SurfaceContact &contact, std::int32_t memory) const;
+              const Candidate &candidate, const SurfaceContact &contact, std::int32_t record) const;
   /// Runs the laws.
   void apply_laws(Batch &batch, double dt) const;
   static ContactForce force_of(const Batch &batch, unsigned int k);
