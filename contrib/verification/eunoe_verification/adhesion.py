@@ -73,13 +73,13 @@ def jkr(bench: Bench) -> Row:
     # The plate turns back within a step of 1 nm, which shifts the way down by as much.
     checks = [
         relative("pull-off force", -1e3 * repulsion.min(), 1e3 * pull_off, 1e-2, "mN"),
-        relative("gap at which the neck tears", 1e6 * gap[~rises & (repulsion < 0.)].max(), 1e6 * neck, 1e-2,
+        relative("separation at which the neck tears", 1e6 * gap[~rises & (repulsion < 0.)].max(), 1e6 * neck, 1e-2,
                  "um"),
         absolute("force before the touch over the pull-off force",
                  np.abs(repulsion[rises & (gap > 0.)]).max() / pull_off, 0., 0.),
         relative("attraction at the touch over the pull-off force",
                  -repulsion[rises & (gap < -1e-12)][0] / pull_off, 8. / 9., 1e-2),
-        absolute("force at all gaps, worst error over the pull-off force",
+        absolute("force at all separations, worst error over the pull-off force",
                  np.abs(repulsion - reference)[made].max() / pull_off, 0., 2e-3)]
 
     def draw(axes) -> None:
