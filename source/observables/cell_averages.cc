@@ -115,6 +115,7 @@ public:
     Patch<3, 3> patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
     patch.n_subdivisions = 1;
+    patch.reference_cell = dealii::ReferenceCells::Hexahedron;
     const std::array<double, 7> values = {a.velocity.x, a.velocity.y, a.velocity.z, a.temperature,
                                           a.fraction,   a.number,     a.awake};
     patch.data.reinit(static_cast<unsigned int>(values.size()), cell->n_vertices());

@@ -40,6 +40,7 @@ public:
     Patch<1, 3> patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
     patch.n_subdivisions = 1;
+    patch.reference_cell = dealii::ReferenceCells::Line;
     const Vec3 begin = p.position[contact.first].vec();
     const Vec3 end = begin + contact.distance * contact.normal;
     patch.vertices[0] = {begin.x, begin.y, begin.z};
