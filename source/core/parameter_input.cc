@@ -4,6 +4,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <boost/property_tree/json_parser.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -26,10 +27,12 @@ struct Level
 };
 
 /// What is declared, by subsections.
-boost::property_tree::ptree tree_of(const dealii::ParameterHandler &prm)
+boost::property_tree::ptree tree_of(
+    const dealii::ParameterHandler &prm,
+    const dealii::ParameterHandler::OutputStyle order = dealii::ParameterHandler::DefaultStyle)
 {
   std::ostringstream json;
-  prm.print_parameters(json, dealii::ParameterHandler::JSON);
+  prm.print_parameters(json, dealii::ParameterHandler::JSON | order);
   std::istringstream stream(json.str());
   boost::property_tree::ptree tree;
   boost::property_tree::read_json(stream, tree);
@@ -179,6 +182,21 @@ std::string wanted_by(std::string message)
   return in_words(message.substr(begin + 1, end - begin));
 }
 
+nlohmann::ordered_json description_of(const boost::property_tree::ptree &section)
+{
+  nlohmann::ordered_json description = {{"entries", nlohmann::ordered_json::object()},
+                                        {"subsections", nlohmann::ordered_json::object()}};
+  for (const auto &[name, child] : section)
+    if (child.count("value") > 0)
+      description["entries"][name] = {
+          {"default", child.get<std::string>("default_value")},
+          {"value", in_words(child.get<std::string>("pattern_description"))},
+          {"documentation", child.get<std::string>("documentation")}};
+    else if (child.count("alias") == 0)
+      description["subsections"][name] = description_of(child);
+  return description;
+}
+
 std::string complete_text(const dealii::ParameterHandler &prm)
 {
   std::ostringstream text;
@@ -310,6 +328,21 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
         entry.is_default = entry.value == std::to_string(r.standard);
   }
   return complete;
+}
+
+std::string describe_entries(const dealii::ParameterHandler &prm,
+                             const std::vector<RepeatedSections> &repeated)
+{
+  nlohmann::ordered_json description =
+      description_of(tree_of(prm, dealii::ParameterHandler::KeepDeclarationOrder));
+  for (const RepeatedSections &r : repeated) {
+    nlohmann::ordered_json *section = &description;
+    for (const std::string &name : r.path)
+      section = &section->at("subsections").at(name);
+    // What is declared as the default is the number that there are.
+    section->at("entries").at(r.entry).at("default") = std::to_string(r.standard);
+  }
+  return description.dump(1);
 }
 
 } // namespace eunoe

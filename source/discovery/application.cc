@@ -130,7 +130,7 @@ void write_page(const StudyInput &study, MPI_Comm comm, Log &log)
     return;
   const std::string command = page_command(study.parameters.output_path);
   if (command.empty() || std::system(command.c_str()) != 0)
-    log.warning("discovery.html was not written. Run contrib/postprocessing/discovery_report.py " +
+    log.warning("discovery.html was not written. Run contrib/tools discovery-report " +
                 study.parameters.output_path + " where Python has Matplotlib.");
 }
 
@@ -165,12 +165,17 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
 {
   const bool makes_twin = !wishes.twin.empty();
   const std::string file = makes_twin ? wishes.twin : line.file;
-  const bool only_lists = wishes.list_observables || wishes.list_effects || line.print_parameters;
+  const bool only_lists = wishes.list_observables || wishes.list_effects || line.print_parameters ||
+                          line.describe_parameters;
   if (const auto code = answer(line, program, !only_lists && !makes_twin, comm))
     return *code;
   Log log(comm, line.quiet);
   StudyInput study;
   Problems problems;
+  if (line.describe_parameters) {
+    log.line(StudyParameters::description());
+    return exit_success;
+  }
   try {
     if (wishes.list_observables) {
       list_observables(log);

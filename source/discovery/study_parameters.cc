@@ -230,6 +230,16 @@ void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twi
     declare_twin(prm, twin);
 }
 
+std::string StudyParameters::description()
+{
+  StudyParameters one_of_each;
+  one_of_each.experiments.resize(1);
+  one_of_each.nuisances.resize(1);
+  dealii::ParameterHandler prm;
+  one_of_each.declare(prm, true);
+  return describe_entries(prm, repeated_sections());
+}
+
 std::string StudyParameters::cache_folder() const
 {
   if (!cache_path.empty())

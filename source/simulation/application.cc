@@ -30,9 +30,14 @@ void print_check(const RunEstimate &estimate, const double time_step, const std:
 
 int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
 {
-  if (const auto code = answer(line, program, !line.print_parameters, comm))
+  if (const auto code =
+          answer(line, program, !line.print_parameters && !line.describe_parameters, comm))
     return *code;
   Log log(comm, line.quiet);
+  if (line.describe_parameters) {
+    log.line(Parameters::description());
+    return exit_success;
+  }
   Problems problems;
   Parameters parameters;
   std::unique_ptr<Simulation> simulation;

@@ -26,7 +26,9 @@ CommandLine parse_command_line(int argc, char **argv, const ProgramText &program
       "print-parameters", po::bool_switch(&line.print_parameters),
       ("print a complete input file with documentation and exit; with a " + program.input +
        ", its values")
-          .c_str());
+          .c_str())("describe-parameters", po::bool_switch(&line.describe_parameters),
+                    "print all entries with their defaults, kinds of values and documentation as "
+                    "JSON and exit");
   for (const ProgramOption &option : own_options)
     visible.add_options()(option.name.c_str(),
                           option.flag != nullptr

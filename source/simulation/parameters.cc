@@ -42,6 +42,14 @@ const std::vector<Repeated> &repeated_sections()
   return list;
 }
 
+std::vector<RepeatedSections> numbered_sections()
+{
+  std::vector<RepeatedSections> list;
+  for (const Repeated &repeated : repeated_sections())
+    list.push_back(repeated.sections);
+  return list;
+}
+
 SectionCounts count(const std::vector<InputEntry> &entries)
 {
   SectionCounts counts;
@@ -91,13 +99,21 @@ void Parameters::declare(dealii::ParameterHandler &prm)
     section->declare(prm);
 }
 
+std::string Parameters::description()
+{
+  SectionCounts one_of_each;
+  for (const Repeated &repeated : repeated_sections())
+    one_of_each.*repeated.count = 1;
+  dealii::ParameterHandler prm;
+  Parameters(one_of_each).declare(prm);
+  return describe_entries(prm, numbered_sections());
+}
+
 void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
 {
   dealii::ParameterHandler prm;
   declare(prm);
-  std::vector<RepeatedSections> repeated;
-  for (const Repeated &r : repeated_sections())
-    repeated.push_back(r.sections);
+  const std::vector<RepeatedSections> repeated = numbered_sections();
   complete_input = set_entries(prm, entries, repeated, problems);
   if (control.seed < 0)
     return;

@@ -26,6 +26,12 @@ struct RepeatedSections
 std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
                         const std::vector<RepeatedSections> &repeated, Problems &problems);
 
+/// All that is declared as JSON, in the order of declaration: for each section "entries", by name
+/// with "default", "value" (what kind fits, in words; empty: any text) and "documentation", and
+/// "subsections", by name. Other spellings of an entry are left out.
+std::string describe_entries(const dealii::ParameterHandler &prm,
+                             const std::vector<RepeatedSections> &repeated);
+
 } // namespace eunoe
 
 #endif

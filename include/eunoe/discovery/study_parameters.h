@@ -50,6 +50,9 @@ public:
   /// A complete, documented study file with the same content.
   const std::string &as_input_file() const { return complete_input; }
 
+  /// All entries, with one of each of the numbered subsections: see describe_entries.
+  static std::string description();
+
   /// Where the results go.
   std::string output_file(const std::string &name) const { return output_path + "/" + name; }
 

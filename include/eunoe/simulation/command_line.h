@@ -35,7 +35,8 @@ struct CommandLine
 {
   std::string file;
   std::vector<std::string> overrides;
-  bool check = false, print_parameters = false, help = false, version = false, quiet = false;
+  bool check = false, print_parameters = false, describe_parameters = false;
+  bool help = false, version = false, quiet = false;
   std::string help_text, error;
 };
 

@@ -47,6 +47,9 @@ public:
   /// A complete, documented input file that gives the same parameters as those that were read.
   const std::string &as_input_file() const { return complete_input; }
 
+  /// All entries, with one of each of the numbered subsections: see describe_entries.
+  static std::string description();
+
   /// The chosen process, null for a general case.
   Process *process() const
   {
