@@ -3,7 +3,7 @@
 # named here, once.
 # Usage: contrib/install_dependencies.sh [fuzzing] [benchmarks]
 #   fuzzing     with what contrib/fuzzing/run.sh needs, too
-#   benchmarks  with the programs that contrib/benchmarks/run.py compares with, too
+#   benchmarks  with the programs that contrib/tools benchmark compares with, too
 set -euo pipefail
 
 build=(
@@ -20,6 +20,7 @@ build=(
 report=(
   python3-numpy
   python3-matplotlib
+  python3-vtk9 # reader of pictures
 )
 checks=(
   perl         # deal.II's test driver

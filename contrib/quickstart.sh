@@ -17,4 +17,4 @@ if [ "$(id -u)" -eq 0 ]; then
   launch+=(--allow-run-as-root)
 fi
 "${launch[@]}" build/release/eunoe-particles prm/spreading/quickstart.prm
-contrib/postprocessing/report.py output/quickstart
+contrib/tools report output/quickstart

@@ -120,13 +120,12 @@ std::string page_command(const std::string &folder)
 {
   std::error_code failure;
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  const std::string name = "postprocessing/discovery_report.py";
-  for (const fs::path &script : {program.parent_path().parent_path() / "share/eunoe" / name,
-                                 fs::path(source_folder()) / "contrib" / name})
+  for (const fs::path &script : {program.parent_path().parent_path() / "share/eunoe/contrib/tools",
+                                 fs::path(source_folder()) / "contrib/tools"})
     if (fs::is_regular_file(script, failure)) {
       const bool has_own = fs::exists("/usr/bin/python3", failure);
       return std::string(has_own ? "/usr/bin/python3" : "python3") + " '" + script.string() +
-             "' '" + folder + "'";
+             "' discovery-report '" + folder + "'";
     }
   return "";
 }

@@ -8,19 +8,17 @@ sentences.txt holds a line a case: its name, and a part of the sentence that it 
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from eunoe.launch import SHARED, mpirun, overrides
 from forged import FORGERIES, assembled, forged
 
 HERE = Path(__file__).resolve().parent
-TWO_RANKS = ["mpirun", "-np", "2", "--oversubscribe", "--bind-to", "none"]
-if os.geteuid() == 0:
-    TWO_RANKS.append("--allow-run-as-root")
+TWO_RANKS = mpirun(2, *SHARED)
 # Texts on which a reader may choke by their length alone, and their sentences.
 LONG = {
     "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
@@ -53,11 +51,10 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
            codes: tuple[int, ...] = (2,)) -> None:
-    options = [word for setting in settings for word in ("--set", setting)]
     for launch in ([], TWO_RANKS):
         place = f"{folder.name}/{case} on {2 if launch else 1} rank(s)"
         try:
-            run = subprocess.run([*launch, program, f"{case}.prm", *options], cwd=folder, timeout=60,
+            run = subprocess.run([*launch, program, f"{case}.prm", *overrides(settings)], cwd=folder, timeout=60,
                                  capture_output=True, check=False)
         except subprocess.TimeoutExpired:
             fail(f"{place}: it hangs")
@@ -122,9 +119,7 @@ def accept_meshes(program: str) -> None:
                 "insertion info/insertion method": "list",
                 **{f"insertion info/list {axis}": 0.5 for axis in "xyz"}}
     for mesh in meshes:
-        command = [program, "mesh_of_tetrahedra.prm", "--check"]
-        for entry, value in {**settings, "mesh/file name": mesh}.items():
-            command += ["--set", f"{entry} = {value}"]
+        command = [program, "mesh_of_tetrahedra.prm", "--check", *overrides({**settings, "mesh/file name": mesh})]
         run = subprocess.run(command, cwd=HERE, timeout=60, capture_output=True, text=True, check=False)
         if run.returncode != 0:
             fail(f"{mesh.name}: {run.stderr}")

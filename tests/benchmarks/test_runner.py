@@ -18,11 +18,13 @@ except ImportError:
     print("skipped: numpy is missing")
     sys.exit(77)
 
-FOLDER = Path(__file__).resolve().parents[2] / "contrib" / "benchmarks"
-sys.path.insert(0, str(FOLDER))
-from eunoe_bench import bed, blade, table  # noqa: E402
-from eunoe_bench.cases import CASES  # noqa: E402
-from eunoe_bench.programs import Failure, Lammps, Liggghts, Peer, loop_seconds  # noqa: E402
+from eunoe.benchmarks import bed, blade, table
+from eunoe.benchmarks.cases import CASES
+from eunoe.benchmarks.programs import Lammps, Liggghts, Peer, loop_seconds
+from eunoe.launch import Failure
+from eunoe.tables import as_markdown, as_text
+
+CONTRIB = Path(__file__).resolve().parents[2] / "contrib"
 
 PROGRAM = sys.argv.pop() if len(sys.argv) > 1 else None
 LOG = """Step Atoms KinEng
@@ -51,8 +53,8 @@ class Tables(unittest.TestCase):
         cells = table.cells([self.row], ["Eunoe", "LAMMPS", "LIGGGHTS"])
         self.assertEqual(cells[1], ["bed", "2", "10.00 (9.00 to 12.00)", "2.50 (2.00 to 3.00)",
                                     "4.00 (3.50 to 9.00)", "2.50"])
-        self.assertEqual(table.as_markdown(cells[:1]).splitlines()[1], "|---|---|---|---|---|---|")
-        self.assertEqual(len(table.as_text(cells).splitlines()), 2)
+        self.assertEqual(as_markdown(cells[:1]).splitlines()[1], "|---|---|---|---|---|---|")
+        self.assertEqual(len(as_text(cells).splitlines()), 2)
 
     def test_a_missing_peer_has_a_column_that_says_so(self):
         row = table.Row("bed", 1, {"Eunoe": [9e6], "LAMMPS": [3e6]})
@@ -132,7 +134,7 @@ class Bed(unittest.TestCase):
 class Runs(unittest.TestCase):
     def run_it(self, *arguments, **changes):
         environment = {**os.environ, **changes}
-        return subprocess.run([sys.executable, "-B", str(FOLDER / "run.py"), "--program", PROGRAM,
+        return subprocess.run([sys.executable, "-B", str(CONTRIB / "tools"), "benchmark", "--program", PROGRAM,
                                *arguments], capture_output=True, text=True, check=False,
                               env=environment)
 
@@ -173,7 +175,7 @@ class Runs(unittest.TestCase):
         self.assertIn("| MISSING | MISSING | - |", text)
 
     def test_what_the_installer_does_not_know_is_refused(self):
-        done = subprocess.run([FOLDER.parent / "install_dependencies.sh", "benchmark"],
+        done = subprocess.run([CONTRIB / "install_dependencies.sh", "benchmark"],
                               capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 2)
         self.assertIn("'benchmarks'", done.stderr)

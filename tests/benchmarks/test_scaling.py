@@ -18,13 +18,13 @@ except ImportError:
 
 CONTRIB = Path(__file__).resolve().parents[2] / "contrib"
 BED = CONTRIB / "benchmarks" / "settled_bed.csv.gz"
-sys.path.insert(0, str(CONTRIB / "utilities"))
-from scaling import ghosts  # noqa: E402
-from scaling.apparatus import apparatus, mesh_of, powder, sizes  # noqa: E402
-from scaling.cost import GHOST_BYTES, Costs, message_seconds, predict  # noqa: E402
-from scaling.ghosts import Filling, reach_of  # noqa: E402
-from scaling.mesh import Failure, Mesh  # noqa: E402
-from scaling.partition import cut, divide  # noqa: E402
+from eunoe.launch import Failure
+from eunoe.scaling import ghosts
+from eunoe.scaling.apparatus import apparatus, mesh_of, powder, sizes
+from eunoe.scaling.cost import GHOST_BYTES, Costs, message_seconds, predict
+from eunoe.scaling.ghosts import Filling, reach_of
+from eunoe.scaling.mesh import Mesh
+from eunoe.scaling.partition import cut, divide
 
 
 def box(trees, refinement=0, periodic=(False, False, False)):
@@ -261,18 +261,15 @@ class Plate(unittest.TestCase):
 
 
 class Tool(unittest.TestCase):
-    def test_help_needs_no_numpy(self):
-        tool = CONTRIB / "utilities" / "predict_scaling.py"
+    def test_without_numpy_it_says_what_to_install(self):
+        tool = CONTRIB / "tools"
         without_numpy = ("import runpy, sys; sys.modules['numpy'] = None; "
-                         f"sys.argv = ['{tool}', *sys.argv[1:]]; "
-                         f"sys.path.insert(0, '{tool.parent}'); "
+                         f"sys.argv = ['{tool}', 'predict-scaling', '--length-factor=1']; "
                          f"runpy.run_path('{tool}', run_name='__main__')")
-        for option, code, text in (("--help", 0, "Usage: contrib/utilities/predict_scaling.py"),
-                                   ("--length-factor=1", 1, "needs Python 3 with numpy")):
-            done = subprocess.run([sys.executable, "-B", "-c", without_numpy, option],
-                                  capture_output=True, text=True, check=False)
-            self.assertEqual(done.returncode, code)
-            self.assertIn(text, done.stdout + done.stderr)
+        done = subprocess.run([sys.executable, "-B", "-c", without_numpy], capture_output=True, text=True,
+                              check=False)
+        self.assertEqual(done.returncode, 77)
+        self.assertIn("has no numpy: install python3-numpy", done.stderr)
 
 
 if __name__ == "__main__":

@@ -6,13 +6,14 @@ Usage: end_to_end.py path/to/drop-discovery folder
 
 import hashlib
 import json
-import os
 import shutil
 import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
+
+from eunoe.launch import mpirun, overrides
 
 HERE = Path(__file__).resolve().parent
 NAMED, BAD_INPUT, FAILED, STOPPED = 10, 2, 1, 3
@@ -25,10 +26,7 @@ class Program:
         self.path, self.folder = path, folder
 
     def command(self, *arguments: str, ranks: int = 1) -> list[str]:
-        launch = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
-        if launch and os.geteuid() == 0:
-            launch.append("--allow-run-as-root")
-        return [*launch, self.path, *arguments]
+        return [*mpirun(ranks, "--oversubscribe"), self.path, *arguments]
 
     def run(self, *arguments: str, ranks: int = 1) -> tuple[int, str]:
         done = subprocess.run(self.command(*arguments, ranks=ranks), cwd=self.folder, text=True,
@@ -37,10 +35,7 @@ class Program:
 
 
 def settings(**entries: str) -> list[str]:
-    words = []
-    for name, value in entries.items():
-        words += ["--set", f"discovery/{name.replace('_', ' ')} = {value}"]
-    return words
+    return overrides({f"discovery/{name.replace('_', ' ')}": value for name, value in entries.items()})
 
 
 def answer(folder: Path) -> dict:

@@ -1,7 +1,7 @@
 // The blind suite on recorded DEM simulations: many studies in which the truth is hidden, a line of
 // JSON each.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
-//   contrib/discovery/score.py answers.jsonl
+//   contrib/tools score answers.jsonl
 // Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
 // (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER; simulated
 // (studies whose data are recorded simulations, instead of truths at any amplitude); describe (what

@@ -2,7 +2,7 @@
 #define eunoe_tests_discovery_suite_h
 
 // Blind suites on laboratories that cost nothing: hidden truths, their data, a study of each, and
-// what it answered, one line of JSON a study. contrib/discovery/score.py makes the tables.
+// what it answered, one line of JSON a study. contrib/tools score makes the tables.
 
 #include "known_laboratory.h"
 

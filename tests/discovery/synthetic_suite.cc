@@ -1,7 +1,7 @@
 // A blind suite on synthetic laboratories: many studies in which the truth is hidden, a line of
 // JSON each. It takes minutes to hours and is no part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
-//   contrib/discovery/score.py answers.jsonl
+//   contrib/tools score answers.jsonl
 // Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
 // (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER;
 // no-nuisances, no-bend, even-chaos, no-swing (simpler laboratories); steep (little of an effect

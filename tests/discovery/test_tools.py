@@ -16,18 +16,14 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
     print("skipped: numpy or matplotlib is missing")
     sys.exit(0)
 
-HERE = Path(__file__).resolve().parent
-CONTRIB = HERE.parents[1] / "contrib"
-sys.path[:0] = [str(CONTRIB / "postprocessing"), str(CONTRIB / "discovery"), str(HERE)]
-
-import discovery_report
-import score as score_script
-from eunoe_report.discovery_charts import envelope_figure, gap_figure
-from eunoe_report.discovery_results import Study
-from eunoe_report.discovery_text import TITLES, gap_text, held_out_text, verdict_text
-from eunoe_suite.case import TIERS, Case, make_cases
-from eunoe_suite.score import read, read_lines, score, wilson
-from eunoe_suite.strength import Strengths
+from eunoe.discovery import score as score_script
+from eunoe.discovery.case import TIERS, Case, make_cases
+from eunoe.discovery.outcomes import read, read_lines, score, wilson
+from eunoe.discovery.strength import Strengths
+from eunoe.report import of_study
+from eunoe.report.discovery_charts import envelope_figure, gap_figure
+from eunoe.report.discovery_results import Study
+from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, verdict_text
 from sample_study import CHANGES, make_study
 
 EFFECTS = {"cohesion": {"sign": "above", "confounders": ["rolling_resistance"]},
@@ -47,7 +43,7 @@ class PageOfAStudy(InFolder):
             folder = self.folder / verdict.replace(" ", "_")
             make_study(folder, verdict)
             with contextlib.redirect_stdout(io.StringIO()):
-                self.assertEqual(discovery_report.main([str(folder)]), 0)
+                self.assertEqual(of_study.main([str(folder)]), 0)
             page = (folder / "discovery.html").read_text(encoding="utf-8")
             self.assertIn(f"<h1>{title}</h1>", page)
             self.assertIn("a &lt;particle&gt; went wrong", page)
@@ -116,7 +112,7 @@ class PageOfAStudy(InFolder):
 
     def test_a_folder_without_a_study(self) -> None:
         with contextlib.redirect_stderr(io.StringIO()) as errors:
-            self.assertEqual(discovery_report.main([str(self.folder)]), 2)
+            self.assertEqual(of_study.main([str(self.folder)]), 2)
         self.assertIn("discovery.json is missing", errors.getvalue())
 
 

@@ -12,6 +12,8 @@ import sys
 from functools import lru_cache
 from pathlib import Path
 
+from eunoe.launch import Failure, overrides
+
 ROOT = Path(__file__).resolve().parents[2]
 NUMBER = r"([\d.,]+(?:e[+-]?\d+)?)"
 PRINTED = {"particles": rf"particles:\s+{NUMBER} at most", "steps": rf"steps:\s+{NUMBER} of",
@@ -20,15 +22,10 @@ UNITS = {"": 1., "thousand": 1e3, "million": 1e6}
 PROCEDURE = "powder spreading/feedstock "
 
 
-class Failure(Exception):
-    """What went wrong, in a sentence."""
-
-
 @lru_cache(maxsize=None)
 def costs(program: str, case: str, *settings: str) -> dict[str, float]:
     """What --check says of a case of prm/spreading."""
-    options = [word for setting in settings for word in ("--set", setting)]
-    done = subprocess.run([program, f"prm/spreading/{case}.prm", "--check", *options], cwd=ROOT, text=True,
+    done = subprocess.run([program, f"prm/spreading/{case}.prm", "--check", *overrides(settings)], cwd=ROOT, text=True,
                           capture_output=True, check=False)
     found = {name: re.search(pattern, done.stdout) for name, pattern in PRINTED.items()}
     if done.returncode != 0 or None in found.values():

@@ -12,27 +12,14 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from eunoe.launch import overrides
+from eunoe.prm_file import parse_prm
+
 PRM = Path(__file__).resolve().parents[2] / "prm"
 CASES = {"spreading": PRM / "discovery" / "micro_spreading.prm",
          "heap": PRM / "discovery" / "micro_heap.prm"}
 KEYS = ("mechanism", "parameter", "unit", "null value", "scale", "range", "sign", "confounders",
         "source", "experiments")
-
-
-def entries(text: str) -> dict[str, str]:
-    """Values by "subsection/.../entry"."""
-    path: list[str] = []
-    values = {}
-    for line in text.splitlines():
-        line = line.partition("#")[0].strip()
-        if line.startswith("subsection "):
-            path.append(line.removeprefix("subsection ").strip())
-        elif line == "end":
-            path.pop()
-        elif line.startswith("set "):
-            name, _, value = line.removeprefix("set ").partition("=")
-            values["/".join([*path, " ".join(name.split())])] = value.strip()
-    return values
 
 
 def patched(value: str, base: str, amplitude: float) -> str:
@@ -64,7 +51,7 @@ def defects(name: str, about: dict[str, str], names: set[str]) -> list[str]:
 
 
 def check(program: str, file: Path, names: set[str], bases: dict[str, dict[str, str]]) -> list[str]:
-    values = entries(file.read_text(encoding="utf-8"))
+    values = parse_prm(file.read_text(encoding="utf-8")).flat()
     about = {key.partition("/")[2]: v for key, v in values.items() if key.startswith("effect/")}
     wrong = defects(file.stem, about, names)
     patch = {key: v for key, v in values.items() if not key.startswith("effect/")}
@@ -76,9 +63,9 @@ def check(program: str, file: Path, names: set[str], bases: dict[str, dict[str, 
         null = float(about["null value"])
         amplitudes = {float(number) for number in [about["scale"], *about["range"].split(",")]}
         for amplitude in sorted(amplitudes - {null}):
-            settings = [word for key, value in patch.items() for word in
-                        ("--set", f"{key} = {patched(value, bases[kind].get(key, '0'), amplitude)}")]
-            done = subprocess.run([program, str(case), "--check", *settings], capture_output=True,
+            settings = {key: patched(value, bases[kind].get(key, "0"), amplitude)
+                        for key, value in patch.items()}
+            done = subprocess.run([program, str(case), "--check", *overrides(settings)], capture_output=True,
                                   text=True, check=False)
             if done.returncode != 0:
                 wrong.append(f"at {amplitude:g} {case.name} is refused: {done.stderr.strip()}")
@@ -88,8 +75,8 @@ def check(program: str, file: Path, names: set[str], bases: dict[str, dict[str, 
 def main(program: str) -> int:
     files = sorted((PRM / "effects").glob("*.prm"))
     names = {file.stem for file in files}
-    bases = {kind: entries(subprocess.run([program, str(case), "--print-parameters"], check=True,
-                                          capture_output=True, text=True).stdout)
+    bases = {kind: parse_prm(subprocess.run([program, str(case), "--print-parameters"], check=True,
+                                            capture_output=True, text=True).stdout).flat()
              for kind, case in CASES.items()}
     with ThreadPoolExecutor(2) as pool:
         wrong = sum(pool.map(lambda file: check(program, file, names, bases), files), [])

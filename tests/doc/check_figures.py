@@ -1,6 +1,6 @@
 """Figures of the documentation say where they come from: beside every table of measured numbers a sentence
 "made by ... at revision ..." names the command and the revision, and the processor where the table tells
-speeds; every picture in doc/ belongs to a rule of contrib/pictures.py and is what that rule made.
+speeds; every picture in doc/ belongs to a rule of contrib/tools pictures and is what that rule made.
 
 A table is exempt if its head says that it explains (entries and their meaning, columns, options) and no
 cell has a mean with its deviation.
@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "contrib"))
-from eunoe_pictures.record import digest, read_record  # noqa: E402
-from eunoe_pictures.rules import RULES  # noqa: E402
+from eunoe.pictures.record import digest, read_record
+from eunoe.pictures.rules import RULES
 
 EXPLAINING = {"meaning", "means", "holds", "keys", "task", "what it does", "what to do", "what differs",
               "what may be behind it", "what is at work", "shares out", "particles come", "formula", "why",
@@ -134,7 +133,7 @@ def check_pictures() -> list[str]:
                     [ROOT / "README.md", *(ROOT / "doc").glob("*.md")])
     record = read_record(folder)
     rule_of = {picture: rule.name for rule in RULES for picture in rule.pictures}
-    wrong = [f"No rule of contrib/pictures.py makes {name}." for name in sorted(files - set(rules))]
+    wrong = [f"No rule of contrib/tools pictures makes {name}." for name in sorted(files - set(rules))]
     wrong += [f"{name} has more than one rule." for name in sorted(set(rules)) if rules.count(name) > 1]
     wrong += [f"The picture {name} of the rule {rule_of[name]} is not in doc/pictures."
               for name in sorted(set(rules) - files)]

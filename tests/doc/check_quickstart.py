@@ -35,7 +35,7 @@ def main(program: str, folder: str) -> int:
     page, run = promised(), found(program, Path(folder))
     if page != run or len(run) != 4:
         print(f"doc/first_run.md promises {page}, the run gave {run}. If that is meant: "
-              "contrib/pictures.py --only quickstart, and the table of the page.")
+              "contrib/tools pictures --only quickstart, and the table of the page.")
         return 1
     print("ok")
     return 0

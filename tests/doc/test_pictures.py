@@ -1,4 +1,4 @@
-"""contrib/pictures.py: what is computed is not computed again, folders do not mix revisions, and what was
+"""contrib/tools pictures: what is computed is not computed again, folders do not mix revisions, and what was
 made is recorded. With rules and a program of its own, so it takes no time.
 
 Usage: test_pictures.py
@@ -16,10 +16,11 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib"))
-import pictures  # noqa: E402
-from eunoe_pictures.record import digest, read_record  # noqa: E402
-from eunoe_pictures.rules import Rule  # noqa: E402
+from eunoe import commands
+from eunoe.pictures import make
+from eunoe.pictures.record import digest, read_record
+from eunoe.pictures.rules import Rule
+from eunoe.repository import ROOT
 
 RULE = Rule("rule", "nothing", {"a.png": "drawn"},
             ('bash -c "echo computed >> {folder}/runs"',), ('cp {folder}/runs {folder}/drawn',))
@@ -33,7 +34,7 @@ class Pictures(unittest.TestCase):
         self.addCleanup(temporary.cleanup)
         self.folder = Path(temporary.name)
         self.make_program("abcdef012")
-        patch = mock.patch.object(pictures, "RULES", (RULE, EMPTY, BROKEN))
+        patch = mock.patch.object(make, "RULES", (RULE, EMPTY, BROKEN))
         patch.start()
         self.addCleanup(patch.stop)
 
@@ -46,8 +47,8 @@ class Pictures(unittest.TestCase):
         """Exit code and what went to stderr."""
         stderr = io.StringIO()
         with contextlib.redirect_stderr(stderr), contextlib.redirect_stdout(io.StringIO()):
-            code = pictures.main([str(self.folder / "work"), "--build", str(self.folder), "--pictures",
-                                  str(self.folder / "pictures"), "--only", *names])
+            code = commands.run("pictures", [str(self.folder / "work"), "--build", str(self.folder), "--pictures",
+                                             str(self.folder / "pictures"), "--only", *names])
         return code, stderr.getvalue()
 
     def test_computes_once_and_records(self) -> None:
@@ -74,13 +75,13 @@ class Pictures(unittest.TestCase):
         self.assertIn("does not know its revision", self.make("rule")[1])
 
     def test_the_list_names_pictures_and_commands(self) -> None:
-        self.assertIn("rule: nothing\n    a.png\n    $ bash", pictures.listing())
+        self.assertIn("rule: nothing\n    a.png\n    $ bash", make.listing())
 
     def test_a_reader_may_leave(self) -> None:
         reader, writer = os.pipe()
         os.close(reader)
         with os.fdopen(writer, "w") as output:
-            done = subprocess.run([sys.executable, "-B", pictures.__file__, "--list"], stdout=output,
+            done = subprocess.run([sys.executable, "-B", str(ROOT / "contrib" / "tools"), "pictures", "--list"], stdout=output,
                                   stderr=subprocess.PIPE, text=True, check=False)
         self.assertEqual(done.stderr, "")
 

@@ -3,13 +3,11 @@ two, and after an interruption in each phase; the mass adds up, and the outlines
 the particles shows.
 
 Usage: end_to_end.py path/to/eunoe-particles folder
-Exit code 77 if numpy is missing, for a test that is skipped.
+Exit code 77 if numpy or VTK is missing, for a test that is skipped.
 """
 
-import csv
 import json
 import math
-import os
 import shutil
 import signal
 import subprocess
@@ -18,34 +16,25 @@ from pathlib import Path
 
 try:
     import numpy as np
+    from eunoe.vtk_files import read_pvd, read_vtu
 except ImportError:
     sys.exit(77)
+from eunoe.launch import mpirun, overrides
+from eunoe.tables import read_rows as read
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parents[1] / "contrib" / "postprocessing"))
-from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
 
 DISC, N_VIEWS = 0.6e-3, 16
 TABLES = ("heap.csv", "heap_map.pgm", "heap_profile.csv", "state.dump")
 
 
 def command(program: str, folder: Path, ranks: int, *settings: str) -> list[str]:
-    options = [word for setting in (f"simulation control/output path = {folder}", *settings)
-               for word in ("--set", setting)]
-    launch = ["mpirun", "--oversubscribe", "-np", str(ranks)] if ranks > 1 else []
-    if launch and os.geteuid() == 0:
-        launch.append("--allow-run-as-root")
-    return [*launch, program, str(HERE / "tiny.prm"), *options, "--dump", f"{folder}/state.dump"]
+    return [*mpirun(ranks, "--oversubscribe"), program, str(HERE / "tiny.prm"), "--dump", f"{folder}/state.dump",
+            *overrides([f"simulation control/output path = {folder}", *settings])]
 
 
 def run(program: str, folder: Path, ranks: int = 1, *settings: str) -> None:
     subprocess.run(command(program, folder, ranks, *settings), check=True, stdout=subprocess.DEVNULL)
-
-
-def read(path: Path) -> list[dict[str, float]]:
-    with open(path, encoding="utf-8") as file:
-        return [{name: float(value) if value else math.nan for name, value in row.items()}
-                for row in csv.DictReader(file)]
 
 
 def summary(folder: Path) -> dict:

@@ -15,6 +15,8 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from eunoe.launch import overrides
+
 ROOT = Path(__file__).resolve().parents[2]
 # Far above what a check takes on a busy machine.
 HANG = 120
@@ -51,9 +53,8 @@ def answer(*command: str) -> tuple[int, str, str, float]:
 
 def complaint(programs: dict[bool, str], file: Path, *settings: str) -> str:
     is_study = "\nsubsection discovery" in file.read_text()
-    options = [word for setting in settings for word in ("--set", setting)]
     place = f"{file.relative_to(ROOT)} {' '.join(settings)}"
-    code, output, errors, work = answer(programs[is_study], str(file), "--check", *options)
+    code, output, errors, work = answer(programs[is_study], str(file), "--check", *overrides(settings))
     if code == HUNG:
         return f"{place}: it hangs"
     if work > MOST_WORK:

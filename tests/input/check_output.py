@@ -10,6 +10,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from eunoe.launch import overrides
+
 ROOT = Path(__file__).resolve().parents[2]
 HANG = 120
 ENTRY = "simulation control/time step"
@@ -146,9 +148,8 @@ def fail(name: str, text: str) -> None:
 
 
 def call(program: str, file: Path | str, *options: str, settings: list[str], cwd: Path) -> tuple[int, str, str]:
-    words = [word for setting in settings for word in ("--set", setting)]
     try:
-        done = subprocess.run([program, str(file), *options, *words], cwd=cwd, text=True,
+        done = subprocess.run([program, str(file), *options, *overrides(settings)], cwd=cwd, text=True,
                               capture_output=True, check=False, timeout=HANG)
     except subprocess.TimeoutExpired:
         return -1, "", "it hangs"

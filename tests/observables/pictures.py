@@ -7,15 +7,14 @@ Usage: pictures.py path/to/eunoe-particles folder
 from __future__ import annotations
 
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "postprocessing"))
-from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
+from eunoe.launch import SHARED, mpirun, overrides
+from eunoe.vtk_files import read_pvd, read_vtu
 
 CASE = Path(__file__).with_name("pictures.prm")
 DIAMETER = 1e-3
@@ -26,14 +25,8 @@ CELL_FIELDS = ("velocity", "granular_temperature", "solid_fraction", "particles"
 
 
 def run(program: str, folder: Path, ranks: int, settings: tuple[str, ...] = ()) -> None:
-    launch = []
-    if ranks > 1:
-        launch = ["mpirun", "-np", str(ranks), "--oversubscribe", "--bind-to", "none"]
-        if os.geteuid() == 0:
-            launch.append("--allow-run-as-root")
     settings = (f"simulation control/output path = {folder}", *settings)
-    options = [word for setting in settings for word in ("--set", setting)]
-    subprocess.run([*launch, program, str(CASE), "--quiet", *options], check=True)
+    subprocess.run([*mpirun(ranks, *SHARED), program, str(CASE), "--quiet", *overrides(settings)], check=True)
 
 
 def last(folder: Path, name: str, fields: tuple[str, ...]) -> dict[str, np.ndarray]:

@@ -14,12 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).parents[2]
-sys.path[:0] = [str(ROOT / "contrib" / "postprocessing"), str(ROOT / "contrib" / "utilities"),
-                str(ROOT / "tests" / "bad_input")]
-from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
-from forged import forged, set_head  # noqa: E402
-from kill_and_restart import Case  # noqa: E402
+from bad_input.forged import forged, set_head
+from eunoe.endurance.kill_and_restart import Case
+from eunoe.vtk_files import read_pvd, read_vtu
 
 CASE = str(Path(__file__).with_suffix(".prm"))
 RESTART = "restart/restart = true"

@@ -57,6 +57,14 @@ def encoded(values: np.ndarray, block_size: int = 64) -> str:
             + base64.b64encode(b"".join(packed)).decode())
 
 
+def cells(n: int) -> str:
+    """As many vertices as there are points."""
+    arrays = {("Int32", "connectivity"): range(n), ("Int32", "offsets"): range(1, n + 1), ("UInt8", "types"): n * [1]}
+    return "<Cells>\n" + "".join(
+        f'<DataArray type="{kind}" Name="{name}" format="ascii">{" ".join(map(str, values))}</DataArray>\n'
+        for (kind, name), values in arrays.items()) + "</Cells>\n"
+
+
 def piece(points: np.ndarray, fields: dict[str, np.ndarray]) -> str:
     """The share of a rank."""
     data = "".join(
@@ -64,7 +72,7 @@ def piece(points: np.ndarray, fields: dict[str, np.ndarray]) -> str:
         f'format="binary">\n{encoded(values)}\n</DataArray>\n' for name, values in fields.items())
     return (f'<Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(points)}" >\n<Points>\n'
             '<DataArray type="Float32" NumberOfComponents="3" format="binary">\n'
-            f"{encoded(points)}\n</DataArray>\n</Points>\n<PointData>\n{data}</PointData>\n"
+            f"{encoded(points)}\n</DataArray>\n</Points>\n{cells(len(points))}<PointData>\n{data}</PointData>\n"
             "</Piece>\n")
 
 

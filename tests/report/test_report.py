@@ -1,4 +1,4 @@
-"""Tests of contrib/postprocessing/report.py; they need numpy and matplotlib."""
+"""Tests of contrib/tools report; they need numpy, matplotlib and VTK."""
 
 from __future__ import annotations
 
@@ -12,25 +12,21 @@ import tempfile
 import unittest
 from pathlib import Path
 
-if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
-    print("skipped: numpy or matplotlib is missing")
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
+    print("skipped: numpy, matplotlib or VTK is missing")
     sys.exit(0)
 
 import numpy as np
 
-HERE = Path(__file__).resolve().parent
-POSTPROCESSING = HERE.parents[1] / "contrib" / "postprocessing"
-sys.path[:0] = [str(POSTPROCESSING), str(HERE)]
-
-import report
 import sample_run
-from eunoe_report.apparatus import Apparatus
-from eunoe_report.heap_results import read_map
-from eunoe_report.layer_results import counting_noise, moved_over_plate
-from eunoe_report.measured import read_measured
-from eunoe_report.quantities import number
-from eunoe_report.run_folder import ReportError, read_layers
-from eunoe_report.vtk_files import VtkError, read_pvd, read_vtu
+from eunoe.report import of_run
+from eunoe.report.apparatus import Apparatus
+from eunoe.report.heap_results import read_map
+from eunoe.report.layer_results import counting_noise, moved_over_plate
+from eunoe.report.measured import read_measured
+from eunoe.report.quantities import number
+from eunoe.report.run_folder import ReportError, read_layers
+from eunoe.vtk_files import VtkError, read_pvd, read_vtu
 
 
 class InFolder(unittest.TestCase):
@@ -75,18 +71,6 @@ class VtkFiles(InFolder):
     def test_file_without_particles(self) -> None:
         path = self.file("a.vtu", sample_run.vtu(sample_run.EMPTY_PIECE))
         self.assertEqual(read_vtu(path, ("mass",))["points"].shape, (0, 3))
-
-    def test_ascii_and_uncompressed_arrays(self) -> None:
-        raw = sample_run.base64.b64encode(
-            sample_run.struct.pack("<I3f", 12, 7., 8., 9.)).decode()
-        text = ('<VTKFile byte_order="LittleEndian"><UnstructuredGrid>'
-                '<Piece NumberOfPoints="3"><Points><DataArray type="Float64" '
-                'NumberOfComponents="3" format="ascii">0 1 2 3 4 5 6 7 8</DataArray></Points>'
-                '<PointData><DataArray type="Float32" Name="mass" format="binary">'
-                f'{raw}</DataArray></PointData></Piece></UnstructuredGrid></VTKFile>')
-        found = read_vtu(self.file("a.vtu", text), ("mass",))
-        np.testing.assert_array_equal(found["points"], np.arange(9.).reshape(3, 3))
-        np.testing.assert_array_equal(found["mass"], [7., 8., 9.])
 
     def test_file_that_is_not_complete(self) -> None:
         text = sample_run.vtu(self.piece(slice(0, 10)))
@@ -172,7 +156,7 @@ class Report(InFolder):
         """Exit code, output and errors of the script for the folder of the test."""
         output, errors = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
-            code = report.main([str(self.folder), *options])
+            code = of_run.main([str(self.folder), *options])
         return code, output.getvalue(), errors.getvalue()
 
     def page(self) -> str:

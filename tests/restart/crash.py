@@ -11,12 +11,12 @@ import re
 import shutil
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Callable
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
-from kill_and_restart import Case, Failure, compare  # noqa: E402
+from attempts import Attempts
+from eunoe.endurance.kill_and_restart import Case, compare
+from eunoe.launch import Failure
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
 LAST = "simulation control/iteration end = 3000"
@@ -25,7 +25,6 @@ AUTO = (*EVERY, "restart/restart = auto")
 NEWEST, OLDER = "restart_000000002100.checkpoint", "restart_000000001400.checkpoint"
 INDEX = "restart.latest"
 Change = Callable[[Path], None]
-failures = []
 
 
 def cut(name: str, share: float) -> Change:
@@ -146,13 +145,6 @@ def spoilt_table(stopped: Case, folder: Path, change: Change, sentence: str) -> 
         raise Failure("a good checkpoint is gone")
 
 
-def attempt(name: str, action, *arguments) -> None:
-    try:
-        action(*arguments)
-    except Failure as failure:
-        failures.append(f"{name}: {failure}")
-
-
 def main(program: str, folder: Path) -> int:
     reference = Case(program, CASE, folder / "reference", [LAST])
     reference.run(1)
@@ -177,11 +169,9 @@ def main(program: str, folder: Path) -> int:
              ("edited table", spoilt_table, stopped, folder / "edited",
               lambda results: write(table, b"x" + (results / table).read_bytes())(results),
               "no row ends after its first ")]
-    with ThreadPoolExecutor(4) as pool:
-        for waiting in [pool.submit(attempt, *what) for what in work]:
-            waiting.result()
-    print(*failures, sep="\n")
-    return 1 if failures else 0
+    attempts = Attempts()
+    attempts.make_at_once(work)
+    return attempts.exit_code()
 
 
 if __name__ == "__main__":

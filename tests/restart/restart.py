@@ -16,8 +16,9 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
-from kill_and_restart import Case, Failure, compare, kill_and_restart  # noqa: E402
+from attempts import Attempts
+from eunoe.endurance.kill_and_restart import Case, compare, kill_and_restart
+from eunoe.launch import Failure
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
 EVERY = ("restart/checkpoint = true", "restart/frequency = 1700")
@@ -52,16 +53,6 @@ POURED = (BOUNDARY + "type = outlet", BOUNDARY + "boundary id = 1",
           "grid motion/grid rotational axis = 2")
 COLLISIONS = ("post-processing/particle wall collision statistics/"
               "enable particle wall collision statistics = true",)
-failures = 0
-
-
-def check(name: str, action) -> None:
-    global failures
-    try:
-        action()
-    except Failure as failure:
-        failures += 1
-        print(f"{name}: {failure}")
 
 
 def same(reference: Case, folder: Path, ranks: int, *settings: str) -> None:
@@ -193,22 +184,23 @@ def killed(program: str, folder: Path) -> None:
 def main(program: str, folder: Path) -> int:
     reference = Case(str(Path(program).resolve()), CASE, folder / "reference", [])
     reference.run(1)
-    check("checkpoints", lambda: same(reference, folder / "checkpoints", 1, *EVERY))
-    check("2 ranks", lambda: same(reference, folder / "2", 2))
-    check("2 ranks, frequent", lambda: same(reference, folder / "2f", 2, *FREQUENT))
-    check("2 ranks, dynamic", lambda: same(reference, folder / "2d", 2, *DYNAMIC))
-    check("4 ranks, other mesh", lambda: same(reference, folder / "4", 4, *OTHER_MESH))
-    check("8 ranks, dynamic", lambda: same(reference, folder / "8", 8, *DYNAMIC, *EVERY))
-    check("SIGTERM", lambda: stopped(reference, folder / "term", signal.SIGTERM, 1, 2))
-    check("SIGUSR1", lambda: stopped(reference, folder / "usr1", signal.SIGUSR1, 2, 1))
-    check("write failure", lambda: write_failure(reference, folder / "full"))
-    check("locked semaphore", lambda: locked_semaphore(reference.program, folder / "left"))
-    check("sleep", lambda: sleeping(reference.program, folder / "sleep"))
-    check("all laws", lambda: all_laws(reference.program, folder / "laws"))
-    check("plane", lambda: on_plane(reference.program, folder / "plane"))
-    check("curved mesh", lambda: curved(reference.program, folder / "curved"))
-    check("kill", lambda: killed(reference.program, folder / "killed"))
-    return 1 if failures else 0
+    attempts = Attempts()
+    attempts.make("checkpoints", same, reference, folder / "checkpoints", 1, *EVERY)
+    attempts.make("2 ranks", same, reference, folder / "2", 2)
+    attempts.make("2 ranks, frequent", same, reference, folder / "2f", 2, *FREQUENT)
+    attempts.make("2 ranks, dynamic", same, reference, folder / "2d", 2, *DYNAMIC)
+    attempts.make("4 ranks, other mesh", same, reference, folder / "4", 4, *OTHER_MESH)
+    attempts.make("8 ranks, dynamic", same, reference, folder / "8", 8, *DYNAMIC, *EVERY)
+    attempts.make("SIGTERM", stopped, reference, folder / "term", signal.SIGTERM, 1, 2)
+    attempts.make("SIGUSR1", stopped, reference, folder / "usr1", signal.SIGUSR1, 2, 1)
+    attempts.make("write failure", write_failure, reference, folder / "full")
+    attempts.make("locked semaphore", locked_semaphore, reference.program, folder / "left")
+    attempts.make("sleep", sleeping, reference.program, folder / "sleep")
+    attempts.make("all laws", all_laws, reference.program, folder / "laws")
+    attempts.make("plane", on_plane, reference.program, folder / "plane")
+    attempts.make("curved mesh", curved, reference.program, folder / "curved")
+    attempts.make("kill", killed, reference.program, folder / "killed")
+    return attempts.exit_code()
 
 
 if __name__ == "__main__":

@@ -11,8 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
-from kill_and_restart import Case  # noqa: E402
+from eunoe.endurance.kill_and_restart import Case
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
 STEPS = (700, 1400)

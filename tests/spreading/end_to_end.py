@@ -3,24 +3,23 @@ plate is what the pictures say, the densities follow from it, the plate falls by
 another, and nothing is lost unaccounted.
 
 Usage: end_to_end.py path/to/eunoe-particles case.prm folder ranks
-Exit code 77 if numpy is missing, for a test that is skipped.
+Exit code 77 if numpy or VTK is missing, for a test that is skipped.
 """
 
 import csv
 import json
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 try:
     import numpy as np
+    from eunoe.vtk_files import read_pvd, read_vtu
 except ImportError:
     sys.exit(77)
+from eunoe.launch import mpirun, overrides
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contrib" / "postprocessing"))
-from eunoe_report.vtk_files import read_pvd, read_vtu  # noqa: E402
 
 LAYER_THICKNESS, DENSITY, DEPTH = 100e-6, 4386., 0.25e-3
 PLATE_LENGTH, GAP = 73e-3 * 0.01, 0.1e-3
@@ -30,11 +29,8 @@ FULL_LAYER = DENSITY * PLATE_LENGTH * DEPTH * LAYER_THICKNESS
 
 
 def run(program: str, case: str, folder: Path, ranks: int) -> None:
-    command = [program, case, "--set", f"simulation control/output path = {folder}"]
-    if ranks > 1:
-        root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        command = ["mpirun", "--oversubscribe", "-np", str(ranks), *root, *command]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run([*mpirun(ranks, "--oversubscribe"), program, case,
+                    *overrides({"simulation control/output path": folder})], check=True, stdout=subprocess.DEVNULL)
 
 
 def close(name: str, value: float, reference: float, relative: float) -> None:

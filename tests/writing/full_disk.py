@@ -14,11 +14,11 @@ import resource
 import subprocess
 import sys
 import time
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[2] / "contrib" / "utilities"))
-from kill_and_restart import Case, Failure, compare, kill_all  # noqa: E402
+from attempts import Attempts
+from eunoe.endurance.kill_and_restart import Case, compare, kill_all
+from eunoe.launch import Failure
 
 TESTS = Path(__file__).resolve().parents[1]
 STIRRED = str(TESTS / "restart" / "stirred.prm")
@@ -40,7 +40,6 @@ AT_START = {"energies.csv": STIRRED, "force_0.csv": STIRRED,
             "apparatus.json.new": str(TESTS / "spreading" / "tiny.prm"),
             "layers.csv": str(TESTS / "spreading" / "tiny.prm"),
             "heap.csv": str(TESTS / "heap" / "tiny.prm")}
-failures = []
 
 
 def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None:
@@ -107,13 +106,6 @@ def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
     compare(alone, case, f"continued from step {step}")
 
 
-def attempt(name: str, action, *arguments) -> None:
-    try:
-        action(*arguments)
-    except Failure as failure:
-        failures.append(f"{name}: {failure}")
-
-
 def main(program: str, folder: Path) -> int:
     reference = Case(program, STIRRED, folder / "reference", SETTINGS)
     reference.run(1)
@@ -123,12 +115,9 @@ def main(program: str, folder: Path) -> int:
     work += [(f"{link} at the start", start_is_full, program, folder / ("start_" + link), link, prm)
              for link, prm in AT_START.items()]
     work.append(("tables", disk_fills, program, folder / "tables", [every_step]))
-    # A launcher takes seconds to notice that its ranks have failed, in which the others can work.
-    with ThreadPoolExecutor(4) as pool:
-        for waiting in [pool.submit(attempt, *what) for what in work]:
-            waiting.result()
-    print(*failures, sep="\n")
-    return 1 if failures else 0
+    attempts = Attempts()
+    attempts.make_at_once(work)
+    return attempts.exit_code()
 
 
 if __name__ == "__main__":

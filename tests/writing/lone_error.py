@@ -6,15 +6,13 @@ Usage: lone_error.py path/to/lone-error path/to/eunoe-particles folder
 
 from __future__ import annotations
 
-import os
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-MPIRUN = ["mpirun", "--oversubscribe", "--bind-to", "none"]
-if os.geteuid() == 0:
-    MPIRUN.append("--allow-run-as-root")
+from eunoe.launch import SHARED, mpirun
+
 SENTENCE = "The file is not here."
 BOX = Path(__file__).resolve().parents[1] / "meshes" / "gmsh" / "hexahedra.msh"
 CASE = """subsection simulation control
@@ -46,7 +44,7 @@ def lone_error(program: str) -> None:
     for ranks in ("0", "1", "1 2", "0 1 2"):
         place = f"Error on rank(s) {ranks} of 3"
         try:
-            run = subprocess.run([*MPIRUN, "-np", "3", program, *ranks.split()], timeout=60, text=True,
+            run = subprocess.run([*mpirun(3, *SHARED), program, *ranks.split()], timeout=60, text=True,
                                  capture_output=True, check=False)
         except subprocess.TimeoutExpired:
             fail(f"{place}: it hangs")
@@ -64,10 +62,10 @@ def one_sees_the_files(program: str, folder: Path) -> None:
         (folder / name).mkdir(parents=True)
     shutil.copy(BOX, folder / "first")
     (folder / "first" / "case.prm").write_text(CASE)
-    command = [*MPIRUN]
-    for name in ("first", "second"):
-        command += [*([":"] if name == "second" else []), "-np", "1", "--wdir", str(folder / name), program,
-                    "case.prm"]
+    launch = mpirun(2, *SHARED)[:-2]  # each rank has a number and a folder of its own
+    command = []
+    for before, name in ((launch, "first"), ([":"], "second")):
+        command += [*before, "-np", "1", "--wdir", str(folder / name), program, "case.prm"]
     try:
         run = subprocess.run(command, timeout=60, text=True, capture_output=True, check=False)
     except subprocess.TimeoutExpired:

@@ -1,0 +1,89 @@
+"""The commands: `contrib/tools NAME ...` calls `main` of the module that stands beside the name."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import signal
+import sys
+
+from eunoe.launch import Failure
+
+MISSING_PACKAGE = 77  # exit code, by which tests know that they are to be skipped
+# What Debian's packages are called.
+PACKAGES = {"numpy": "python3-numpy", "matplotlib": "python3-matplotlib", "vtkmodules": "python3-vtk9",
+            "PIL": "python3-pil"}
+
+COMMANDS = {
+    "Results": {
+        "report": ("report.of_run", "turns the output folder of a run into a page, report.html"),
+        "discovery-report": ("report.of_study", "turns the output folder of a study into a page, discovery.html"),
+    },
+    "Verification and long runs": {
+        "verification": ("verification.compare", "compares the cases of prm/verification with their references"),
+        "kill-and-restart": ("endurance.kill_and_restart", "kills a run again and again and lets it continue"),
+        "soak": ("endurance.soak", "runs millions of steps and watches the memory"),
+    },
+    "Speed": {
+        "benchmark": ("benchmarks.speed", "measures the speed beside LAMMPS and LIGGGHTS"),
+        "balance": ("benchmarks.balance", "measures what load balancing does over a spreading run"),
+        "late-pass": ("benchmarks.late_pass", "measures what sleeping particles save"),
+        "collapse": ("benchmarks.collapse", "compares the collapse of a column with LAMMPS"),
+        "predict-scaling": ("scaling.predict", "predicts what a case takes on many ranks"),
+    },
+    "Studies": {
+        "feedstock": ("studies.feedstock", "what the feedstock does to the layers"),
+        "forgetting": ("studies.forgetting", "what a packing loses when its contacts forget"),
+        "heap-size": ("studies.heap_size", "how a heap's angle depends on the size of its disc"),
+        "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
+        "suite": ("discovery.suite", "makes a blind suite of hidden truths for eunoe-discovery, and studies it"),
+        "score": ("discovery.score", "compares the answers of such a suite with the truths"),
+    },
+    "Documentation": {
+        "document-parameters": ("documentation.parameters", "writes doc/parameters.md from a program's description"),
+        "pictures": ("pictures.make", "rebuilds the pictures of doc/pictures from their cases"),
+        "example-pictures": ("pictures.examples", "draws the cases of prm/examples"),
+        "apparatus": ("pictures.apparatus_at", "draws the whole apparatus of a spreading run"),
+    },
+}
+MODULES = {name: module for group in COMMANDS.values() for name, (module, _) in group.items()}
+
+
+def listing() -> str:
+    lines = ["Usage: contrib/tools COMMAND ...", "       contrib/tools COMMAND --help"]
+    for title, group in COMMANDS.items():
+        lines += ["", f"{title}:", *(f"  {name:19} {text}" for name, (_, text) in group.items())]
+    return "\n".join(lines)
+
+
+def run(name: str, words: list[str]) -> int:
+    """A command with its arguments."""
+    try:
+        module = importlib.import_module(f"eunoe.{MODULES[name]}")
+        return module.main(words)
+    except ImportError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in PACKAGES:
+            raise
+        print(f"{sys.executable} has no {package}: install {PACKAGES[package]}, and call this with Debian's "
+              "/usr/bin/python3.", file=sys.stderr)
+        return MISSING_PACKAGE
+    except Failure as failure:
+        print(failure, file=sys.stderr)
+        return 1
+
+
+def main(words: list[str] | None = None) -> int:
+    name, *rest = (sys.argv[1:] if words is None else words) or ["--help"]
+    if name in ("-h", "--help"):
+        print(listing())
+        return 0
+    if name not in MODULES:
+        near = difflib.get_close_matches(name, MODULES, 1)
+        print(f"There is no command '{name}'. " + (f"Did you mean '{near[0]}'?" if near else
+                                                   "See contrib/tools --help."), file=sys.stderr)
+        return 2
+    # As other programs, end quietly when who reads the output has read enough.
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    sys.argv = [f"tools {name}", *rest]  # how argparse calls the program
+    return run(name, rest)

@@ -1,0 +1,44 @@
+"""Runs eunoe-discovery."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+from eunoe.launch import mpirun
+
+VERDICTS = (0, 10, 11, 12, 13)
+STOPPED = 3
+
+
+class Stopped(Exception):
+    """The program was asked to stop."""
+
+
+class Program:
+    def __init__(self, path: Path, ranks: int) -> None:
+        self.path, self.ranks = path.resolve(), ranks
+
+    def run(self, arguments: list[str], log: Path, allowed: tuple[int, ...] = (0,)) -> int:
+        """Its output goes to a file. Throws if the exit code is none of the allowed ones."""
+        with open(log, "w", encoding="utf-8") as output:
+            code = subprocess.run([*mpirun(self.ranks, "--oversubscribe"), str(self.path), *arguments], stdout=output,
+                                  stderr=subprocess.STDOUT, check=False).returncode
+        if code == STOPPED:
+            raise Stopped
+        if code not in allowed:
+            raise RuntimeError(f"{self.path.name} gave exit code {code}; see {log}")
+        return code
+
+    def effects(self, study: Path) -> dict[str, dict]:
+        """The effects of a study by name: sign and confounders, from their files' own words."""
+        done = subprocess.run([self.path, str(study), "--list-effects"], text=True, capture_output=True,
+                              check=True)
+        effects = {}
+        for name, sign, confounders in re.findall(
+                r"^(\S+): .*\n  amplitude: .*; sign: (\w+); confounders: (.*); process: .*$",
+                done.stdout, re.MULTILINE):
+            effects[name] = {"sign": sign,
+                             "confounders": [] if confounders == "none" else confounders.split(", ")}
+        return effects

@@ -1,0 +1,74 @@
+"""Scores a suite.
+
+Usage: contrib/tools score folder [--label NAME ...]
+       contrib/tools score answers.jsonl
+
+Of a folder that suite.py has made it opens the sealed truths and compares them with the studies'
+answers, and writes scores_<label>.md and scores_<label>.csv (one row a case) into it. The suites on
+synthetic laboratories and on recorded simulations (tests/discovery) print truths and answers as lines
+of JSON instead; their scores go beside that file.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from eunoe.launch import Failure, parser
+from eunoe.tables import as_markdown, write_csv
+
+from .outcomes import Outcome, Scores, read, read_lines, score
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    return as_markdown([head, *rows]) + "\n"
+
+
+def page(scores: Scores, label: str, n: int) -> str:
+    text = f"# Scores of {label}: {n} cases\n\n"
+    text += table(["", "rate", "95 % interval (Wilson)", "cases", "target"],
+                  [r.row() for r in scores.rates]) + "\n"
+    text += table(["", "value"], [[name, f"{value:.3g}"] for name, value in scores.numbers.items()])
+    text += "\n## Answers to each truth (one effect or none)\n\n"
+    answers = sorted({answer for row in scores.confusion.values() for answer in row})
+    text += table(["truth", *answers],
+                  [[truth, *(str(row[a]) if row[a] else "" for a in answers)]
+                   for truth, row in sorted(scores.confusion.items())])
+    text += "\n## Stated confidence of the first name, and how often it was right\n\n"
+    text += table(["confidence", "cases", "mean stated", "right"],
+                  [[name, str(number), f"{stated:.2f}", f"{right:.2f}"]
+                   for name, number, stated, right in scores.calibration])
+    return text
+
+
+def rows_of_cases(outcomes: list[Outcome]) -> list[list]:
+    return [["case", "kind", "truth", "strength", "verdict", "named", "first", "confidence", "covers", "shrink",
+             "runs"],
+            *([o.case.name, o.case.kind, " + ".join(sorted(o.truth)), o.strength, o.verdict,
+               " + ".join(sorted(o.named)), o.first, o.confidence.get(o.first, 0.), o.covers,
+               "" if o.shrink is None else o.shrink, o.runs] for o in outcomes)]
+
+
+def write(outcomes: list[Outcome], label: str, folder: Path) -> None:
+    text = page(score(outcomes), label, len(outcomes))
+    (folder / f"scores_{label}.md").write_text(text, encoding="utf-8")
+    write_csv(folder / f"scores_{label}.csv", rows_of_cases(outcomes))
+    print(text)
+
+
+def main(words: list[str]) -> int:
+    arguments = parser(__doc__)
+    arguments.add_argument("suite", type=Path)
+    arguments.add_argument("--label", action="append", default=[])
+    options = arguments.parse_args(words)
+    suite = options.suite
+    if suite.is_file():
+        write(read_lines(suite), suite.stem, suite.parent)
+        return 0
+    for label in options.label or ["study"]:
+        outcomes = [o for o in (read(path, label) for path in sorted(suite.iterdir())
+                                if path.is_dir() and path.name != "pilot") if o is not None]
+        if not outcomes:
+            raise Failure(f"There are no finished studies '{label}' in {suite}.")
+        write(outcomes, label, suite)
+    return 0
+

@@ -1,0 +1,142 @@
+"""Makes a blind suite: hidden truths, their data, and a study of each.
+
+Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full]
+       [--seeds ci|development|reported] [--study-seeds N] [--ranks N] [--label NAME]
+       [--set "discovery/entry = value" ...]
+
+A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
+suite are amplitudes from it. Then the twins are made, then the studies. What is there already is not made
+again, and what was interrupted goes on, so the command may be given again at any time. --label keeps the
+studies of an ablation beside the others: they use the same data. score.py makes the tables.
+
+Thresholds are tuned on development seeds only; the reported suite is made afterwards.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+from pathlib import Path
+
+from eunoe.launch import Failure, overrides, parser
+
+from .case import FIRST_SEED, TIERS, Case, make_cases
+from .program import VERDICTS, Program, Stopped
+from .strength import Strengths
+
+TRUTH = """include {study}
+
+subsection discovery
+  set measured data = ../measured.csv
+end
+subsection twin
+  set effects     = {effects}
+  set seed        = {seed}
+  set sealed file = truth.json
+{more}end
+"""
+
+
+def parse(words: list[str]) -> argparse.Namespace:
+    arguments = parser(__doc__)
+    arguments.add_argument("program", type=Path)
+    arguments.add_argument("study", type=Path, help="study file; its measured data are not used")
+    arguments.add_argument("folder", type=Path)
+    arguments.add_argument("--tier", choices=TIERS, default="small")
+    arguments.add_argument("--seeds", choices=FIRST_SEED, default="development")
+    arguments.add_argument("--study-seeds", type=int, default=1, metavar="N",
+                        help="different seeds of studies; with one, studies share most of their runs")
+    arguments.add_argument("--ranks", type=int, default=1)
+    arguments.add_argument("--label", default="study", help="name of this set of studies")
+    arguments.add_argument("--set", action="append", default=[], metavar="ENTRY",
+                        help="entry of the study, such as an ablation")
+    arguments.add_argument("--twin", action="append", default=[], metavar="ENTRY",
+                        help="entry of the twins, such as 'overrides = powder spreading/depth = 4e-4'")
+    arguments.add_argument("--only", default="", help="only cases whose name contains this")
+    return arguments.parse_args(words)
+
+
+class Suite:
+    def __init__(self, options: argparse.Namespace) -> None:
+        self.options = options
+        self.program = Program(options.program, options.ranks)
+        self.folder = options.folder.resolve()
+        self.study = options.study.resolve()
+
+    def make_data(self, case: Case) -> Path:
+        folder = self.folder / case.name
+        if (folder / "measured.csv").exists():
+            return folder
+        (folder / "sealed").mkdir(parents=True, exist_ok=True)
+        effects = ", ".join(f"{name}: {amplitude!r}" for name, amplitude in case.amplitudes.items())
+        more = "".join(f"  set {entry}\n" for entry in self.options.twin)
+        truth = folder / "sealed" / "truth.prm"
+        truth.write_text(TRUTH.format(study=self.study, effects=effects, seed=case.seed, more=more),
+                         encoding="utf-8")
+        case.save(folder)
+        (folder / "sealed" / "truth.json").unlink(missing_ok=True)
+        self.program.run(["--make-twin", str(truth)], folder / "twin.log")
+        return folder
+
+    def make_study(self, case: Case, folder: Path, label: str, settings: list[str]) -> None:
+        target = folder / label
+        if (target / "discovery.json").exists():
+            return
+        entries = [f"discovery/measured data = {folder / 'measured.csv'}",
+                   f"discovery/output path = {target}",
+                   f"discovery/cache path = {self.folder / 'cache'}",
+                   f"discovery/seed = {case.study_seed}",
+                   "discovery/write page = false", *settings]
+        if case.excluded:
+            entries.append(f"discovery/excluded effects = {', '.join(case.excluded)}")
+        # The truth is out of reach while the study runs.
+        sealed, away = folder / "sealed", self.folder / f".sealed_{case.name}"
+        if sealed.exists():
+            sealed.rename(away)
+        try:
+            self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log", VERDICTS)
+        except RuntimeError as error:
+            print(f"  {error}")
+            shutil.rmtree(target, ignore_errors=True)
+        finally:
+            if away.exists():
+                away.rename(sealed)
+
+    def pilot(self) -> Strengths:
+        first = FIRST_SEED[self.options.seeds]
+        case = Case("pilot", "none", first - 1, first // 100)
+        folder = self.make_data(case)
+        self.make_study(case, folder, "study", [])
+        return Strengths(folder / "study")
+
+    def run(self) -> None:
+        effects = self.program.effects(self.study)
+        if not effects:
+            raise Failure("The study has no effects.")
+        print("pilot", flush=True)
+        strengths = self.pilot()
+        for case in make_cases(effects, self.options.tier, self.options.seeds,
+                               self.options.study_seeds):
+            if self.options.only not in case.name:
+                continue
+            found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
+            missing = [name for name, amplitude in found.items() if amplitude is None]
+            if missing:
+                print(f"{case.name}: left out, as {', '.join(missing)} cannot be so strong in its range")
+                continue
+            case.amplitudes = {name: a for name, a in found.items() if a is not None}
+            print(case.name, flush=True)
+            folder = self.make_data(case)
+            self.make_study(case, folder, self.options.label, self.options.set)
+
+
+def main(words: list[str]) -> int:
+    suite = Suite(parse(words))
+    suite.folder.mkdir(parents=True, exist_ok=True)
+    try:
+        suite.run()
+    except (KeyboardInterrupt, Stopped):
+        print("Stopped; the same command goes on.")
+        return 3
+    return 0
+

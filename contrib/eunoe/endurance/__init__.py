@@ -1,0 +1,1 @@
+"""Long runs: kills and restarts, memory over millions of steps."""

@@ -1,0 +1,175 @@
+"""Kills a run again and again at random moments, lets it continue from its last checkpoint, and
+compares the end with that of a run that was left alone: state, tables and lists of pictures.
+
+Usage: contrib/tools kill-and-restart build/release/eunoe-particles case.prm FOLDER
+           [--kills 100] [--ranks 1,2] [--frequency 1000] [--seed 1] [--set ENTRY=VALUE ...]
+
+Exit code 1 and a sentence if a restart failed, lost more than one interval, or ended differently.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+from eunoe.launch import SHARED, Failure, mpirun, overrides, parser, rank_numbers
+
+
+class Case:
+    """A case of the program in a folder of its own."""
+
+    def __init__(self, program: str, case: str, folder: Path, settings: list[str]) -> None:
+        self.program, self.case, self.folder, self.settings = program, case, folder, settings
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        self.results = folder / "results"
+        self.dump = folder / "dump"
+
+    def command(self, ranks: int, *settings: str) -> list[str]:
+        entries = (f"simulation control/output path = {self.results}", *self.settings, *settings)
+        return [*mpirun(ranks, *SHARED, "--mca", "mpi_yield_when_idle", "1"), self.program, self.case, "--dump",
+                str(self.dump), *overrides(entries)]
+
+    def start(self, ranks: int, *settings: str) -> subprocess.Popen:
+        return subprocess.Popen(self.command(ranks, *settings), start_new_session=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+    def run(self, ranks: int, *settings: str) -> None:
+        process = self.start(ranks, *settings)
+        output = process.communicate()[0]
+        if process.returncode != 0:
+            raise Failure(f"The run ended with exit code {process.returncode}:\n{output}")
+
+    def processes(self) -> list[int]:
+        """Numbers of the ranks that run the case, without the launcher."""
+        found = subprocess.run(["pgrep", "-f", f"^{self.program} .*{self.results}"], text=True,
+                               capture_output=True, check=False)
+        return [int(word) for word in found.stdout.split()]
+
+    def last_step(self) -> int:
+        """Of the newest checkpoint, 0 if there is none."""
+        index = self.results / "restart.latest"
+        names = index.read_text().split() if index.is_file() else []
+        return int(re.search(r"_(\d+)\.", names[0]).group(1)) if names else 0
+
+
+def tables_of(folder: Path) -> dict[str, str]:
+    """Tables and lists of pictures, without the columns that the wall clock fills."""
+    found = {}
+    for file in sorted([*folder.glob("*.csv"), *folder.glob("*.pvd")]):
+        lines = file.read_text().splitlines()
+        if lines and lines[0].endswith(",wall_seconds"):
+            lines = [line.rsplit(",", 1)[0] for line in lines]
+        found[file.name] = "\n".join(lines)
+    return found
+
+
+def compare(reference: Case, other: Case, what: str) -> None:
+    if reference.dump.read_bytes() != other.dump.read_bytes():
+        raise Failure(f"{what}: the final state differs from that of the run left alone.")
+    tables, others = tables_of(reference.results), tables_of(other.results)
+    for name in sorted(tables.keys() | others.keys()):
+        if tables.get(name) != others.get(name):
+            raise Failure(f"{what}: {name} differs from that of the run left alone.")
+
+
+def kill_all(case: Case, process: subprocess.Popen) -> str:
+    """Kills the launcher and every rank, which the launcher puts into groups of their own.
+
+    @return what the run has printed"""
+    os.killpg(process.pid, signal.SIGKILL)
+    while case.processes():
+        for number in case.processes():
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(number, signal.SIGKILL)
+        time.sleep(0.01)
+    return process.communicate()[0]
+
+
+def reached_step(output: str) -> int:
+    """The last step that a run has reported, 0 if none."""
+    steps = re.findall(r" %  step (\d+)  t = .*", output)
+    return int(steps[-1]) if steps else 0
+
+
+def check_loss(case: Case, output: str, before: int, frequency: int, what: str) -> int:
+    """No more than an interval is lost.
+
+    @return how many steps are"""
+    left = case.last_step()
+    if left < before:
+        raise Failure(f"{what} the newest checkpoint is of step {left}, and it had been of step {before}.")
+    lost = reached_step(output) - left
+    if lost > frequency:
+        raise Failure(f"{what} the newest checkpoint is of step {left}, and the run had come to step "
+                      f"{left + lost}: more than an interval of {frequency} steps is lost.")
+    return lost
+
+
+def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
+                     frequency: int, draw: random.Random) -> tuple[int, int, int]:
+    """@return numbers of restarts from a checkpoint, of ends that were compared, and the most steps
+    that a kill has cost"""
+    began = time.monotonic()
+    case.run(ranks[0])
+    duration = time.monotonic() - began
+    checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}",
+                   f"simulation control/log frequency = {max(1, frequency // 20)}")
+    done, restarts, ends, most_lost, fresh = 0, 0, 0, 0, True
+    while done < kills or not fresh:
+        mode = "restart/restart = " + ("false" if fresh else "auto")
+        if fresh:
+            shutil.rmtree(case.results, ignore_errors=True)
+            case.dump.unlink(missing_ok=True)
+        before = 0 if fresh else case.last_step()
+        restarts += before > 0
+        process = case.start(draw.choice(ranks), *checkpoints, mode)
+        try:
+            output = process.communicate(
+                timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
+        except subprocess.TimeoutExpired:
+            output = kill_all(case, process)
+            done += 1
+            most_lost = max(most_lost, check_loss(case, output, before, frequency, f"After kill {done}"))
+            fresh = False
+            continue
+        if process.returncode != 0:
+            raise Failure(f"After kill {done} the run ended with exit code {process.returncode}:\n"
+                          f"{output}")
+        if before > 0 and f"step {before}," not in output:
+            raise Failure(f"After kill {done} the run did not continue from step {before}:\n{output}")
+        compare(reference, case, f"After kill {done}")
+        ends += 1
+        fresh = True
+    return restarts, ends, most_lost
+
+
+def main(words: list[str]) -> int:
+    arguments = parser(__doc__)
+    arguments.add_argument("program")
+    arguments.add_argument("case")
+    arguments.add_argument("folder", type=Path)
+    arguments.add_argument("--kills", type=int, default=100)
+    arguments.add_argument("--ranks", default="1,2", help="numbers of ranks to draw from")
+    arguments.add_argument("--frequency", type=int, default=1000, help="steps between checkpoints")
+    arguments.add_argument("--seed", type=int, default=1)
+    arguments.add_argument("--set", action="append", default=[], dest="settings")
+    options = arguments.parse_args(words)
+    ranks = rank_numbers(options.ranks)
+    program = str(Path(options.program).resolve())
+    reference = Case(program, options.case, options.folder / "alone", options.settings)
+    killed = Case(program, options.case, options.folder / "killed", options.settings)
+    reference.run(ranks[0])
+    restarts, ends, lost = kill_and_restart(reference, killed, ranks, options.kills, options.frequency,
+                                            random.Random(options.seed))
+    print(f"{options.kills} kills, {restarts} restarts, each from the last checkpoint; a kill cost at most "
+          f"{lost} steps of an interval of {options.frequency}; {ends} runs came to their end, with the same "
+          "bits.")
+    return 0

@@ -1,0 +1,64 @@
+"""Starting Eunoe's programs."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+# Of runs on ranks that share cores with others, as in tests.
+SHARED = ("--oversubscribe", "--bind-to", "none")
+
+
+class Failure(Exception):
+    """What went wrong, in a sentence."""
+
+
+def mpirun(ranks: int, *options: str) -> list[str]:
+    """What stands before a program on so many ranks; nothing for one. Without options each rank has a core of
+    its own as long as there are enough."""
+    if ranks <= 1:
+        return []
+    spare = ["--oversubscribe"] if not options and ranks > (os.cpu_count() or 1) else []
+    root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+    return ["mpirun", *root, *spare, *options, "-np", str(ranks)]
+
+
+def overrides(entries: Mapping[str, Any] | Iterable[str]) -> list[str]:
+    """Options that override entries: values by "subsection/entry", or texts "subsection/entry = value"."""
+    texts = (f"{entry} = {value}" for entry, value in entries.items()) if isinstance(entries, Mapping) else entries
+    return [word for text in texts for word in ("--set", text)]
+
+
+def output_of(command: list[str], folder: Path) -> str:
+    """What a command printed in a folder. Failure if its exit code is not 0."""
+    done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          check=False)
+    if done.returncode != 0:
+        raise Failure(f"'{' '.join(command)}' ended with exit code {done.returncode}:\n{done.stdout[-2000:]}")
+    return done.stdout
+
+
+def logged(command: list[str], log: Path) -> int:
+    """The exit code of a command whose output goes to the end of a file."""
+    with open(log, "a", encoding="utf-8") as output:
+        return subprocess.run(command, stdout=output, stderr=subprocess.STDOUT, check=False).returncode
+
+
+def parser(documentation: str) -> argparse.ArgumentParser:
+    """Of a command, described by the first paragraph of its module's text."""
+    return argparse.ArgumentParser(description=" ".join(documentation.split("\n\n", 1)[0].split()))
+
+
+def rank_numbers(text: str) -> list[int]:
+    """The argument of --ranks."""
+    try:
+        ranks = [int(word) for word in text.split(",")]
+    except ValueError:
+        ranks = [0]
+    if min(ranks) < 1:
+        raise Failure(f"--ranks {text}: give whole numbers above 0, as in 1,2.")
+    return ranks

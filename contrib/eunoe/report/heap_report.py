@@ -1,0 +1,103 @@
+"""The report of a run of the heap instrument."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .heap_charts import map_figure, particles_figure, profile_figure
+from .heap_results import Profile, Views, read_disc, read_map, read_profile, read_views
+from .page import Page
+from .quantities import SPACE, length, mass, number, percent
+from .run_folder import Run
+from .run_section import add_run_section
+from eunoe.vtk_files import VtkError, read_vtu
+
+# By Gaboriault et al. (2025), for their powder on a disc of 10 mm.
+MEASURED_ANGLE = 37.5
+# Of the powder that was filled in; of four heaps one stays if it flows.
+COLUMN_SHARE = 0.6
+
+
+def _degrees(value: float) -> str:
+    return f"{value:.1f}{SPACE}degrees"
+
+
+def _summary_text(run: Run, views: Views, disc: float) -> str:
+    text = (f"The heap on the disc of {length(disc)} has a base angle of "
+            f"{_degrees(views.mean_angle)} (mean of {len(views.base_angle)} views, standard deviation "
+            f"{_degrees(views.angle_spread)}) and is {length(views.mean_height)} high. "
+            f"{mass(views.mass_on_disc)} of powder lie on the disc, {mass(views.mass_drained)} have "
+            "drained.")
+    if run.summary and "heap_measured_base_angle" in run.summary:
+        text += (" The measured profile that was given has a base angle of "
+                 f"{_degrees(float(run.summary['heap_measured_base_angle']))}; the heights differ "
+                 "by " + length(float(run.summary["heap_profile_difference"])) + " (root mean square).")
+    return text
+
+
+def _size_notice(disc: float, particles: dict[str, np.ndarray] | None) -> str:
+    if disc > 9e-3 or particles is None or len(particles["diameter"]) == 0:
+        return ""
+    ratio = disc / float(particles["diameter"].mean())
+    return (f"The disc is {number(ratio, 2)} mean diameters wide. On so small a disc cohesion and the "
+            "size of the particles raise the angle: it is not to be compared with the "
+            f"{_degrees(MEASURED_ANGLE)} measured on 10{SPACE}mm, but with runs on a disc of the "
+            "same size.")
+
+
+def _column_notice(run: Run, views: Views) -> str:
+    """That there is no heap: what flows leaves at most a cone on the disc."""
+    inserted = float(run.summary["inserted_mass"]) if run.summary else 0.
+    if inserted <= 0. or views.mass_on_disc < COLUMN_SHARE * inserted:
+        return ""
+    return (f"{percent(views.mass_on_disc / inserted, 0)} of the powder stayed on the disc: cohesion "
+            "holds it up as a column, and the angle says only how much was filled in. Fill in more, or "
+            "take a wider disc and tube.")
+
+
+def _read_particles(page: Page, run: Run) -> dict[str, np.ndarray] | None:
+    picture = run.last_picture("_heap")
+    if picture is None:
+        return None
+    try:
+        particles = read_vtu(picture[1], ("diameter",))
+    except VtkError as error:
+        page.notice(str(error))
+        return None
+    return particles if "diameter" in particles and len(particles["points"]) else None
+
+
+def _add_profile(page: Page, profile: Profile, views: Views, disc: float) -> None:
+    page.heading("Profile and angles")
+    measured = " Black: the measured profile." if np.isfinite(profile.measured).any() else ""
+    page.figure(profile_figure(profile, views, disc),
+                "(a) Height of the outline across the disc, mean and standard deviation of the "
+                f"views.{measured} (b) Base angle of each view: of the isosceles triangle with the "
+                "disc's diameter as its base and the outline's area. The red lines show the mean.")
+
+
+def heap_report(run: Run) -> Page:
+    """The page for a run that has measured its heap."""
+    views = read_views(run.folder / "heap.csv")
+    profile = read_profile(run.folder / "heap_profile.csv")
+    disc, rim = read_disc(run.folder / "apparatus.json")
+    page = Page(f"Heap of powder with a base angle of {_degrees(views.mean_angle)}",
+                f"Run {run.name}")
+    particles = _read_particles(page, run)
+    for notice in (_column_notice(run, views), _size_notice(disc, particles)):
+        if notice:
+            page.notice(notice)
+    page.paragraph(_summary_text(run, views, disc))
+    page.heading("The heap")
+    page.figure(map_figure(read_map(run.folder / "heap_map.pgm"), views, disc, rim),
+                f"Mean of the {len(views.base_angle)} views, to scale: black where the heap is seen "
+                "in all of them, white where in none. Red: the triangle of the same area, whose "
+                "base angle is the result. Grey: the disc.")
+    if particles is not None:
+        figure, share = particles_figure(particles, float(views.height.max()), disc, rim)
+        drawn = "" if share == 1. else f" The front {percent(share, 0)} of them are drawn."
+        page.figure(figure, "The particles when the heap was measured, seen along z, to scale; what clings "
+                    "to the lifted tube is not shown." + drawn)
+    _add_profile(page, profile, views, disc)
+    add_run_section(page, run, {})
+    return page

@@ -1,0 +1,1 @@
+"""Studies: series of runs and the tables that are made of them."""

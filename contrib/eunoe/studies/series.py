@@ -1,0 +1,87 @@
+"""What all studies share: runs that are not repeated, and what is said of several seeds."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import statistics
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, Protocol
+
+from eunoe.launch import logged, parser
+from eunoe.tables import Table, as_markdown
+
+
+class Run(Protocol):
+    """One run of a series."""
+
+    @property
+    def name(self) -> str:
+        """Of its output folder."""
+
+    def command(self, options: argparse.Namespace) -> list[str]:
+        """What starts it."""
+
+    def result(self, folder: Path) -> Any:
+        """What it found; None if it has not finished."""
+
+
+# Settings of a run that is long enough to be interrupted: it continues from its checkpoint.
+CONTINUED = {"restart/restart": "auto", "restart/checkpoint": "true", "restart/wall time interval": 5}
+
+
+def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentParser:
+    """Of a study, before its own are added."""
+    found = parser(documentation)
+    found.add_argument("program")
+    found.add_argument("folder", type=Path)
+    found.add_argument("--seeds", type=int, nargs="+", default=list(seeds))
+    found.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    found.add_argument("--table-only", action="store_true", help="runs nothing")
+    return found
+
+
+def summary_of(folder: Path) -> dict | None:
+    """Of a finished run."""
+    try:
+        return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+
+
+def compute(runs: Sequence[Run], options: argparse.Namespace,
+            after_each: Callable[[], None] = lambda: None) -> bool:
+    """Makes the runs that have not finished, unless only a table is wanted. Whether all went well."""
+    options.folder.mkdir(parents=True, exist_ok=True)
+
+    def make(run: Run) -> bool:
+        if run.result(options.folder):
+            return True
+        code = logged(run.command(options), options.folder / f"{run.name}.log")
+        print(f"{run.name} ended with exit code {code}", flush=True)
+        after_each()
+        return code == 0
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        return all(list(pool.map(make, () if options.table_only else runs)))
+
+
+def publish(table: Table, file: Path, *sentences: str) -> None:
+    """Writes a table and what is said of it into a file, and prints both."""
+    text = "\n".join([as_markdown(table), *(word for sentence in sentences for word in ("", sentence))]) + "\n"
+    file.write_text(text, encoding="utf-8")
+    print(text, end="")
+
+
+def spread(values: Sequence[float]) -> float:
+    """Standard deviation; NaN of a single value."""
+    return statistics.stdev(values) if len(values) > 1 else math.nan
+
+
+def in_errors(values: Sequence[float], reference: Sequence[float]) -> float:
+    """Difference of the means over its standard error; NaN where that is not known."""
+    error = math.hypot(*(spread(v) / math.sqrt(len(v)) for v in (values, reference)))
+    return (statistics.mean(values) - statistics.mean(reference)) / error if error > 0. else math.nan

@@ -1,0 +1,111 @@
+"""Whether sleeping particles change the densities of layers: runs a spreading case with and without
+adaptive sparse contacts for several seeds, which draw sizes and places anew, and compares.
+
+Usage: contrib/tools sleep-layers path/to/eunoe-particles folder [--case CASE.prm] [--layers 21]
+       [--seeds 1 2 3 4] [--jobs 1] [--ranks 1] [--set ENTRY=VALUE ...] [--table-only]
+
+A run that has finished is not run again, one that was interrupted continues from its checkpoint.
+sleep_layers.md in the folder has LRD and CRD of every layer, mean and standard deviation over the
+seeds; then the difference of their means in standard errors. With n seeds each way a difference of no
+significance exceeds 2 to 2.5 standard errors in one layer of twenty.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+from dataclasses import dataclass
+from pathlib import Path
+
+from eunoe.launch import Failure, mpirun, overrides
+from eunoe.repository import CASES
+from eunoe.tables import Table, read_rows
+
+from .series import CONTINUED, arguments, compute, in_errors, publish, spread, summary_of
+
+SLEEP = "model parameters/adaptive sparse contacts"
+
+
+@dataclass(frozen=True)
+class Run:
+    sleep: bool
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{'sleep' if self.sleep else 'awake'}_seed{self.seed}"
+
+    def command(self, options: argparse.Namespace) -> list[str]:
+        settings = {f"{SLEEP}/enable adaptive sparse contacts": "true" if self.sleep else "false",
+                    "powder spreading/number of layers": options.layers,
+                    "powder spreading/layer pictures": "false",
+                    "simulation control/output path": options.folder / self.name, **CONTINUED}
+        return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(self.seed),
+                *overrides(settings), *overrides(options.set)]
+
+    def result(self, folder: Path) -> dict | None:
+        """Layers and cost of a finished run."""
+        summary = summary_of(folder / self.name)
+        try:
+            rows = [row for row in read_rows(folder / self.name / "layers.csv") if row["layer"] >= 1]
+        except (OSError, ValueError):
+            return None
+        return None if summary is None else {
+            **{key: [row[key] for row in rows] for key in ("LRD", "CRD")},
+            "seconds": summary["loop_seconds"], "asleep": summary.get("share_asleep", 0.)}
+
+
+def cells_of(awake: list[float], asleep: list[float]) -> list[str]:
+    """Both means with their scatter, and the difference of the means in standard errors."""
+    return [*(f"{statistics.mean(values):.4f} ± {spread(values):.4f}" for values in (awake, asleep)),
+            f"{in_errors(asleep, awake):+.1f}"]
+
+
+def of_layer(runs: dict[bool, list[dict]], key: str, layer: int) -> list[list[float]]:
+    """The values of a layer awake and with sleep; none of CRD before it begins."""
+    values = [[run[key][layer] for run in runs[sleep]] for sleep in (False, True)]
+    return [] if any(map(math.isnan, sum(values, []))) else values
+
+
+def table_of(runs: dict[bool, list[dict]]) -> tuple[Table, float]:
+    """The table of layers, and the largest difference in standard errors."""
+    table = [["layer", *(head for key in ("LRD", "CRD")
+                         for head in (f"{key} awake", f"{key} with sleep", "in standard errors"))]]
+    worst = 0.
+    for layer in range(len(runs[False][0]["LRD"])):
+        row = [f"{layer + 1}"]
+        for key in ("LRD", "CRD"):
+            values = of_layer(runs, key, layer)
+            row += cells_of(*values) if values else [""] * 3
+            worst = max(worst, abs(in_errors(*values))) if values else worst
+        table.append(row)
+    return table, worst
+
+
+def sentence(runs: dict[bool, list[dict]], worst: float) -> str:
+    means = [[statistics.mean(run["LRD"][4:]) for run in runs[sleep]] for sleep in (False, True)]
+    seconds = [statistics.mean(run["seconds"] for run in runs[sleep]) for sleep in (False, True)]
+    asleep = statistics.mean(run["asleep"] for run in runs[True])
+    return (f"{len(runs[False])} and {len(runs[True])} seeds. Largest difference: {worst:.1f} standard errors. "
+            "Mean LRD from layer 5 on (awake, with sleep, difference in standard errors): "
+            f"{', '.join(cells_of(*means))}. Loop: {seconds[0]:.0f} s awake, {seconds[1]:.0f} s with sleep, "
+            f"{100. * asleep:.0f} % of all particle steps slept.")
+
+
+def main(words: list[str]) -> int:
+    parser = arguments(__doc__, [1, 2, 3, 4])
+    parser.add_argument("--case", type=Path, default=CASES / "spreading" / "quickstart.prm")
+    parser.add_argument("--layers", type=int, default=21)
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[])
+    options = parser.parse_args(words)
+    runs = [Run(sleep, seed) for seed in options.seeds for sleep in (False, True)]
+    good = compute(runs, options)
+    found = {sleep: [r for r in (run.result(options.folder) for run in runs if run.sleep == sleep) if r]
+             for sleep in (False, True)}
+    if min(map(len, found.values())) < 2:
+        raise Failure("A comparison needs two finished runs each way.")
+    table, worst = table_of(found)
+    publish(table, options.folder / "sleep_layers.md", sentence(found, worst))
+    return 0 if good else 1

@@ -1,0 +1,85 @@
+"""Reader of the pictures that Eunoe writes: .vtu, by VTK itself, and their index .pvd."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, Iterable
+from xml.etree import ElementTree
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+
+class VtkError(Exception):
+    """A file that cannot be read, with a sentence that says why."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """An entry of a .pvd file: the time (s) and the file with the particles."""
+
+    time: float
+    file: Path
+
+
+# VTK would print what it complains of; the caller gets one sentence instead.
+vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+# How it begins to say that a picture has nothing in it; deal.II writes no points then.
+WITHOUT_POINTS = "No Points element available in first piece"
+
+
+def _complaint(step: Callable[[], None]) -> str:
+    """Takes a step of VTK and returns what it complains of."""
+    complaints, window = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+    vtkOutputWindow.SetInstance(complaints)
+    try:
+        step()
+    finally:
+        vtkOutputWindow.SetInstance(window)
+    return complaints.GetOutput()
+
+
+def read_vtu(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
+    """Points and point data of a .vtu file, of all its pieces (one a rank) together.
+
+    The coordinates (m) come under the name 'points'; of the point data only those named are read,
+    and those that the file lacks are left out.
+    """
+    wanted = set(names)
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    complaint = _complaint(reader.UpdateInformation) if path.is_file() else "no file"
+    if not complaint:
+        fields = reader.GetPointDataArraySelection()
+        for k in range(fields.GetNumberOfArrays()):
+            name = fields.GetArrayName(k)
+            fields.SetArraySetting(name, name in wanted)
+        complaint = _complaint(reader.Update)
+    if WITHOUT_POINTS in complaint:
+        return {"points": np.empty((0, 3), np.float32)}
+    if complaint:
+        raise VtkError(f"{path.name} cannot be read: it is missing or not complete.")
+    grid = reader.GetOutput()
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
+    return {"points": vtk_to_numpy(grid.GetPoints().GetData()), **arrays}
+
+
+def points_of_pieces(path: Path) -> list[int]:
+    """How many points each piece (rank) of a .vtu file has."""
+    return [int(piece.get("NumberOfPoints", 0)) for piece in ElementTree.parse(path).getroot().iter("Piece")]
+
+
+def read_pvd(path: Path) -> list[Snapshot]:
+    """The entries of a .pvd file; none if the file does not exist."""
+    if not path.is_file():
+        return []
+    try:
+        root = ElementTree.parse(path).getroot()
+        return [Snapshot(float(entry.attrib["timestep"]), path.parent / entry.attrib["file"])
+                for entry in root.iter("DataSet")]
+    except (ElementTree.ParseError, KeyError, ValueError) as error:
+        raise VtkError(f"{path.name} cannot be read: it is not complete.") from error
