@@ -53,6 +53,16 @@ def parser(documentation: str) -> argparse.ArgumentParser:
     return argparse.ArgumentParser(description=" ".join(documentation.split("\n\n", 1)[0].split()))
 
 
+def parser_with_case(documentation: str) -> argparse.ArgumentParser:
+    """Of a command that runs a case of the user's in a folder."""
+    arguments = parser(documentation)
+    arguments.add_argument("program")
+    arguments.add_argument("case")
+    arguments.add_argument("folder", type=Path)
+    arguments.add_argument("--set", action="append", default=[], dest="settings", metavar="ENTRY=VALUE")
+    return arguments
+
+
 def rank_numbers(text: str) -> list[int]:
     """The argument of --ranks."""
     try:

@@ -134,37 +134,34 @@ def sleeping(program: str, folder: Path) -> None:
     compare(reference, other, "With sleep, restarted")
 
 
+def continued(program: str, prm: str, folder: Path, settings: tuple[str, ...], stop: int, ranks: int,
+              what: str) -> Case:
+    """Stopped on two ranks and continued, it gives the same bits as run without a stop, which is returned."""
+    reference = Case(program, prm, folder / "reference", list(settings))
+    reference.run(1)
+    other = Case(program, prm, folder / "restarted", list(settings))
+    other.run(2, *EVERY, *FREQUENT, f"simulation control/iteration end = {stop}")
+    other.run(ranks, *EVERY, "restart/restart = true")
+    compare(reference, other, f"{what}, restarted")
+    return reference
+
+
 def all_laws(program: str, folder: Path) -> None:
     """The same bits with every law, with sleep and without, stopped and continued."""
     for name, settings in (("awake", ALL_LAWS), ("asleep", ALL_LAWS + SLEEPY)):
-        reference = Case(program, CASE, folder / name, list(settings))
-        reference.run(1)
-        other = Case(program, CASE, folder / (name + "_restarted"), list(settings))
-        other.run(2, *EVERY, *FREQUENT, "simulation control/iteration end = 11111")
-        other.run(4, *EVERY, "restart/restart = true")
-        compare(reference, other, f"With all laws, {name}, restarted")
+        continued(program, CASE, folder / name, settings, 11111, 4, f"With all laws, {name}")
 
 
 def on_plane(program: str, folder: Path) -> None:
     """The same bits where the places of insertion depend on the particles that are there."""
-    reference = Case(program, CASE, folder / "reference", [*ON_PLANE, *COLLISIONS])
-    reference.run(1)
-    other = Case(program, CASE, folder / "restarted", [*ON_PLANE, *COLLISIONS])
-    other.run(2, *EVERY, *FREQUENT, "simulation control/iteration end = 11111")
-    other.run(1, *EVERY, "restart/restart = true")
-    compare(reference, other, "With insertion on a plane, restarted")
+    continued(program, CASE, folder, (*ON_PLANE, *COLLISIONS), 11111, 1, "With insertion on a plane")
 
 
 def curved(program: str, folder: Path) -> None:
     """The same bits in a mesh that is curved and finer in places, at rest and in motion."""
-    for name, settings in (("at_rest", ()), ("poured", POURED)):
-        reference = Case(program, DRUM, folder / name, list(settings))
-        reference.run(1)
-        other = Case(program, DRUM, folder / (name + "_restarted"), list(settings))
-        other.run(2, *EVERY, *FREQUENT, "simulation control/iteration end = 2777")
-        other.run(1, *EVERY, "restart/restart = true")
-        compare(reference, other, f"In a curved mesh, {name}, restarted")
-    left = json.loads((reference.results / "summary.json").read_text())["outlet_particles"]
+    continued(program, DRUM, folder / "at_rest", (), 2777, 1, "In a curved mesh, at rest")
+    poured = continued(program, DRUM, folder / "poured", POURED, 2777, 1, "In a curved mesh, poured")
+    left = json.loads((poured.results / "summary.json").read_text())["outlet_particles"]
     if not 0 < left < 400:
         raise Failure(f"{left} particles left through the outlet, so little is tried.")
 

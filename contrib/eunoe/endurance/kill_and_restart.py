@@ -19,7 +19,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from eunoe.launch import SHARED, Failure, mpirun, overrides, parser, rank_numbers
+from eunoe.launch import SHARED, Failure, mpirun, overrides, parser_with_case, rank_numbers
 
 
 class Case:
@@ -152,15 +152,11 @@ def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
 
 
 def main(words: list[str]) -> int:
-    arguments = parser(__doc__)
-    arguments.add_argument("program")
-    arguments.add_argument("case")
-    arguments.add_argument("folder", type=Path)
+    arguments = parser_with_case(__doc__)
     arguments.add_argument("--kills", type=int, default=100)
     arguments.add_argument("--ranks", default="1,2", help="numbers of ranks to draw from")
     arguments.add_argument("--frequency", type=int, default=1000, help="steps between checkpoints")
     arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--set", action="append", default=[], dest="settings")
     options = arguments.parse_args(words)
     ranks = rank_numbers(options.ranks)
     program = str(Path(options.program).resolve())

@@ -18,7 +18,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from eunoe.launch import Failure, mpirun, overrides, parser
+from eunoe.launch import Failure, mpirun, overrides, parser_with_case
 
 
 def memory_of_tree(pid: int) -> float:
@@ -59,19 +59,15 @@ def run(command: list[str], folder: Path) -> list[float]:
 
 
 def main(words: list[str]) -> int:
-    arguments = parser(__doc__)
-    arguments.add_argument("program")
-    arguments.add_argument("case")
-    arguments.add_argument("folder", type=Path)
+    arguments = parser_with_case(__doc__)
     arguments.add_argument("--steps", type=int, default=5_000_000)
     arguments.add_argument("--ranks", type=int, default=1)
     arguments.add_argument("--allowed-growth", type=float, default=2.)
-    arguments.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE")
     options = arguments.parse_args(words)
     shutil.rmtree(options.folder, ignore_errors=True)
     options.folder.mkdir(parents=True)
     settings = [f"simulation control/iteration end = {options.steps}",
-                "simulation control/output path = results", *options.set]
+                "simulation control/output path = results", *options.settings]
     samples = run([*mpirun(options.ranks, "--oversubscribe"), os.path.abspath(options.program),
                    os.path.abspath(options.case), *overrides(settings)], options.folder)
     quarter = len(samples) // 4
