@@ -7,6 +7,7 @@ cd "$(dirname "$0")/.."
 contrib/install_dependencies.sh
 contrib/check_format.sh
 contrib/check_floors.py
+/usr/bin/python3 -m pyflakes contrib tests
 contrib/build.sh Release all test-programs
 if [ "$(id -u)" -eq 0 ]; then
   # As in a container; Open MPI wants to be asked twice.

@@ -23,8 +23,9 @@ report=(
   python3-vtk9 # reader of pictures
 )
 checks=(
-  perl         # deal.II's test driver
-  clang-format # layout of the code
+  perl             # deal.II's test driver
+  clang-format     # layout of the code
+  python3-pyflakes # names in Python that nobody uses or knows
 )
 fuzzing=(
   clang              # compiler with libFuzzer

@@ -71,6 +71,11 @@ def run(name: str, words: list[str]) -> int:
     except Failure as failure:
         print(failure, file=sys.stderr)
         return 1
+    except OSError as error:
+        if error.filename is None:
+            raise
+        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
+        return 2
 
 
 def main(words: list[str] | None = None) -> int:

@@ -56,6 +56,7 @@ class Commands(unittest.TestCase):
     def test_failures_are_sentences(self) -> None:
         code, text = tools("predict-scaling")
         self.assertEqual((code, text), (1, "Name a picture (.vtu) of a run, or give --length-factor.\n"))
+        self.assertEqual(tools("score", "/nowhere"), (2, "/nowhere cannot be used: No such file or directory.\n"))
 
 
 if __name__ == "__main__":

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-import argparse
 import logging
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from eunoe.launch import parser
+
 from .page import Page
 from .run_folder import ReportError
 
 
-def write_page(arguments: list[str], description: str, make_page: Callable[[Path], Page],
-               name: str) -> int:
-    """Makes the page of the folder that the arguments name and writes it there, as a file of the
-    given name. Returns the exit code; what is wrong goes to stderr in one sentence."""
-    parser = argparse.ArgumentParser(description=description)
-    parser.add_argument("folder", type=Path, help="output folder")
-    parser.add_argument("--out", type=Path, help=f"file to write (default: FOLDER/{name})")
-    parser.add_argument("--figures", choices=("pdf", "png", "svg"),
+def write_page(words: list[str], documentation: str, make_page: Callable[[Path], Page], name: str) -> int:
+    """Makes the page of the folder that the words of the command line name and writes it there, as a file of
+    the given name. Returns the exit code; a folder of which no page can be made is told in one sentence."""
+    arguments = parser(documentation)
+    arguments.add_argument("folder", type=Path, help="output folder")
+    arguments.add_argument("--out", type=Path, help=f"file to write (default: FOLDER/{name})")
+    arguments.add_argument("--figures", choices=("pdf", "png", "svg"),
                         help="write the figures as files too, into 'figures' beside the page")
-    options = parser.parse_args(arguments)
+    options = arguments.parse_args(words)
     # matplotlib tells of the building of its font cache, which says nothing about the run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     target = options.out or options.folder / name
@@ -32,9 +32,6 @@ def write_page(arguments: list[str], description: str, make_page: Callable[[Path
             page.write_figures(target.parent / "figures", options.figures)
     except ReportError as error:
         print(error, file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
         return 2
     print(f"{Path(name).stem.capitalize()}: {target}")
     return 0

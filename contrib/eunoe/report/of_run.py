@@ -25,6 +25,6 @@ def make_page(folder: Path) -> Page:
     return heap_report(run) if run.is_heap else general_report(run)
 
 
-def main(arguments: list[str]) -> int:
-    return write_page(arguments, __doc__.split("\n", 1)[0], make_page, "report.html")
+def main(words: list[str]) -> int:
+    return write_page(words, __doc__, make_page, "report.html")
 

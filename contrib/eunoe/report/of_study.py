@@ -19,6 +19,6 @@ def make_page(folder: Path) -> Page:
     return discovery_report(Study(folder))
 
 
-def main(arguments: list[str]) -> int:
-    return write_page(arguments, __doc__.split("\n", 1)[0], make_page, "discovery.html")
+def main(words: list[str]) -> int:
+    return write_page(words, __doc__, make_page, "discovery.html")
 
