@@ -161,6 +161,34 @@ int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
   }
 }
 
+/// Prints what can be told without reading a whole study.
+/// @return whether it was asked for
+bool tell(const CommandLine &line, const Wishes &wishes, const std::string &file, MPI_Comm comm,
+          Log &log)
+{
+  Problems problems;
+  if (line.describe_parameters)
+    log.line(StudyParameters::description());
+  else if (wishes.list_observables)
+    list_observables(log);
+  else if (wishes.list_effects && file.empty()) {
+    const std::vector<Effect> effects = read_effects({"standard"}, comm, problems);
+    refuse_if_any(problems);
+    list_effects(effects, log);
+  } else if (line.print_parameters) {
+    const bool with_twin = !wishes.twin.empty() || file.empty();
+    const std::string text = file.empty() ? "" : read_file(file, comm);
+    const StudyParameters parameters =
+        StudyParameters::read(text, file, line.overrides, with_twin, problems,
+                              [comm](const std::string &path) { return read_file(path, comm); });
+    if (!file.empty())
+      refuse_if_any(problems);
+    log.line(parameters.as_input_file());
+  } else
+    return false;
+  return true;
+}
+
 int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
 {
   const bool makes_twin = !wishes.twin.empty();
@@ -172,31 +200,9 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
   Log log(comm, line.quiet);
   StudyInput study;
   Problems problems;
-  if (line.describe_parameters) {
-    log.line(StudyParameters::description());
-    return exit_success;
-  }
   try {
-    if (wishes.list_observables) {
-      list_observables(log);
+    if (tell(line, wishes, file, comm, log))
       return exit_success;
-    }
-    if (wishes.list_effects && file.empty()) {
-      const std::vector<Effect> effects = read_effects({"standard"}, comm, problems);
-      refuse_if_any(problems);
-      list_effects(effects, log);
-      return exit_success;
-    }
-    if (line.print_parameters) {
-      const std::string text = file.empty() ? "" : read_file(file, comm);
-      const StudyParameters parameters =
-          StudyParameters::read(text, file, line.overrides, makes_twin || file.empty(), problems,
-                                [comm](const std::string &path) { return read_file(path, comm); });
-      if (!file.empty())
-        refuse_if_any(problems);
-      log.line(parameters.as_input_file());
-      return exit_success;
-    }
     study = read_study(file, line.overrides, makes_twin, comm, problems);
     refuse_if_any(problems);
     if (wishes.list_effects) {

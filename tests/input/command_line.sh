@@ -60,6 +60,7 @@ printf 'subsection mesh\n  set scael = 1\nend\n' >broken.prm
 expect help 0 "Usage: eunoe-particles" "$program" --help
 expect version 0 "deal.II" "$program" --version
 expect "parameters" 0 "set neighborhood threshold" "$program" --print-parameters
+expect "description" 0 '"value": "a number of at least 0"' "$program" --describe-parameters
 expect "no input" 2 "An input file is missing" "$program"
 expect "missing file" 2 "nowhere.prm cannot be read" "$program" nowhere.prm
 expect "unknown option" 2 "Command line:" "$program" --fast
