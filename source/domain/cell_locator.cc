@@ -1,11 +1,8 @@
 #include <eunoe/domain/cell_locator.h>
 #include <eunoe/domain/mesh.h>
+#include <eunoe/solids/box_tree.h>
 
 #include <deal.II/grid/grid_tools.h>
-
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -13,27 +10,6 @@
 #include <numeric>
 
 namespace eunoe {
-
-namespace {
-
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using BoostBox = bg::model::box<BoostPoint>;
-using Entry = std::pair<BoostBox, unsigned int>;
-
-BoostPoint boost_point(const Vec3 &x)
-{
-  return {x.x, x.y, x.z};
-}
-
-} // namespace
-
-struct CellLocator::Tree
-{
-  explicit Tree(const std::vector<Entry> &boxes) : rtree(boxes) {}
-
-  bg::index::rtree<Entry, bg::index::quadratic<16>> rtree;
-};
 
 CellLocator::CellLocator(Domain &domain) : domain(domain) {}
 
@@ -53,7 +29,7 @@ void CellLocator::rebuild()
   cells.clear();
   bounds.assign(triangulation.n_active_cells(), Bounds());
   at_vertex.assign(triangulation.n_vertices(), {});
-  std::vector<Entry> owned;
+  std::vector<std::pair<Box, std::int32_t>> owned;
   for (const auto &cell : triangulation.active_cell_iterators()) {
     cells.push_back(cell);
     if (cell->is_artificial())
@@ -75,10 +51,10 @@ void CellLocator::rebuild()
     for (const unsigned int v : cell->vertex_indices())
       at_vertex[representative[cell->vertex_index(v)]].push_back(index);
     if (cell->is_locally_owned())
-      owned.emplace_back(BoostBox(boost_point(b.centre + b.lower), boost_point(b.centre + b.upper)),
-                         index);
+      owned.emplace_back(Box{b.centre + b.lower, b.centre + b.upper},
+                         static_cast<std::int32_t>(index));
   }
-  tree = std::make_unique<const Tree>(owned);
+  tree = std::make_unique<const BoxTree>(owned);
 }
 
 double CellLocator::outside(const unsigned int cell, const Vec3 &x) const
@@ -129,22 +105,17 @@ unsigned int CellLocator::find(const Vec3 &x) const
   constexpr unsigned int n_near = 16;
   double least = std::numeric_limits<double>::max();
   unsigned int found = dealii::numbers::invalid_unsigned_int;
-  const auto look = [&](const Entry &entry) {
-    const double out = outside(entry.second, x);
+  const auto look = [&](const std::int32_t number) {
+    const auto cell = static_cast<unsigned int>(number);
+    const double out = outside(cell, x);
     if (out < least) {
       least = out;
-      found = entry.second;
+      found = cell;
     }
   };
-  const BoostPoint point = boost_point(x);
-  const auto holding = bg::index::intersects(point);
-  for (auto it = tree->rtree.qbegin(holding); it != tree->rtree.qend(); ++it)
-    look(*it);
-  if (least > 0.) {
-    const auto near = bg::index::nearest(point, n_near);
-    for (auto it = tree->rtree.qbegin(near); it != tree->rtree.qend(); ++it)
-      look(*it);
-  }
+  tree->for_each_around(x, look);
+  if (least > 0.)
+    tree->for_each_nearest(x, n_near, look);
   return found;
 }
 

@@ -1,26 +1,15 @@
+#include <eunoe/solids/box_tree.h>
 #include <eunoe/solids/crossings.h>
 
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
-
 #include <algorithm>
-#include <iterator>
+#include <array>
 
 namespace eunoe {
 namespace {
 
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using BoostBox = bg::model::box<BoostPoint>;
-using BoxedTriangle = std::pair<BoostBox, std::size_t>;
-
-BoostBox box_around(const Vec3 *corner)
+Box box_around(const Vec3 *corner)
 {
-  const auto [x0, x1] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
-  const auto [y0, y1] = std::minmax({corner[0].y, corner[1].y, corner[2].y});
-  const auto [z0, z1] = std::minmax({corner[0].z, corner[1].z, corner[2].z});
-  return {BoostPoint(x0, y0, z0), BoostPoint(x1, y1, z1)};
+  return Box::around(std::array<Vec3, 3>{{corner[0], corner[1], corner[2]}});
 }
 
 /// Whether the segment from @p p to @p q goes through a triangle, and not just to its border.
@@ -61,19 +50,16 @@ bool passes_through(const Vec3 *a, const Vec3 *b, const double tolerance, Vec3 &
 bool surfaces_cross(const std::vector<Vec3> &a, const std::vector<Vec3> &b, const double tolerance,
                     Vec3 &where)
 {
-  std::vector<BoxedTriangle> boxes;
+  std::vector<std::pair<Box, std::int32_t>> boxes;
   for (std::size_t t = 0; t + 2 < b.size(); t += 3)
-    boxes.emplace_back(box_around(&b[t]), t);
-  const bg::index::rtree<BoxedTriangle, bg::index::quadratic<16>> tree(boxes);
-  std::vector<BoxedTriangle> near;
-  for (std::size_t t = 0; t + 2 < a.size(); t += 3) {
-    near.clear();
-    tree.query(bg::index::intersects(box_around(&a[t])), std::back_inserter(near));
-    for (const auto &[box, other] : near)
-      if (passes_through(&a[t], &b[other], tolerance, where) ||
-          passes_through(&b[other], &a[t], tolerance, where))
-        return true;
-  }
+    boxes.emplace_back(box_around(&b[t]), static_cast<std::int32_t>(t));
+  const BoxTree tree(boxes);
+  for (std::size_t t = 0; t + 2 < a.size(); t += 3)
+    if (tree.any_meeting(box_around(&a[t]), [&](const std::int32_t other) {
+          return passes_through(&a[t], &b[other], tolerance, where) ||
+                 passes_through(&b[other], &a[t], tolerance, where);
+        }))
+      return true;
   return false;
 }
 

@@ -1,26 +1,11 @@
+#include <eunoe/solids/box_tree.h>
 #include <eunoe/solids/enclosure.h>
-#include <eunoe/solids/shape.h>
-
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 
 #include <limits>
 #include <utility>
 
 namespace eunoe {
 namespace {
-
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using BoostBox = bg::model::box<BoostPoint>;
-using Entry = std::pair<BoostBox, std::size_t>;
-
-BoostBox boost_box(const Box &box)
-{
-  return {BoostPoint(box.lower.x, box.lower.y, box.lower.z),
-          BoostPoint(box.upper.x, box.upper.y, box.upper.z)};
-}
 
 /// A point seen along an axis.
 struct Flat
@@ -41,22 +26,15 @@ bool crosses(const Flat &x, Flat a, Flat b)
 
 } // namespace
 
-struct Enclosure::Tree
-{
-  explicit Tree(const std::vector<Entry> &boxes) : rtree(boxes) {}
-
-  bg::index::rtree<Entry, bg::index::quadratic<16>> rtree;
-};
-
 Enclosure::Enclosure(std::vector<Triangle> triangles_, const PeriodicBox &periods)
     : triangles(std::move(triangles_)), periods(periods), up(0)
 {
   while (up < 2 && periods.is_periodic(up))
     ++up;
-  std::vector<Entry> boxes;
+  std::vector<std::pair<Box, std::int32_t>> boxes;
   for (std::size_t t = 0; t < triangles.size(); ++t)
-    boxes.emplace_back(boost_box(Box::around(triangles[t].corner)), t);
-  tree = std::make_unique<const Tree>(boxes);
+    boxes.emplace_back(Box::around(triangles[t].corner), static_cast<std::int32_t>(t));
+  tree = std::make_unique<const BoxTree>(boxes);
 }
 
 Enclosure::~Enclosure() = default;
@@ -68,22 +46,21 @@ bool Enclosure::contains(const Vec3 &position) const
   const unsigned int u = (up + 1) % 3, v = (up + 2) % 3;
   Vec3 top = x;
   top[up] = std::numeric_limits<double>::max();
-  const auto query = bg::index::intersects(boost_box({x, top}));
   bool inside = false;
-  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it) {
-    const std::array<Vec3, 3> &corner = triangles[it->second].corner;
+  tree->for_each_meeting({x, top}, [&](const std::int32_t number) {
+    const std::array<Vec3, 3> &corner = triangles[number].corner;
     const auto flat = [&](const Vec3 &p) { return Flat{p[u], p[v]}; };
     bool covers = false;
     for (unsigned int e = 0; e < 3; ++e)
       covers = covers != crosses(flat(x), flat(corner[e]), flat(corner[(e + 1) % 3]));
     if (!covers)
-      continue;
+      return;
     const Vec3 normal = cross(corner[1] - corner[0], corner[2] - corner[0]);
     const Vec3 from = x - corner[0];
     const double height = -(normal[u] * from[u] + normal[v] * from[v]) / normal[up];
     if (height > from[up])
       inside = !inside;
-  }
+  });
   return inside;
 }
 
@@ -93,28 +70,27 @@ int Enclosure::exit(const Vec3 &from, const Vec3 &to) const
   constexpr double margin = 1e-6;
   const Vec3 way = to - from;
   const std::array<Vec3, 2> ends = {from, to};
-  const auto query = bg::index::intersects(boost_box(Box::around(ends)));
   double last = -1.;
   int tag = -1;
-  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it) {
-    const std::array<Vec3, 3> &c = triangles[it->second].corner;
+  tree->for_each_meeting(Box::around(ends), [&](const std::int32_t number) {
+    const auto &[c, own_tag] = triangles[number];
     const Vec3 edge = c[1] - c[0], other = c[2] - c[0];
     // Moeller and Trumbore, Journal of Graphics Tools 2 (1), 1997, 21.
     const Vec3 p = cross(way, other);
     const double volume = dot(edge, p);
     if (volume == 0.)
-      continue;
+      return;
     const Vec3 s = from - c[0], q = cross(s, edge);
     const double a = dot(s, p) / volume, b = dot(way, q) / volume, share = dot(other, q) / volume;
     const bool meets =
         a >= -margin && b >= -margin && a + b <= 1. + margin && share >= 0. && share <= 1.;
     // Of triangles that are met at one place, the larger tag counts, whatever the order in the
     // tree.
-    if (meets && (share > last || (share == last && triangles[it->second].tag > tag))) {
+    if (meets && (share > last || (share == last && own_tag > tag))) {
       last = share;
-      tag = triangles[it->second].tag;
+      tag = own_tag;
     }
-  }
+  });
   return tag;
 }
 

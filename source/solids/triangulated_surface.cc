@@ -1,8 +1,5 @@
+#include <eunoe/solids/box_tree.h>
 #include <eunoe/solids/triangulated_surface.h>
-
-#include <boost/geometry/geometries/box.hpp>
-#include <boost/geometry/geometries/point.hpp>
-#include <boost/geometry/index/rtree.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -14,16 +11,6 @@ namespace {
 /// An edge of just the smooth angle, as between the 24 facets of a cylinder, is smooth whatever its
 /// round-off.
 const double smooth_cosine = std::cos(TriangulatedSurface::smooth_angle) - 1e-9;
-
-namespace bg = boost::geometry;
-using BoostPoint = bg::model::point<double, 3, bg::cs::cartesian>;
-using BoostBox = bg::model::box<BoostPoint>;
-
-BoostBox boost_box(const Box &box)
-{
-  return {BoostPoint(box.lower.x, box.lower.y, box.lower.z),
-          BoostPoint(box.upper.x, box.upper.y, box.upper.z)};
-}
 
 using Edge = std::pair<std::int32_t, std::int32_t>;
 
@@ -41,13 +28,6 @@ double distance_to_segment(const Vec3 &x, const Vec3 &a, const Vec3 &b)
 }
 
 } // namespace
-
-struct TriangulatedSurface::Tree
-{
-  explicit Tree(const std::vector<std::pair<BoostBox, std::int32_t>> &boxes) : rtree(boxes) {}
-
-  bg::index::rtree<std::pair<BoostBox, std::int32_t>, bg::index::quadratic<16>> rtree;
-};
 
 /// The place on a triangle that is nearest to a sphere's centre.
 struct TriangulatedSurface::Touch
@@ -81,10 +61,10 @@ TriangulatedSurface::TriangulatedSurface(TriangleMesh mesh)
   find_borders(edges);
   find_flat_vertices(edges, mesh.vertices.size());
 
-  std::vector<std::pair<BoostBox, std::int32_t>> boxes;
+  std::vector<std::pair<Box, std::int32_t>> boxes;
   for (std::size_t t = 0; t < facets.size(); ++t)
-    boxes.emplace_back(boost_box(Box::around(facets[t].corner)), static_cast<std::int32_t>(t));
-  tree = std::make_unique<const Tree>(boxes);
+    boxes.emplace_back(Box::around(facets[t].corner), static_cast<std::int32_t>(t));
+  tree = std::make_unique<const BoxTree>(boxes);
 }
 
 TriangulatedSurface::Edges TriangulatedSurface::make_facets(const TriangleMesh &mesh)
@@ -196,14 +176,13 @@ double TriangulatedSurface::find_facets(const Vec3 &centre, const double reach,
     return least;
   const std::size_t first = found.size();
   const Vec3 margin = {reach, reach, reach};
-  const auto query = bg::index::intersects(boost_box({centre - margin, centre + margin}));
-  for (auto it = tree->rtree.qbegin(query); it != tree->rtree.qend(); ++it) {
-    const double distance = closest(centre, it->second).distance;
+  tree->for_each_meeting({centre - margin, centre + margin}, [&](const std::int32_t number) {
+    const double distance = closest(centre, number).distance;
     if (distance < reach) {
-      found.push_back(it->second);
+      found.push_back(number);
       least = std::min(least, distance);
     }
-  }
+  });
   std::sort(found.begin() + first, found.end());
   return least;
 }

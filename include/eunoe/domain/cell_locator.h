@@ -15,6 +15,8 @@
 
 namespace eunoe {
 
+class BoxTree;
+
 /// For every cell its centre and its faces as planes: a place belongs to the cell that it sticks
 /// out of least. So every place belongs to some cell, those too that round-off, faces that are not
 /// flat or hanging nodes on a curved boundary leave outside of all.
@@ -43,7 +45,6 @@ public:
   const Cell &cell(unsigned int index) const { return cells[index]; }
 
 private:
-  struct Tree;
   /// Bounds of a cell, relative to its centre.
   struct Bounds
   {
@@ -58,7 +59,7 @@ private:
   /// Cells around a vertex, of all vertices that coincide over periodic faces; by vertex.
   std::vector<std::vector<unsigned int>> at_vertex;
   std::vector<unsigned int> representative;
-  std::unique_ptr<const Tree> tree;
+  std::unique_ptr<const BoxTree> tree;
 };
 
 } // namespace eunoe

@@ -9,6 +9,8 @@
 
 namespace eunoe {
 
+class BoxTree;
+
 /// The space inside a closed surface of triangles, which may be open at periodic ends.
 class Enclosure
 {
@@ -32,12 +34,10 @@ public:
   int exit(const Vec3 &from, const Vec3 &to) const;
 
 private:
-  struct Tree;
-
   const std::vector<Triangle> triangles;
   const PeriodicBox periods;
   unsigned int up; ///< an axis that is not periodic, along which `contains` looks
-  std::unique_ptr<const Tree> tree;
+  std::unique_ptr<const BoxTree> tree;
 };
 
 } // namespace eunoe

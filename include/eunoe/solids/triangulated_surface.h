@@ -10,6 +10,8 @@
 
 namespace eunoe {
 
+class BoxTree;
+
 /// A surface of triangles, two-sided: a particle is kept on the side where its centre is.
 class TriangulatedSurface : public Shape
 {
@@ -56,7 +58,6 @@ private:
     std::array<bool, 3> is_border;
   };
   struct Touch;
-  struct Tree;
   struct Edges;
   class NearPlaces;
 
@@ -77,7 +78,7 @@ private:
   /// Whether all triangles around a corner lie in one plane and close a full turn.
   std::vector<bool> flat_vertex;
   Box box;
-  std::unique_ptr<const Tree> tree;
+  std::unique_ptr<const BoxTree> tree;
 };
 
 } // namespace eunoe
