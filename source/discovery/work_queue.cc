@@ -1,3 +1,4 @@
+#include <eunoe/core/gather.h>
 #include <eunoe/discovery/laboratory.h>
 #include <eunoe/discovery/work_queue.h>
 
@@ -120,17 +121,8 @@ void WorkQueue::run(const int n, const std::function<void(int)> &task,
 
 std::string concatenate(const std::string &mine, MPI_Comm comm)
 {
-  int size;
-  MPI_Comm_size(comm, &size);
-  const int length = static_cast<int>(mine.size());
-  std::vector<int> lengths(size), starts(size, 0);
-  MPI_Allgather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, comm);
-  for (int r = 1; r < size; ++r)
-    starts[r] = starts[r - 1] + lengths[r - 1];
-  std::string all(static_cast<std::size_t>(starts.back() + lengths.back()), '\0');
-  MPI_Allgatherv(mine.data(), length, MPI_CHAR, all.data(), lengths.data(), starts.data(), MPI_CHAR,
-                 comm);
-  return all;
+  const std::vector<char> all = gather_all(std::vector<char>(mine.begin(), mine.end()), comm);
+  return {all.begin(), all.end()};
 }
 
 } // namespace eunoe::discovery

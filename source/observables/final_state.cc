@@ -1,6 +1,8 @@
+#include <eunoe/core/gather.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
+#include <array>
 
 namespace eunoe {
 namespace {
@@ -13,49 +15,32 @@ public:
 
   void finish(Simulation &simulation) override
   {
-    constexpr std::size_t n_values = 11;
     const ParticleArrays &p = simulation.complete_step();
-    std::vector<double> mine;
-    mine.reserve(n_values * p.n_owned);
+    std::vector<Row> mine;
+    mine.reserve(p.n_owned);
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      mine.push_back(p.id[k]);
-      for (const Quad *q : {&p.position[k], &p.velocity[k], &p.spin[k]})
-        mine.insert(mine.end(), {q->x, q->y, q->z});
-      mine.push_back(2. * p.radius(k));
+      const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
+      mine.push_back({p.id[k], {x.x, x.y, x.z, v.x, v.y, v.z, w.x, w.y, w.z, 2. * p.radius(k)}});
     }
-    std::vector<double> all = gather_on_first(mine, simulation.communicator());
-
-    std::vector<const double *> rows;
-    for (std::size_t k = 0; k < all.size(); k += n_values)
-      rows.push_back(&all[k]);
-    std::sort(rows.begin(), rows.end(),
-              [](const double *a, const double *b) { return a[0] < b[0]; });
+    std::vector<Row> all = gather_on_first(mine, simulation.communicator());
+    std::sort(all.begin(), all.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
     std::string text = "p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters;\n";
-    for (const double *row : rows) {
-      char cell[32];
-      for (std::size_t c = 1; c < n_values; ++c) {
-        std::snprintf(cell, sizeof cell, "%.17g;%c", row[c], c + 1 < n_values ? ' ' : '\n');
+    for (const Row &row : all)
+      for (const double &value : row.columns) {
+        char cell[32];
+        std::snprintf(cell, sizeof cell, "%.17g;%c", value,
+                      &value == &row.columns.back() ? '\n' : ' ');
         text += cell;
       }
-    }
     simulation.output_folder().write(name + ".csv", text);
   }
 
 private:
-  static std::vector<double> gather_on_first(const std::vector<double> &mine, MPI_Comm comm)
+  struct Row
   {
-    int n_ranks;
-    MPI_Comm_size(comm, &n_ranks);
-    const int n = static_cast<int>(mine.size());
-    std::vector<int> counts(n_ranks), starts(n_ranks, 0);
-    MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-    for (int r = 1; r < n_ranks; ++r)
-      starts[r] = starts[r - 1] + counts[r - 1];
-    std::vector<double> all(starts.back() + counts.back());
-    MPI_Gatherv(mine.data(), n, MPI_DOUBLE, all.data(), counts.data(), starts.data(), MPI_DOUBLE, 0,
-                comm);
-    return all;
-  }
+    ParticleId id;
+    std::array<double, 10> columns; ///< as the file names them
+  };
 
   const std::string name;
 };

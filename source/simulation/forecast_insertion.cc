@@ -1,6 +1,7 @@
 // The insertion before the run: whether particles come, whether they have room, whether they move.
 
 #include <eunoe/contact/contact_grid.h>
+#include <eunoe/core/gather.h>
 
 #include "insertion/obstacles.h"
 #include "judgements.h"
@@ -24,22 +25,19 @@ constexpr double most_looked_at = 2e6;
 /// Most ids of a run.
 constexpr double most_particles = 4294967294.;
 
-/// All particles of an event, the same on every rank: centres with radii.
-std::vector<Quad> spheres_of_all(const std::vector<NewParticle> &share, MPI_Comm comm)
+struct Sphere
 {
-  std::vector<Quad> mine, all;
+  Vec3 centre;
+  double radius;
+};
+
+/// All particles of an event, the same on every rank.
+std::vector<Sphere> spheres_of_all(const std::vector<NewParticle> &share, MPI_Comm comm)
+{
+  std::vector<Sphere> mine;
   for (const NewParticle &p : share)
-    mine.push_back({p.position.x, p.position.y, p.position.z, p.radius});
-  int n_ranks;
-  MPI_Comm_size(comm, &n_ranks);
-  int bytes = static_cast<int>(mine.size() * sizeof(Quad));
-  std::vector<int> counts(n_ranks), starts(n_ranks, 0);
-  MPI_Allgather(&bytes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  std::partial_sum(counts.begin(), counts.end() - 1, starts.begin() + 1);
-  all.resize((starts.back() + counts.back()) / sizeof(Quad));
-  MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, all.data(), counts.data(), starts.data(), MPI_BYTE,
-                 comm);
-  return all;
+    mine.push_back({p.position, p.radius});
+  return gather_all(mine, comm);
 }
 
 /// The deepest overlap that was found.
@@ -58,19 +56,19 @@ struct Overlap
 };
 
 /// Of pairs of particles.
-Overlap overlap_of_pairs(const std::vector<Quad> &spheres, const Domain &domain)
+Overlap overlap_of_pairs(const std::vector<Sphere> &spheres, const Domain &domain)
 {
   Overlap deepest;
   if (spheres.empty())
     return deepest;
   double largest = 0.;
-  for (const Quad &sphere : spheres)
-    largest = std::max(largest, sphere.w);
+  for (const Sphere &sphere : spheres)
+    largest = std::max(largest, sphere.radius);
   const ContactGrid grid(domain.box_from_centre().lower, domain.box_from_centre().upper,
                          domain.periods(), 2. * largest);
   std::vector<std::uint64_t> keys;
-  for (const Quad &sphere : spheres)
-    keys.push_back(grid.key(sphere.vec()));
+  for (const Sphere &sphere : spheres)
+    keys.push_back(grid.key(sphere.centre));
   std::vector<std::size_t> order(spheres.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -79,7 +77,8 @@ Overlap overlap_of_pairs(const std::vector<Quad> &spheres, const Domain &domain)
   ParticleArrays rows;
   rows.resize(spheres.size(), 0, 0);
   for (std::size_t row = 0; row < order.size(); ++row) {
-    rows.position[row] = spheres[order[row]];
+    const auto &[centre, radius] = spheres[order[row]];
+    rows.position[row] = {centre.x, centre.y, centre.z, radius};
     rows.id[row] = static_cast<ParticleId>(order[row]);
   }
   PairList pairs;
@@ -96,7 +95,7 @@ Overlap overlap_of_pairs(const std::vector<Quad> &spheres, const Domain &domain)
 }
 
 /// Of particles with the walls and solids that act at the beginning.
-Overlap overlap_with_solids(const std::vector<Quad> &spheres, std::vector<Solid> solids)
+Overlap overlap_with_solids(const std::vector<Sphere> &spheres, std::vector<Solid> solids)
 {
   solids.erase(std::remove_if(solids.begin(), solids.end(),
                               [](const Solid &solid) { return !solid.is_active(0.); }),
@@ -105,9 +104,9 @@ Overlap overlap_with_solids(const std::vector<Quad> &spheres, std::vector<Solid>
     solid.state = solid.motion->at(0.);
   std::vector<Vec3> centres;
   std::vector<double> radii;
-  for (const Quad &sphere : spheres) {
-    centres.push_back(sphere.vec());
-    radii.push_back(sphere.w);
+  for (const Sphere &sphere : spheres) {
+    centres.push_back(sphere.centre);
+    radii.push_back(sphere.radius);
   }
   Obstacles obstacles(std::move(solids));
   obstacles.search(centres, radii, 0, centres.size(), 0.);
@@ -220,7 +219,7 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
     MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
     if (static_cast<double>(n) > most_looked_at)
       continue;
-    const std::vector<Quad> spheres = spheres_of_all(event, domain.communicator());
+    const std::vector<Sphere> spheres = spheres_of_all(event, domain.communicator());
     const Overlap pairs = overlap_of_pairs(spheres, domain);
     of_pairs = pairs.share > of_pairs.share ? pairs : of_pairs;
     // Solids may have moved until the events that follow.
