@@ -278,4 +278,17 @@ InputEntry parse_override(const std::string &text, Problems &problems)
   return entry;
 }
 
+std::vector<InputEntry> parse_input_and_overrides(const std::string &text, const std::string &file,
+                                                  const std::vector<std::string> &overrides,
+                                                  Problems &problems, const FileLoader &load)
+{
+  std::vector<InputEntry> entries = parse_input(text, file, problems, load);
+  for (const std::string &override_text : overrides) {
+    const InputEntry entry = parse_override(override_text, problems);
+    if (!entry.name.empty())
+      entries.push_back(entry);
+  }
+  return entries;
+}
+
 } // namespace eunoe

@@ -285,12 +285,8 @@ StudyParameters StudyParameters::read(const std::string &text, const std::string
                                       const bool with_twin, Problems &problems,
                                       const FileLoader &load)
 {
-  std::vector<InputEntry> entries = parse_input(text, file, problems, load);
-  for (const std::string &override_text : overrides) {
-    const InputEntry entry = parse_override(override_text, problems);
-    if (!entry.name.empty())
-      entries.push_back(entry);
-  }
+  std::vector<InputEntry> entries =
+      parse_input_and_overrides(text, file, overrides, problems, load);
   resolve_files(entries, file, with_twin);
   StudyParameters study;
   study.experiments.resize(repeated_sections()[0].count(entries));

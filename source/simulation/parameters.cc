@@ -133,12 +133,8 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
                             const std::vector<std::string> &overrides, Problems &problems,
                             const FileLoader &load)
 {
-  std::vector<InputEntry> entries = parse_input(text, file, problems, load);
-  for (const std::string &override_text : overrides) {
-    const InputEntry entry = parse_override(override_text, problems);
-    if (!entry.name.empty())
-      entries.push_back(entry);
-  }
+  std::vector<InputEntry> entries =
+      parse_input_and_overrides(text, file, overrides, problems, load);
   translate_lethe(entries, problems);
   Parameters parameters(count(entries));
   parameters.set(entries, problems);

@@ -41,6 +41,11 @@ EntryValues values_in(const std::string &text);
 /// One "subsection/.../entry = value" from the command line.
 InputEntry parse_override(const std::string &text, Problems &problems);
 
+/// The entries of a text, then those of overrides from the command line, in their order.
+std::vector<InputEntry> parse_input_and_overrides(const std::string &text, const std::string &file,
+                                                  const std::vector<std::string> &overrides,
+                                                  Problems &problems, const FileLoader &load);
+
 /// The candidate that is most like @p word, empty if none is near.
 std::string nearest_name(const std::string &word, const std::vector<std::string> &candidates);
 
