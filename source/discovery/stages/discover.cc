@@ -1,14 +1,14 @@
+#include <eunoe/core/sha256.h>
 #include <eunoe/discovery/stages/held_out.h>
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>
-#include <cstdio>
 
 namespace eunoe::discovery {
 
 namespace {
 
-/// A number for all that decides what a stage finds, FNV-1a.
+/// A hash of all that decides what a stage finds.
 std::string study_key(const StudyOptions &o, const MeasuredData &data,
                       const std::vector<Factor> &factors)
 {
@@ -37,14 +37,7 @@ std::string study_key(const StudyOptions &o, const MeasuredData &data,
   for (const Factor &f : factors)
     all.push_back({f.name, static_cast<int>(f.kind), f.null_value, f.scale, f.lower, f.upper,
                    static_cast<int>(f.sign), f.prior_deviation});
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : all.dump()) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 1099511628211ull;
-  }
-  char text[20];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  return sha256(all.dump());
 }
 
 /// Runs stages one after the other, each from its own or an earlier start's runs.
