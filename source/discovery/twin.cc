@@ -138,32 +138,40 @@ void refuse_existing(const std::string &file, MPI_Comm comm)
     throw UserError(file + " is there already. Remove it, or name another file.");
 }
 
-} // namespace
-
-void make_twin(const StudyParameters &study, const std::vector<Effect> &factors, MPI_Comm comm,
-               Log &log)
+/// What is sealed: the hidden truth, and how the data were made of it.
+struct Truth
 {
-  const TwinParameters &twin = study.twin;
-  const std::string data_file = study.measured_data, sealed_file = twin.sealed_file;
-  refuse_existing(data_file, comm);
-  refuse_existing(sealed_file, comm);
-
+  Amplitudes amplitudes;
   nlohmann::ordered_json sealed;
-  Amplitudes amplitudes = truth_of(twin, factors);
-  sealed["effects"] = amplitudes;
-  NormalNumbers normal(twin.seed);
-  sealed["nuisances"] = nlohmann::ordered_json::object();
+};
+
+/// Draws the nuisances of the truth.
+Truth draw_truth(const TwinParameters &twin, const std::vector<Effect> &factors,
+                 NormalNumbers &normal)
+{
+  Truth truth;
+  truth.amplitudes = truth_of(twin, factors);
+  truth.sealed["effects"] = truth.amplitudes;
+  truth.sealed["nuisances"] = nlohmann::ordered_json::object();
   for (const Effect &factor : factors)
     if (factor.factor.kind == Factor::Kind::nuisance && twin.jitter_nuisances)
-      sealed["nuisances"][factor.factor.name] = amplitudes[factor.factor.name] =
+      truth.sealed["nuisances"][factor.factor.name] = truth.amplitudes[factor.factor.name] =
           factor.factor.prior_deviation * normal();
-  std::vector<Effect> changes = factors;
-  changes.push_back(make_time_step_change());
-  amplitudes[time_step_change] = twin.time_step_factor - 1.;
+  truth.amplitudes[time_step_change] = twin.time_step_factor - 1.;
+  truth.sealed["time_step_factor"] = twin.time_step_factor;
+  truth.sealed["overrides"] = twin.overrides;
+  truth.sealed["noise"] = twin.noise;
+  truth.sealed["repeats"] = twin.repeats;
+  truth.sealed["seed"] = twin.seed;
+  truth.sealed["engine"] = engine_digest();
+  return truth;
+}
 
-  const std::vector<Experiment> experiments = experiments_of(study, comm);
-  DemLaboratory laboratory(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
-                           log);
+/// Runs every experiment of the truth several times and measures it.
+MeasuredData measure_truth(const TwinParameters &twin, const std::vector<Experiment> &experiments,
+                           const Amplitudes &amplitudes, DemLaboratory &laboratory,
+                           NormalNumbers &normal)
+{
   // Above all seeds of studies.
   const std::uint32_t first_seed = 0x40000000u + (twin.seed * 64u & 0x3fffffffu);
   laboratory.explore(first_seed);
@@ -188,13 +196,28 @@ void make_twin(const StudyParameters &study, const std::vector<Effect> &factors,
     for (const ObservableDescription &o : experiment.observables())
       data.header[unit_key(o.name)] = o.unit;
   }
-  sealed["time_step_factor"] = twin.time_step_factor;
-  sealed["overrides"] = twin.overrides;
-  sealed["noise"] = twin.noise;
-  sealed["repeats"] = twin.repeats;
-  sealed["seed"] = twin.seed;
-  sealed["engine"] = engine_digest();
-  const std::string sealed_text = sealed.dump(1) + "\n";
+  return data;
+}
+
+} // namespace
+
+void make_twin(const StudyParameters &study, const std::vector<Effect> &factors, MPI_Comm comm,
+               Log &log)
+{
+  const TwinParameters &twin = study.twin;
+  const std::string data_file = study.measured_data, sealed_file = twin.sealed_file;
+  refuse_existing(data_file, comm);
+  refuse_existing(sealed_file, comm);
+
+  NormalNumbers normal(twin.seed);
+  const Truth truth = draw_truth(twin, factors, normal);
+  std::vector<Effect> changes = factors;
+  changes.push_back(make_time_step_change());
+  const std::vector<Experiment> experiments = experiments_of(study, comm);
+  DemLaboratory laboratory(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
+                           log);
+  MeasuredData data = measure_truth(twin, experiments, truth.amplitudes, laboratory, normal);
+  const std::string sealed_text = truth.sealed.dump(1) + "\n";
   data.header["made by"] = "eunoe-discovery --make-twin";
   data.header["sealed truth sha256"] = sha256(sealed_text);
   const StudyFolder here(".", comm);
