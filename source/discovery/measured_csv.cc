@@ -146,27 +146,30 @@ private:
                "Give one value a column: " + heading + ".");
       return;
     }
+    const auto at = [&words](const std::string &column) -> const std::string & {
+      return words[std::find(columns.begin(), columns.end(), column) - columns.begin()];
+    };
     MeasuredCell row;
-    row.cell.experiment = words[0];
-    row.cell.observable = words[1];
+    row.cell.experiment = at("experiment");
+    row.cell.observable = at("observable");
     int repeats = 0;
-    bool ok = read_count(words[2], "index", 0, row.cell.index);
-    ok &= read_number(words[3], "value", row.value);
-    if (read_number(words[4], "std", row.standard_deviation) && row.standard_deviation <= 0.)
-      complain("the std is " + words[4] + ".",
+    bool ok = read_count(at("index"), "index", 0, row.cell.index);
+    ok &= read_number(at("value"), "value", row.value);
+    if (read_number(at("std"), "std", row.standard_deviation) && row.standard_deviation <= 0.)
+      complain("the std is " + at("std") + ".",
                "Give a positive standard deviation of a single repeat.");
-    ok &= read_count(words[5], "repeats", 1, repeats);
+    ok &= read_count(at("repeats"), "repeats", 1, repeats);
     row.repeats = static_cast<unsigned int>(repeats);
-    const Experiment *const experiment = find_experiment(words[0]);
+    const Experiment *const experiment = find_experiment(at("experiment"));
     if (experiment == nullptr || !ok)
       return;
-    check_observable(*experiment, words[1]);
-    check_use(*experiment, words[6]);
+    check_observable(*experiment, at("observable"));
+    check_use(*experiment, at("use"));
     const auto [earlier, is_new] = lines.emplace(row.cell, number);
     if (!is_new)
       complain("the cell was given in line " + std::to_string(earlier->second) + " already.",
                "Remove one of the rows.");
-    (words[6] == "fit" ? data.fit : data.held_out).push_back(row);
+    (at("use") == "fit" ? data.fit : data.held_out).push_back(row);
   }
 
   void check_units()
