@@ -1,34 +1,16 @@
-#include <eunoe/core/declare.h>
 #include <eunoe/domain/mesh.h>
+#include <eunoe/simulation/patch_list.h>
 #include <eunoe/simulation/simulation.h>
-
-#include <deal.II/base/data_out_base.h>
 
 #include <algorithm>
 #include <array>
 #include <map>
-#include <tuple>
 
 namespace eunoe {
 namespace {
 
 using Cell = dealii::Triangulation<3>::active_cell_iterator;
 using CellOfAnyLevel = dealii::Triangulation<3>::cell_iterator;
-
-class CellAveragesSection : public ObservableSection
-{
-public:
-  void declare(dealii::ParameterHandler &prm) override
-  {
-    prm.enter_subsection("post-processing");
-    prm.add_parameter("lagrangian post-processing", calculation,
-                      "Whether mean velocity, granular temperature and solid fraction of every "
-                      "cell of the mesh are drawn with every picture.");
-    prm.leave_subsection();
-  }
-
-  bool calculation = false;
-};
 
 /// The cell that holds a point near one of box-shaped cells; a point on a face belongs to the cell
 /// on the upper side, and one beyond the boundary to the cell inside.
@@ -69,8 +51,21 @@ Cell cell_of(Cell cell, const Vec3 &x)
   return cell;
 }
 
-/// What counts of a particle, with its id in front.
-using Row = std::array<double, 6>; // id, velocity (m/s), volume (m3), whether it is awake
+/// What counts of a particle.
+struct Row
+{
+  ParticleId id = 0;
+  Vec3 velocity;      ///< (m/s)
+  double volume = 0.; ///< (m3)
+  bool is_awake = true;
+
+  /// For its way to another rank.
+  template <typename Archive>
+  void serialize(Archive &archive, unsigned int /*version*/)
+  {
+    archive &id &velocity.x &velocity.y &velocity.z &volume &is_awake;
+  }
+};
 
 /// The averages of one cell.
 struct Averages
@@ -86,39 +81,41 @@ struct Averages
     if (rows.empty())
       return;
     // By id, so that sums are the same on any number of ranks.
-    std::sort(rows.begin(), rows.end());
+    std::sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
     number = static_cast<double>(rows.size());
     for (const Row &row : rows) {
-      velocity += Vec3{row[1], row[2], row[3]};
-      fraction += row[4];
-      awake += row[5] / number;
+      velocity += row.velocity;
+      fraction += row.volume;
+      awake += (row.is_awake ? 1. : 0.) / number;
     }
     velocity = velocity / number;
     for (const Row &row : rows)
-      temperature += norm_square(Vec3{row[1], row[2], row[3]} - velocity);
+      temperature += norm_square(row.velocity - velocity);
     temperature /= 3. * number;
     fraction /= volume;
   }
 };
 
-using dealii::DataComponentInterpretation::DataComponentInterpretation;
-using dealii::DataOutBase::Patch;
-using Ranges =
-    std::vector<std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation>>;
-
 /// Cells with data that are constant in each, in the form in which deal.II writes them.
-class CellPatches : public dealii::DataOutInterface<3, 3>
+class CellPatches : public PatchList<3>
 {
 public:
+  CellPatches()
+  {
+    add_name("velocity", 3);
+    for (const char *const name : {"granular_temperature", "solid_fraction", "particles", "awake"})
+      add_name(name);
+  }
+
   void add(const Cell &cell, const Averages &a, const Domain &domain)
   {
-    Patch<3, 3> patch;
+    Patch patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
     patch.n_subdivisions = 1;
     patch.reference_cell = dealii::ReferenceCells::Hexahedron;
     const std::array<double, 7> values = {a.velocity.x, a.velocity.y, a.velocity.z, a.temperature,
                                           a.fraction,   a.number,     a.awake};
-    patch.data.reinit(static_cast<unsigned int>(values.size()), cell->n_vertices());
+    patch.data.reinit(n_data(), cell->n_vertices());
     for (const unsigned int v : cell->vertex_indices()) {
       patch.vertices[v] = to_point(domain.to_space(to_vec3(cell->vertex(v))));
       for (unsigned int c = 0; c < values.size(); ++c)
@@ -126,27 +123,13 @@ public:
     }
     patches.push_back(patch);
   }
-
-private:
-  const std::vector<Patch<3, 3>> &get_patches() const override { return patches; }
-  std::vector<std::string> get_dataset_names() const override
-  {
-    return {"velocity",       "velocity",  "velocity", "granular_temperature",
-            "solid_fraction", "particles", "awake"};
-  }
-  Ranges get_nonscalar_data_ranges() const override
-  {
-    return {{0, 2, "velocity", dealii::DataComponentInterpretation::component_is_part_of_vector}};
-  }
-
-  std::vector<Patch<3, 3>> patches;
 };
 
 /// Mean velocity, granular temperature and solid fraction of the cells of the mesh, as pictures.
 class CellAverages : public Observable
 {
 public:
-  CellAverages(const CellAveragesSection &, Simulation &simulation)
+  CellAverages(const SwitchSection &, Simulation &simulation)
       : pictures(simulation.output_folder().pictures(
             simulation.get_parameters().control.output_name + "_cells"))
   {
@@ -174,25 +157,20 @@ private:
       cells.push_back(cell);
     std::vector<std::vector<Row>> rows(cells.size());
     // Particles have moved since they were sorted into cells, perhaps to those of other ranks.
-    std::map<unsigned int, std::vector<std::pair<dealii::CellId, std::vector<double>>>> foreign;
+    std::map<unsigned int, std::vector<std::pair<dealii::CellId, Row>>> foreign;
     const ParticleArrays &p = simulation.complete_step();
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      const Quad &x = p.position[k], &v = p.velocity[k];
       const Cell found = cells[store.cell(k)];
-      const Cell cell = mesh.has_boxes ? cell_of(found, x.vec()) : found;
-      const Row row = {static_cast<double>(p.id[k]), v.x, v.y, v.z, sphere_mass(p.radius(k), 1.),
-                       p.is_awake(k) ? 1. : 0.};
+      const Cell cell = mesh.has_boxes ? cell_of(found, p.position[k].vec()) : found;
+      const Row row = {p.id[k], p.velocity[k].vec(), sphere_mass(p.radius(k), 1.), p.is_awake(k)};
       if (cell->is_locally_owned())
         rows[cell->active_cell_index()].push_back(row);
       else
-        foreign[cell->subdomain_id()].emplace_back(cell->id(),
-                                                   std::vector<double>(row.begin(), row.end()));
+        foreign[cell->subdomain_id()].emplace_back(cell->id(), row);
     }
     for (const auto &[rank, parcel] :
          dealii::Utilities::MPI::some_to_some(simulation.communicator(), foreign))
-      for (const auto &[id, values] : parcel) {
-        Row row;
-        std::copy(values.begin(), values.end(), row.begin());
+      for (const auto &[id, row] : parcel) {
         const Cell cell = mesh.triangulation.create_cell_iterator(id);
         rows[cell->active_cell_index()].push_back(row);
       }
@@ -203,7 +181,10 @@ private:
 };
 
 const ObservableRegistry::Registration registration(observables(), "cell averages", [] {
-  return std::make_unique<SectionOf<CellAverages, CellAveragesSection>>();
+  return std::make_unique<SectionOf<CellAverages, SwitchSection>>(
+      "lagrangian post-processing",
+      "Whether mean velocity, granular temperature and solid fraction of every "
+      "cell of the mesh are drawn with every picture.");
 });
 
 } // namespace

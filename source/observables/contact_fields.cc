@@ -1,29 +1,13 @@
-#include <eunoe/core/declare.h>
 #include <eunoe/simulation/simulation.h>
 
 namespace eunoe {
 namespace {
 
-class ContactFieldsSection : public ObservableSection
-{
-public:
-  void declare(dealii::ParameterHandler &prm) override
-  {
-    prm.enter_subsection("post-processing");
-    prm.add_parameter("contact fields", calculation,
-                      "Whether the particles in pictures have their coordination number and mean "
-                      "normal and tangential force of their contacts.");
-    prm.leave_subsection();
-  }
-
-  bool calculation = false;
-};
-
 /// Coordination number and forces per contact of every particle, in its pictures.
 class ContactFields : public Observable
 {
 public:
-  ContactFields(const ContactFieldsSection &, Simulation &) {}
+  ContactFields(const SwitchSection &, Simulation &) {}
 
   std::vector<PictureField> fields(Simulation &simulation) const override
   {
@@ -49,7 +33,9 @@ public:
 };
 
 const ObservableRegistry::Registration registration(observables(), "contact fields", [] {
-  return std::make_unique<SectionOf<ContactFields, ContactFieldsSection>>();
+  return std::make_unique<SectionOf<ContactFields, SwitchSection>>(
+      "contact fields", "Whether the particles in pictures have their coordination number and mean "
+                        "normal and tangential force of their contacts.");
 });
 
 } // namespace

@@ -1,7 +1,5 @@
-#include <eunoe/core/declare.h>
+#include <eunoe/simulation/patch_list.h>
 #include <eunoe/simulation/simulation.h>
-
-#include <deal.II/base/data_out_base.h>
 
 #include <algorithm>
 #include <tuple>
@@ -9,35 +7,21 @@
 namespace eunoe {
 namespace {
 
-class ForceChainsSection : public ObservableSection
+/// Contacts as lines with data that are constant on each, in the form in which deal.II writes them.
+class ContactLines : public PatchList<1>
 {
 public:
-  void declare(dealii::ParameterHandler &prm) override
+  ContactLines()
   {
-    prm.enter_subsection("post-processing");
-    prm.add_parameter("force chains", calculation,
-                      "Whether all contacts are drawn with every picture, as lines with their "
-                      "forces and overlaps.");
-    prm.leave_subsection();
+    for (const char *const name : {"normal_force", "tangential_force", "overlap", "solid"})
+      add_name(name);
   }
 
-  bool calculation = false;
-};
-
-using dealii::DataComponentInterpretation::DataComponentInterpretation;
-using dealii::DataOutBase::Patch;
-using Ranges =
-    std::vector<std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation>>;
-
-/// Contacts as lines with data that are constant on each, in the form in which deal.II writes them.
-class ContactLines : public dealii::DataOutInterface<1, 3>
-{
-public:
   /// A line from the centre of the first body to that of the second, or to the solid's surface. It
   /// begins in the first body's place, wherever beyond a periodic face the second has its own.
   void add(const ContactForce &contact, const ParticleArrays &p)
   {
-    Patch<1, 3> patch;
+    Patch patch;
     patch.patch_index = static_cast<unsigned int>(patches.size());
     patch.n_subdivisions = 1;
     patch.reference_cell = dealii::ReferenceCells::Line;
@@ -47,9 +31,8 @@ public:
     patch.vertices[1] = {end.x, end.y, end.z};
     const double values[] = {contact.normal_force, norm(contact.tangential_force), contact.overlap,
                              static_cast<double>(contact.solid)};
-    const unsigned int n = std::size(values);
-    patch.data.reinit(n, 2);
-    for (unsigned int c = 0; c < n; ++c)
+    patch.data.reinit(n_data(), 2);
+    for (unsigned int c = 0; c < n_data(); ++c)
       patch.data(c, 0) = patch.data(c, 1) = static_cast<float>(values[c]);
     patches.push_back(patch);
     ids[0].values.insert(ids[0].values.end(), 2, p.id[contact.first]);
@@ -59,23 +42,13 @@ public:
 
   /// Of the particles of every contact, at both ends of its line.
   std::vector<PictureIntegers> ids = {{"first", {}}, {"second", {}}};
-
-private:
-  const std::vector<Patch<1, 3>> &get_patches() const override { return patches; }
-  std::vector<std::string> get_dataset_names() const override
-  {
-    return {"normal_force", "tangential_force", "overlap", "solid"};
-  }
-  Ranges get_nonscalar_data_ranges() const override { return {}; }
-
-  std::vector<Patch<1, 3>> patches;
 };
 
 /// All contacts with their forces, as pictures.
 class ForceChains : public Observable
 {
 public:
-  ForceChains(const ForceChainsSection &, Simulation &simulation)
+  ForceChains(const SwitchSection &, Simulation &simulation)
       : pictures(simulation.output_folder().pictures(
             simulation.get_parameters().control.output_name + "_force_chains"))
   {
@@ -108,7 +81,9 @@ private:
 };
 
 const ObservableRegistry::Registration registration(observables(), "force chains", [] {
-  return std::make_unique<SectionOf<ForceChains, ForceChainsSection>>();
+  return std::make_unique<SectionOf<ForceChains, SwitchSection>>(
+      "force chains", "Whether all contacts are drawn with every picture, as lines with their "
+                      "forces and overlaps.");
 });
 
 } // namespace

@@ -33,4 +33,11 @@ void RecordSection::check(const ParameterCheck &check) const
                 "is '" + file + "'.", "Give a name without '/'.");
 }
 
+void SwitchSection::declare(dealii::ParameterHandler &prm)
+{
+  prm.enter_subsection("post-processing");
+  prm.add_parameter(entry, calculation, what);
+  prm.leave_subsection();
+}
+
 } // namespace eunoe

@@ -3,59 +3,41 @@
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/new_file.h>
 #include <eunoe/simulation/output.h>
-
-#include <deal.II/base/data_out_base.h>
+#include <eunoe/simulation/patch_list.h>
 
 #include "vtu_text.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <sstream>
-#include <tuple>
 
 namespace eunoe {
 
 namespace {
 
-using dealii::DataComponentInterpretation::DataComponentInterpretation;
-using dealii::DataOutBase::Patch;
-using Ranges =
-    std::vector<std::tuple<unsigned int, unsigned int, std::string, DataComponentInterpretation>>;
-
 /// Particles as points with data, in the form in which deal.II writes them.
-class ParticlePatches : public dealii::DataOutInterface<0, 3>
+class ParticlePatches : public PatchList<0>
 {
 public:
   ParticlePatches(const ParticleArrays &p, const std::vector<ParticleField> &fields,
                   const std::vector<PictureField> &more)
   {
-    const auto add = [this](const std::string &name, unsigned int n) {
-      const auto first = static_cast<unsigned int>(names.size());
-      names.insert(names.end(), n, name);
-      if (n == 3)
-        ranges.emplace_back(first, first + 2, name,
-                            dealii::DataComponentInterpretation::component_is_part_of_vector);
-    };
     for (const char *const name : {"type", "diameter", "mass"})
-      add(name, 1);
-    add("velocity", 3);
-    add("omega", 3);
-    unsigned int n_extra = 0;
-    for (const ParticleField &field : fields) {
-      add(field.name, field.n_components);
-      n_extra += field.n_components;
-    }
-
+      add_name(name);
+    add_name("velocity", 3);
+    add_name("omega", 3);
+    for (const ParticleField &field : fields)
+      add_name(field.name, field.n_components);
     for (const PictureField &field : more)
-      add(field.name, field.n_components);
+      add_name(field.name, field.n_components);
 
     patches.resize(p.n_owned);
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      Patch<0, 3> &patch = patches[k];
+      Patch &patch = patches[k];
       const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
       patch.vertices[0] = dealii::Point<3>(x.x, x.y, x.z);
       patch.patch_index = static_cast<unsigned int>(k);
-      patch.data.reinit(static_cast<unsigned int>(names.size()), 1);
+      patch.data.reinit(n_data(), 1);
       const double values[] = {static_cast<double>(p.type[k]),
                                2. * p.radius(k),
                                p.mass(k),
@@ -68,35 +50,26 @@ public:
       unsigned int c = 0;
       for (const double value : values)
         patch.data(c++, 0) = static_cast<float>(value);
-      for (unsigned int e = 0; e < n_extra; ++e)
-        patch.data(c++, 0) = static_cast<float>(p.extra[e][k]);
+      for (const std::vector<double> &values_of_all : p.extra)
+        patch.data(c++, 0) = static_cast<float>(values_of_all[k]);
       for (const PictureField &field : more)
         for (unsigned int d = 0; d < field.n_components; ++d)
           patch.data(c++, 0) = static_cast<float>(field.values[k * field.n_components + d]);
     }
   }
-
-private:
-  const std::vector<Patch<0, 3>> &get_patches() const override { return patches; }
-  std::vector<std::string> get_dataset_names() const override { return names; }
-  Ranges get_nonscalar_data_ranges() const override { return ranges; }
-
-  std::vector<Patch<0, 3>> patches;
-  std::vector<std::string> names;
-  Ranges ranges;
 };
 
 /// The triangles of solids with the number of the solid as data.
-std::vector<Patch<2, 3>> solid_patches(const std::vector<Solid> &solids)
+std::vector<dealii::DataOutBase::Patch<2, 3>> solid_patches(const std::vector<Solid> &solids)
 {
-  std::vector<Patch<2, 3>> patches;
+  std::vector<dealii::DataOutBase::Patch<2, 3>> patches;
   for (std::size_t s = 0; s < solids.size(); ++s) {
     if (!solids[s].output)
       continue;
     const RigidState &state = solids[s].state;
     const std::vector<Vec3> corners = solids[s].shape->triangles();
     for (std::size_t c = 0; c < corners.size(); c += 3) {
-      Patch<2, 3> patch;
+      dealii::DataOutBase::Patch<2, 3> patch;
       patch.reference_cell = dealii::ReferenceCells::Triangle;
       patch.n_subdivisions = 1;
       patch.patch_index = static_cast<unsigned int>(patches.size());
@@ -175,8 +148,7 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
 }
 
 void PictureSeries::write(const double time, const ParticleArrays &particles,
-                          const std::vector<ParticleField> &fields,
-                          const std::vector<PictureField> &more)
+                          const std::vector<ParticleField> &fields, const std::vector<PictureField> &more)
 {
   ParticlePatches patches(particles, fields, more);
   PictureIntegers ids{"ID", {}};

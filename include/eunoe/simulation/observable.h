@@ -92,6 +92,21 @@ private:
   const Texts texts;
 };
 
+/// The one entry of observables that are only switched on, in `subsection post-processing`.
+class SwitchSection : public ObservableSection
+{
+public:
+  /// @param what begins with "Whether"
+  SwitchSection(const std::string &entry, const std::string &what) : entry(entry), what(what) {}
+
+  void declare(dealii::ParameterHandler &prm) override;
+
+  bool calculation = false;
+
+private:
+  const std::string entry, what;
+};
+
 /// Those entries for an observable that is made of them and the simulation.
 template <typename Kind, typename Entries = RecordSection>
 class SectionOf : public Entries
