@@ -1,5 +1,8 @@
 #include <eunoe/simulation/simulation.h>
 
+#include <array>
+#include <optional>
+
 namespace eunoe {
 namespace {
 
@@ -17,8 +20,11 @@ public:
 
   void step(Simulation &simulation) override
   {
-    if (simulation.step_number() % frequency == 0)
-      file->write(look(simulation));
+    if (simulation.step_number() % frequency != 0)
+      return;
+    const Sums now = look(simulation);
+    file->write({simulation.time(), now.particles, now.kinetic, now.rotational, now.potential,
+                 now.momentum.x, now.momentum.y, now.momentum.z});
   }
 
   void finish(Simulation &simulation) override { last = look(simulation); }
@@ -26,11 +32,12 @@ public:
   /// Of the end of the run.
   std::vector<Measurement> measurements() const override
   {
-    std::vector<Measurement> all;
-    const auto names = descriptions();
-    for (std::size_t k = 0; k < names.size() && !last.empty(); ++k)
-      all.push_back({names[k].name, 0, last[k + 1]});
-    return all;
+    if (!last)
+      return {};
+    return {{"particles", 0, last->particles},
+            {"kinetic_energy", 0, last->kinetic},
+            {"rotational_energy", 0, last->rotational},
+            {"potential_energy", 0, last->potential}};
   }
 
   std::vector<ObservableDescription> descriptions() const override
@@ -42,8 +49,15 @@ public:
   }
 
 private:
-  /// A row of the table, at present; collective.
-  static std::vector<double> look(Simulation &simulation)
+  /// Of all particles.
+  struct Sums
+  {
+    double particles, kinetic, rotational, potential; ///< number, then energies (J)
+    Vec3 momentum;                                    ///< (kg m/s)
+  };
+
+  /// At present; collective.
+  static Sums look(Simulation &simulation)
   {
     const ParticleArrays &p = simulation.complete_step();
     const Vec3 g = simulation.get_parameters().physics.gravity;
@@ -58,19 +72,20 @@ private:
       for (unsigned int d = 0; d < 3; ++d)
         momentum[d] += mass * v[d];
     }
-    std::vector<double> row = {simulation.time(),
-                               static_cast<double>(simulation.get_system().n_global())};
-    for (ExactSum *sum :
-         {&kinetic, &rotational, &potential, &momentum[0], &momentum[1], &momentum[2]}) {
-      sum->reduce(simulation.communicator());
-      row.push_back(sum->value());
-    }
-    return row;
+    const auto total = [&simulation](ExactSum &sum) {
+      sum.reduce(simulation.communicator());
+      return sum.value();
+    };
+    return {static_cast<double>(simulation.get_system().n_global()),
+            total(kinetic),
+            total(rotational),
+            total(potential),
+            {total(momentum[0]), total(momentum[1]), total(momentum[2])}};
   }
 
   const unsigned long long frequency;
   const std::shared_ptr<CsvFile> file;
-  std::vector<double> last;
+  std::optional<Sums> last;
 };
 
 const ObservableRegistry::Registration registration(observables(), "energies", [] {
