@@ -291,6 +291,7 @@ Solid wall_of(const unsigned int id, const BoundaryCondition &c, const int mater
 {
   Solid wall;
   wall.name = "boundary " + std::to_string(id);
+  wall.boundary = id;
   wall.material = material;
   wall.output = false;
   const bool turns = c.type == "rotational";

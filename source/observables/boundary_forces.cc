@@ -41,15 +41,18 @@ public:
   BoundaryForces(const BoundaryForcesSection &section, Simulation &simulation)
       : frequency(section.frequency), centre(section.centre)
   {
-    // The walls of the mesh are the first solids; one boundary may have several sides.
-    const auto &walls = simulation.get_domain().walls();
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-      const std::string id = walls[w].name.substr(walls[w].name.find(' ') + 1);
+    // One boundary may have several sides.
+    const std::vector<Solid> &solids = simulation.get_solids();
+    for (std::size_t s = 0; s < solids.size(); ++s) {
+      if (!solids[s].boundary)
+        continue;
+      const unsigned int id = *solids[s].boundary;
       Boundary &boundary = boundaries[id];
-      boundary.walls.push_back(w);
+      boundary.walls.push_back(s);
       if (boundary.file == nullptr)
-        boundary.file = simulation.output_folder().table(
-            section.file + "_" + id + ".csv", {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"});
+        boundary.file =
+            simulation.output_folder().table(section.file + "_" + std::to_string(id) + ".csv",
+                                             {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"});
     }
   }
 
@@ -79,13 +82,13 @@ public:
 private:
   struct Boundary
   {
-    std::vector<std::size_t> walls;
+    std::vector<std::size_t> walls; ///< among the solids
     std::shared_ptr<CsvFile> file;
   };
 
   const unsigned long long frequency;
   const Vec3 centre;
-  std::map<std::string, Boundary> boundaries;
+  std::map<unsigned int, Boundary> boundaries; ///< by id
 };
 
 const ObservableRegistry::Registration registration(observables(), "boundary forces", [] {

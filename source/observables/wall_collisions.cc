@@ -1,10 +1,10 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/declare.h>
+#include <eunoe/core/gather.h>
 #include <eunoe/simulation/simulation.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <unordered_set>
@@ -43,7 +43,7 @@ public:
   {
     std::set<unsigned int> boundaries;
     for (const Solid &wall : domain.walls())
-      boundaries.insert(boundary_of(wall));
+      boundaries.insert(*wall.boundary);
     std::string walls;
     for (const unsigned int id : boundaries)
       walls += (walls.empty() ? "" : ", ") + std::to_string(id);
@@ -54,14 +54,11 @@ public:
                         (walls.empty() ? "The mesh has none." : "Name some of " + walls + "."));
   }
 
-  static unsigned int boundary_of(const Solid &wall)
+  /// Whether collisions with a solid are recorded.
+  bool counts(const Solid &solid) const
   {
-    return static_cast<unsigned int>(std::stoul(wall.name.substr(wall.name.find(' ') + 1)));
-  }
-
-  bool counts(const Solid &wall) const
-  {
-    return all_walls || std::find(ids.begin(), ids.end(), boundary_of(wall)) != ids.end();
+    return solid.boundary &&
+           (all_walls || std::find(ids.begin(), ids.end(), *solid.boundary) != ids.end());
   }
 
   const ParameterCheck::Path path = {"post-processing", "particle wall collision statistics"};
@@ -74,31 +71,50 @@ public:
 struct Approach
 {
   ParticleId particle = 0;
-  int wall = -1; ///< among the walls of the mesh, -1 for a place that holds none
+  int wall = -1; ///< number of the solid, -1 for a place that holds none
   bool touches = false;
   double start = 0.;   ///< of the collision (s)
   Vec3 velocity, spin; ///< at the step before it (m/s, rad/s)
 
-  std::vector<double> row() const
+  /// The members in their order, as a checkpoint holds them.
+  using Numbers = std::array<double, 10>;
+  Numbers numbers() const
   {
     return {double(particle), double(wall), touches ? 1. : 0., start,
             velocity.x,       velocity.y,   velocity.z,        spin.x,
             spin.y,           spin.z};
   }
-  static Approach of(const std::vector<double> &row)
+  static Approach of(const Numbers &n)
   {
-    return {static_cast<ParticleId>(row[0]), static_cast<int>(row[1]), row[2] != 0., row[3],
-            {row[4], row[5], row[6]},        {row[7], row[8], row[9]}};
+    return {static_cast<ParticleId>(n[0]),
+            static_cast<int>(n[1]),
+            n[2] != 0.,
+            n[3],
+            {n[4], n[5], n[6]},
+            {n[7], n[8], n[9]}};
+  }
+  bool operator<(const Approach &other) const { return numbers() < other.numbers(); }
+};
+
+/// A collision that is over.
+struct Collision
+{
+  Approach beginning;
+  double end;          ///< (s)
+  Vec3 velocity, spin; ///< at its end (m/s, rad/s)
+
+  /// By time and particle.
+  bool operator<(const Collision &other) const
+  {
+    return end != other.end ? end < other.end : beginning < other.beginning;
   }
 };
 
-using Rows = std::vector<std::vector<double>>;
-
-Rows of_all_ranks(const Rows &mine, MPI_Comm comm)
+/// The entries of all ranks in their order; collective.
+template <typename Entry>
+std::vector<Entry> sorted_of_all_ranks(const std::vector<Entry> &mine, MPI_Comm comm)
 {
-  Rows all;
-  for (const Rows &part : dealii::Utilities::MPI::all_gather(comm, mine))
-    all.insert(all.end(), part.begin(), part.end());
+  std::vector<Entry> all = gather_all(mine, comm);
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -117,9 +133,9 @@ public:
   {
     if (!section.all_walls)
       section.find_walls(simulation.get_domain());
-    for (const Solid &wall : simulation.get_domain().walls()) {
-      boundary.push_back(WallCollisionsSection::boundary_of(wall));
-      counts.push_back(section.counts(wall));
+    for (const Solid &solid : simulation.get_solids()) {
+      boundary.push_back(solid.boundary);
+      counts.push_back(section.counts(solid));
     }
   }
 
@@ -136,7 +152,7 @@ public:
 
     for (std::size_t k = 0; k < approaches.size(); ++k) {
       const SolidContacts::Candidate &candidate = contacts.get_candidates()[k];
-      if (!is_watched(candidate.solid))
+      if (!counts[candidate.solid])
         continue;
       const std::int32_t row = candidate.particle;
       const Vec3 x = p.position[row].vec();
@@ -145,10 +161,8 @@ public:
           contacts.deepest_overlap(candidate, simulation.get_solids()[candidate.solid], x,
                                    p.radius(row)) > 0.;
       Approach &approach = approaches[k];
-      if (approach.touches && !touches) {
-        ended.push_back(approach.row());
-        ended.back().insert(ended.back().end(), {simulation.time(), v.x, v.y, v.z, w.x, w.y, w.z});
-      }
+      if (approach.touches && !touches)
+        ended.push_back({approach, simulation.time(), v, w});
       if (touches && !approach.touches)
         // Velocities are those of the step before, if there was one near the wall.
         approach = {p.id[row],
@@ -171,36 +185,30 @@ public:
     write();
     json["collisions"] = n_collisions;
     json["near"] = nlohmann::ordered_json::array();
-    for (const std::vector<double> &row : of_all_ranks(rows(), comm))
-      json["near"].push_back(row);
+    for (const Approach &approach : sorted_of_all_ranks(near_walls(), comm))
+      json["near"].push_back(approach.numbers());
   }
 
   void resume(const nlohmann::ordered_json &json) override
   {
     n_collisions = count_in(json.at("collisions"));
     for (const auto &values : json.at("near")) {
-      std::vector<double> row;
-      for (const auto &value : values)
-        row.push_back(number_in(value));
-      if (row.size() != Approach().row().size())
+      Approach::Numbers numbers;
+      if (values.size() != numbers.size())
         throw std::invalid_argument("this is no particle near a wall");
-      kept.push_back(row);
+      std::transform(values.begin(), values.end(), numbers.begin(), number_in);
+      kept.push_back(Approach::of(numbers));
     }
     has_kept = true;
   }
 
 private:
-  bool is_watched(std::int32_t solid) const
+  std::vector<Approach> near_walls() const
   {
-    return static_cast<std::size_t>(solid) < counts.size() && counts[solid];
-  }
-
-  Rows rows() const
-  {
-    Rows mine;
+    std::vector<Approach> mine;
     for (const Approach &approach : approaches)
       if (approach.wall >= 0)
-        mine.push_back(approach.row());
+        mine.push_back(approach);
     return mine;
   }
 
@@ -208,14 +216,15 @@ private:
   /// collective, as all ranks search together.
   void follow(const ParticleArrays &p, const SolidContacts &contacts)
   {
-    Rows mine = has_kept ? kept : rows();
+    std::vector<Approach> mine = has_kept ? kept : near_walls();
     if (!has_kept) {
       const std::unordered_set<ParticleId> owned(p.id.begin(),
                                                  p.id.begin() + static_cast<long>(p.n_owned));
-      const auto gone = std::stable_partition(mine.begin(), mine.end(), [&owned](const auto &row) {
-        return owned.count(static_cast<ParticleId>(row[0])) > 0;
-      });
-      const Rows moved = of_all_ranks(Rows(gone, mine.end()), comm);
+      const auto gone =
+          std::stable_partition(mine.begin(), mine.end(), [&owned](const Approach &approach) {
+            return owned.count(approach.particle) > 0;
+          });
+      const auto moved = sorted_of_all_ranks(std::vector<Approach>(gone, mine.end()), comm);
       mine.erase(gone, mine.end());
       mine.insert(mine.end(), moved.begin(), moved.end());
     }
@@ -223,10 +232,8 @@ private:
     kept.clear();
 
     std::map<std::pair<ParticleId, int>, Approach> found;
-    for (const std::vector<double> &row : mine) {
-      const Approach approach = Approach::of(row);
+    for (const Approach &approach : mine)
       found[{approach.particle, approach.wall}] = approach;
-    }
     approaches.assign(contacts.get_candidates().size(), Approach());
     for (std::size_t k = 0; k < approaches.size(); ++k) {
       const SolidContacts::Candidate &candidate = contacts.get_candidates()[k];
@@ -240,30 +247,26 @@ private:
   /// collective. To do so after every step would make all ranks wait for each other once more.
   void write()
   {
-    Rows all = of_all_ranks(ended, comm);
+    const std::vector<Collision> all = sorted_of_all_ranks(ended, comm);
     ended.clear();
-    const std::size_t end_time = Approach().row().size();
-    std::stable_sort(all.begin(), all.end(), [end_time](const auto &a, const auto &b) {
-      return a[end_time] < b[end_time];
-    });
-    for (std::vector<double> &row : all) {
-      row[1] = boundary[static_cast<std::size_t>(row[1])];
-      row.erase(row.begin() + 2);
-      row.insert(row.begin(), static_cast<double>(n_collisions++));
-      file->write(row);
+    for (const auto &[beginning, end, velocity, spin] : all) {
+      const auto &[particle, wall, touches, start, v, w] = beginning;
+      file->write({static_cast<double>(n_collisions++), static_cast<double>(particle),
+                   static_cast<double>(*boundary[wall]), start, v.x, v.y, v.z, w.x, w.y, w.z, end,
+                   velocity.x, velocity.y, velocity.z, spin.x, spin.y, spin.z});
     }
   }
 
   MPI_Comm comm;
   const std::shared_ptr<CsvFile> file;
-  std::vector<unsigned int> boundary; ///< of each wall
-  std::vector<bool> counts;           ///< whether its collisions do
-  std::vector<Approach> approaches;   ///< one a candidate of the contacts with solids
+  std::vector<std::optional<unsigned int>> boundary; ///< of each solid
+  std::vector<bool> counts;                          ///< whether its collisions do
+  std::vector<Approach> approaches; ///< one a candidate of the contacts with solids
   /// At which the approaches were put in their places, at first none.
   unsigned long long searches = std::numeric_limits<unsigned long long>::max();
-  Rows ended; ///< collisions of this rank that are not written yet
+  std::vector<Collision> ended; ///< of this rank, not written yet
   std::uint64_t n_collisions = 0;
-  Rows kept; ///< of all ranks, from a checkpoint
+  std::vector<Approach> kept; ///< of all ranks, from a checkpoint
   bool has_kept = false;
 };
 

@@ -119,19 +119,18 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
   const Box space = mesh.at(0.);
   const double dt = parameters.control.time_step;
   const double duration = dt * static_cast<double>(parameters.control.n_steps());
-  for (std::size_t k = 0; k < parameters.solids.objects.size(); ++k) {
-    const std::string name = "solid object " + std::to_string(k);
-    const auto solid =
-        std::find_if(solids.begin(), solids.end(), [&](const Solid &s) { return s.name == name; });
-    if (solid == solids.end())
+  for (const Solid &solid : solids) {
+    if (!solid.object)
       continue;
-    const Box own = solid->shape->bounding_box();
-    const Box box = box_at(own, solid->motion->at(0.));
-    forecast.facts.push_back("Solid object " + std::to_string(k) + ": " + describe(box));
+    const Box own = solid.shape->bounding_box();
+    const Box box = box_at(own, solid.motion->at(0.));
+    forecast.facts.push_back("Solid object " + std::to_string(*solid.object) + ": " +
+                             describe(box));
     const std::string where =
-        "subsection 'solid objects' / subsection 'solid surfaces' / subsection '" + name + "':";
+        "subsection 'solid objects' / subsection 'solid surfaces' / subsection '" + solid.name +
+        "':";
     const bool fits = judge_size(where, box, space, forecast.problems);
-    const Path path = follow(parameters.solids.objects[k], own, mesh, duration);
+    const Path path = follow(parameters.solids.objects[*solid.object], own, mesh, duration);
     if (!path.meets_mesh)
       forecast.problems.warn(where,
                              "the solid lies outside the mesh during the whole run: at the "

@@ -127,6 +127,7 @@ std::vector<Solid> SolidObjectParameters::make(const int material, const double 
     const SolidObject &object = objects[k];
     Solid solid;
     solid.name = object_section(k);
+    solid.object = static_cast<unsigned int>(k);
     solid.material = material;
     solid.output = object.output;
     try {

@@ -7,7 +7,9 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace eunoe {
 
@@ -15,7 +17,11 @@ namespace eunoe {
 /// domain, a floating wall.
 struct Solid
 {
-  std::string name;
+  std::string name; ///< in the input and in messages
+  /// Id of the boundary of the mesh that it is a wall of, if it is one.
+  std::optional<unsigned int> boundary;
+  /// Number of the solid object of the input that it is, if it is one.
+  std::optional<unsigned int> object;
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Motion> motion;
   /// Row among the Materials.
