@@ -68,11 +68,12 @@ std::int32_t SolidContacts::create(const Vec3 &normal)
   return record;
 }
 
-unsigned int SolidContacts::find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
+unsigned int SolidContacts::find(const Candidate &candidate, const Solid &solid,
+                                 const Vec3 &position, const double radius,
                                  SurfaceContact *found) const
 {
-  const Vec3 centre = solid.to_own_frame(sphere.vec());
-  const double reach = sphere.w + model.range();
+  const Vec3 centre = solid.to_own_frame(position);
+  const double reach = radius + model.range();
   if (candidate.plane >= 0) {
     const Plane &plane = planes[candidate.plane];
     const double height = dot(plane.normal, centre) - plane.offset;
@@ -80,7 +81,7 @@ unsigned int SolidContacts::find(const Candidate &candidate, const Solid &solid,
     return found[0].distance < reach ? 1 : 0;
   }
   const std::int32_t *const first = facets.data() + candidate.first_facet;
-  return solid.shape->find_contacts(centre, sphere.w, reach, first, first + candidate.n_facets,
+  return solid.shape->find_contacts(centre, radius, reach, first, first + candidate.n_facets,
                                     found);
 }
 
@@ -88,8 +89,7 @@ double SolidContacts::deepest_overlap(const Candidate &candidate, const Solid &s
                                       const Vec3 &centre, const double radius) const
 {
   std::array<SurfaceContact, Shape::max_contacts> found;
-  const unsigned int n =
-      find(candidate, solid, {centre.x, centre.y, centre.z, radius}, found.data());
+  const unsigned int n = find(candidate, solid, centre, radius, found.data());
   double deepest = -model.range();
   for (unsigned int k = 0; k < n; ++k)
     deepest = std::max(deepest, radius - found[k].distance);
@@ -192,10 +192,10 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
     if ((loads == nullptr && !is_awake) || is_far(candidate, particles, way[candidate.solid]))
       continue;
     const Solid &solid = solids[candidate.solid];
+    const Vec3 position = particles.position[candidate.particle].vec();
+    const double radius = particles.radius(candidate.particle);
     const unsigned int n_found =
-        solid.is_active(time)
-            ? find(candidate, solid, particles.position[candidate.particle], found.data())
-            : 0;
+        solid.is_active(time) ? find(candidate, solid, position, radius, found.data()) : 0;
     if (is_awake)
       go_on(candidate, found.data(), n_found);
     Candidate asleep = candidate; // a copy, from which contacts may be taken
@@ -230,7 +230,8 @@ void SolidContacts::evaluate(const ParticleArrays &particles, const std::vector<
     if (!solid.is_active(time) || is_far(candidate, particles, way[candidate.solid]))
       continue;
     const unsigned int n_found =
-        find(candidate, solid, particles.position[candidate.particle], found.data());
+        find(candidate, solid, particles.position[candidate.particle].vec(),
+             particles.radius(candidate.particle), found.data());
     for (unsigned int k = 0; k < n_found; ++k) {
       add_to(*own, particles, solid, candidate, found[k], take_living(candidate, found[k].normal));
       if (own->n == PairBlock::size)

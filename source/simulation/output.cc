@@ -148,7 +148,8 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
 }
 
 void PictureSeries::write(const double time, const ParticleArrays &particles,
-                          const std::vector<ParticleField> &fields, const std::vector<PictureField> &more)
+                          const std::vector<ParticleField> &fields,
+                          const std::vector<PictureField> &more)
 {
   ParticlePatches patches(particles, fields, more);
   PictureIntegers ids{"ID", {}};

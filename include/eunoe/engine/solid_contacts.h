@@ -76,8 +76,8 @@ private:
   /// @param way that its solid has moved since (m)
   bool is_far(const Candidate &candidate, const ParticleArrays &particles, double way) const;
   /// The contacts of a sphere with the solid that it is near.
-  unsigned int find(const Candidate &candidate, const Solid &solid, const Quad &sphere,
-                    SurfaceContact *found) const;
+  unsigned int find(const Candidate &candidate, const Solid &solid, const Vec3 &position,
+                    double radius, SurfaceContact *found) const;
   /// Adds a contact to a batch.
   /// @param record of its history, none for a contact that has just begun
   void add_to(Batch &batch, const ParticleArrays &particles, const Solid &solid,
