@@ -7,6 +7,87 @@ namespace {
 
 const std::string section = "powder spreading";
 
+void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  using declare::positive;
+  positive(prm, "feedstock platform length W1", p.w1, "Length of the rising platform in x (m).");
+  positive(prm, "transfer plate length W2", p.w2,
+           "Length of the plate between platform and gap (m).");
+  positive(prm, "measuring plate length W3", p.w3, "Length of the falling plate (m).");
+  positive(prm, "exit plate length W4", p.w4,
+           "Length of the plate between the measuring plate's gap and the collector (m).");
+  positive(prm, "length factor", p.length_factor,
+           "Factor on the four lengths: n/7 for the paper's L_n; the gap and the spreader keep "
+           "their sizes.");
+  positive(prm, "depth", p.depth, "Depth of the simulated slice in z, which is periodic (m).");
+  positive(prm, "gap", p.gap, "Width of the gap on both sides of the measuring plate (m).");
+  positive(prm, "lip height", p.lip,
+           "Height of the edges of the plates at the gap, below which powder falls freely (m).");
+}
+
+void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  using declare::positive;
+  using declare::Patterns::Integer;
+  declare::choice(prm, "spreader", p.spreader, "half round|flat blade", "Shape of the spreader.");
+  positive(prm, "spreader radius R_s", p.spreader_radius, "half round: radius (m).");
+  positive(prm, "spreader thickness", p.spreader_thickness, "flat blade: thickness in x (m).");
+  positive(prm, "spreader height", p.spreader_height,
+           "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
+           "can pile up.");
+  prm.add_parameter("spreader facets", p.spreader_facets,
+                    "half round: number of facets of the half circle.", Integer(4, 1000));
+  prm.add_parameter("spreader clearance delta_s", p.clearance,
+                    "Height of the spreader's lowest line over the transfer plate (m).");
+}
+
+void declare_passes(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  using declare::positive;
+  using declare::Patterns::Integer;
+  prm.add_parameter("number of layers", p.n_layers,
+                    "Number of passes; the layers are numbered from 0.", Integer(0, 10000));
+  positive(prm, "layer thickness delta_l", p.layer_thickness,
+           "Stroke of the measuring plate after every pass (m).");
+  positive(prm, "spreading velocity v_s", p.velocity, "Velocity of the spreader (m/s).");
+  positive(prm, "feedstock stroke delta_f", p.stroke,
+           "Stroke of the feedstock platform before every pass (m).");
+  positive(prm, "first feedstock stroke", p.first_stroke,
+           "Stroke of the feedstock platform before the first pass (m).");
+  positive(prm, "measuring plate velocity", p.plate_velocity,
+           "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
+  positive(prm, "feedstock platform velocity", p.platform_velocity,
+           "Mean velocity of the feedstock platform's strokes (m/s).");
+  prm.add_parameter("pass overlap", p.overlap,
+                    "Share of a pass after which the next may start, as far as the plates' strokes "
+                    "allow it; 1: one after the other.",
+                    declare::Patterns::Double(0.05, 1.));
+  positive(prm, "rest before weighing", p.rest_before_weighing,
+           "Time between the passing of the spreader's rear over the end of the measuring plate "
+           "and the weighing (s).");
+}
+
+void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  using declare::positive;
+  declare::choice(prm, "feedstock", p.feedstock, "replenished|full",
+                  "replenished: a shallow bed is settled once and copied back before every pass, "
+                  "shifted and mirrored in z at random, after what was left has been taken out. "
+                  "full: one deep reservoir for all passes.");
+  positive(prm, "feedstock bed depth", p.bed_depth,
+           "Depth of the bed that is settled (m); 0: the stroke and the margin.");
+  positive(prm, "feedstock margin", p.bed_margin,
+           "Powder left below the level of the transfer plate after the stroke (m).");
+  positive(prm, "feedstock insertion speed", p.insertion_speed,
+           "Downward velocity of the particles inserted for the bed (m/s).");
+  positive(
+      prm, "settled speed", p.settled_speed,
+      "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
+  positive(prm, "settling time", p.settling_time,
+           "Longest time that the bed is given to come to rest (s).");
+  declare::count(prm, "seed", p.seed, "Seed of the random positions, shifts and mirrorings.");
+}
+
 void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
   using declare::positive;
@@ -37,87 +118,29 @@ void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p
                     Double(-1.));
 }
 
+void declare_measurement(dealii::ParameterHandler &prm, SpreadingParameters &p)
+{
+  declare::count(prm, "profile bins", p.profile_bins,
+                 "Number of bins along the plate in which the surface's height and the mean "
+                 "diameter are measured after the last layer.",
+                 1);
+  prm.add_parameter("layer pictures", p.layer_pictures,
+                    "Whether the particles are written at every weighing (<name>_layers.pvd).");
+  declare::count(prm, "spreader force sampling", p.force_sampling,
+                 "Steps between two readings of the force on the spreader.", 1);
+}
+
 } // namespace
 
 void SpreadingParameters::declare(dealii::ParameterHandler &prm)
 {
-  using declare::positive;
-  using declare::Patterns::Integer;
   prm.enter_subsection(section);
-
-  positive(prm, "feedstock platform length W1", w1, "Length of the rising platform in x (m).");
-  positive(prm, "transfer plate length W2", w2,
-           "Length of the plate between platform and gap (m).");
-  positive(prm, "measuring plate length W3", w3, "Length of the falling plate (m).");
-  positive(prm, "exit plate length W4", w4,
-           "Length of the plate between the measuring plate's gap and the collector (m).");
-  positive(prm, "length factor", length_factor,
-           "Factor on the four lengths: n/7 for the paper's L_n; the gap and the spreader keep "
-           "their sizes.");
-  positive(prm, "depth", depth, "Depth of the simulated slice in z, which is periodic (m).");
-  positive(prm, "gap", gap, "Width of the gap on both sides of the measuring plate (m).");
-  positive(prm, "lip height", lip,
-           "Height of the edges of the plates at the gap, below which powder falls freely (m).");
-
-  declare::choice(prm, "spreader", spreader, "half round|flat blade", "Shape of the spreader.");
-  positive(prm, "spreader radius R_s", spreader_radius, "half round: radius (m).");
-  positive(prm, "spreader thickness", spreader_thickness, "flat blade: thickness in x (m).");
-  positive(prm, "spreader height", spreader_height,
-           "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
-           "can pile up.");
-  prm.add_parameter("spreader facets", spreader_facets,
-                    "half round: number of facets of the half circle.", Integer(4, 1000));
-  prm.add_parameter("spreader clearance delta_s", clearance,
-                    "Height of the spreader's lowest line over the transfer plate (m).");
-
-  prm.add_parameter("number of layers", n_layers,
-                    "Number of passes; the layers are numbered from 0.", Integer(0, 10000));
-  positive(prm, "layer thickness delta_l", layer_thickness,
-           "Stroke of the measuring plate after every pass (m).");
-  positive(prm, "spreading velocity v_s", velocity, "Velocity of the spreader (m/s).");
-  positive(prm, "feedstock stroke delta_f", stroke,
-           "Stroke of the feedstock platform before every pass (m).");
-  positive(prm, "first feedstock stroke", first_stroke,
-           "Stroke of the feedstock platform before the first pass (m).");
-  positive(prm, "measuring plate velocity", plate_velocity,
-           "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
-  positive(prm, "feedstock platform velocity", platform_velocity,
-           "Mean velocity of the feedstock platform's strokes (m/s).");
-  prm.add_parameter("pass overlap", overlap,
-                    "Share of a pass after which the next may start, as far as the plates' strokes "
-                    "allow it; 1: one after the other.",
-                    declare::Patterns::Double(0.05, 1.));
-  positive(prm, "rest before weighing", rest_before_weighing,
-           "Time between the passing of the spreader's rear over the end of the measuring plate "
-           "and the weighing (s).");
-
-  declare::choice(prm, "feedstock", feedstock, "replenished|full",
-                  "replenished: a shallow bed is settled once and copied back before every pass, "
-                  "shifted and mirrored in z at random, after what was left has been taken out. "
-                  "full: one deep reservoir for all passes.");
-  positive(prm, "feedstock bed depth", bed_depth,
-           "Depth of the bed that is settled (m); 0: the stroke and the margin.");
-  positive(prm, "feedstock margin", bed_margin,
-           "Powder left below the level of the transfer plate after the stroke (m).");
-  positive(prm, "feedstock insertion speed", insertion_speed,
-           "Downward velocity of the particles inserted for the bed (m/s).");
-  positive(
-      prm, "settled speed", settled_speed,
-      "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
-  positive(prm, "settling time", settling_time,
-           "Longest time that the bed is given to come to rest (s).");
-  declare::count(prm, "seed", seed, "Seed of the random positions, shifts and mirrorings.");
-
+  declare_apparatus(prm, *this);
+  declare_spreader(prm, *this);
+  declare_passes(prm, *this);
+  declare_feedstock(prm, *this);
   declare_imperfections(prm, *this);
-
-  declare::count(prm, "profile bins", profile_bins,
-                 "Number of bins along the plate in which the surface's height and the mean "
-                 "diameter are measured after the last layer.",
-                 1);
-  prm.add_parameter("layer pictures", layer_pictures,
-                    "Whether the particles are written at every weighing (<name>_layers.pvd).");
-  declare::count(prm, "spreader force sampling", force_sampling,
-                 "Steps between two readings of the force on the spreader.", 1);
+  declare_measurement(prm, *this);
   prm.leave_subsection();
 }
 
