@@ -1,6 +1,5 @@
 // Any text as an input file, as far as --check goes: everything is built from what was read.
 
-#include <eunoe/simulation/process.h>
 #include <eunoe/simulation/simulation.h>
 
 #include "fuzzing.h"
@@ -38,15 +37,14 @@ bool is_out_of_scope(const eunoe::Parameters &parameters)
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
 {
   eunoe::Problems problems;
-  eunoe::Parameters parameters = fuzzing::read(std::string(data, data + size), problems);
+  const eunoe::Parameters parameters = fuzzing::read(std::string(data, data + size), problems);
   if (!problems.empty() || is_out_of_scope(parameters))
-    return 0;
-  if (eunoe::Process *const process = parameters.process())
-    process->prepare(parameters);
-  if (is_large(parameters.mesh) || parameters.mesh.refinement > 4)
     return 0;
   eunoe::Log log(MPI_COMM_WORLD, true);
   try {
+    const eunoe::MeshParameters mesh = parameters.of_run().mesh;
+    if (is_large(mesh) || mesh.refinement > 4)
+      return 0;
     const eunoe::Simulation simulation(parameters, MPI_COMM_WORLD, log);
     (void)simulation.estimate();
   } catch (const eunoe::UserError &) {

@@ -11,13 +11,6 @@ void MovingSolids::take(std::vector<Solid> &&all)
   loads.resize(solids.size());
 }
 
-int MovingSolids::find(const std::string &name) const
-{
-  const auto it =
-      std::find_if(solids.begin(), solids.end(), [&](const Solid &s) { return s.name == name; });
-  return it == solids.end() ? -1 : static_cast<int>(it - solids.begin());
-}
-
 void MovingSolids::move_to(const double time)
 {
   for (Solid &solid : solids)

@@ -64,7 +64,8 @@ void ParticleStore::Implementation::measure_gaps(const ParticleArrays &arrays)
                     "make the cells at the boundary smaller, so that they follow it more closely.");
 }
 
-ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra, const int asleep)
+ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra,
+                             const std::optional<FieldHandle> asleep)
     : implementation(std::make_unique<Implementation>(domain, n_extra, asleep))
 {
 }

@@ -54,7 +54,7 @@ struct ParticleStore::Implementation
 {
   using Handler = dealii::Particles::ParticleHandler<3>;
 
-  Implementation(Domain &domain, unsigned int n_extra, int asleep)
+  Implementation(Domain &domain, unsigned int n_extra, std::optional<FieldHandle> asleep)
       : domain(domain), triangulation(domain.mesh().triangulation), n_extra(n_extra),
         asleep(asleep),
         locator(domain.mesh().is_plain ? nullptr : std::make_unique<CellLocator>(domain)),
@@ -124,7 +124,7 @@ struct ParticleStore::Implementation
     double sum = 0.;
     for (const auto &particle : particles) {
       const auto values = particle.get_properties();
-      sum += values[property::work] * (asleep >= 0 && values[property::extra + asleep] != 0.
+      sum += values[property::work] * (asleep && values[property::extra + asleep->first] != 0.
                                            ? p.inactive_factor
                                            : p.active_factor);
     }
@@ -147,7 +147,7 @@ struct ParticleStore::Implementation
   Domain &domain;
   dealii::parallel::distributed::Triangulation<3> &triangulation;
   const unsigned int n_extra;
-  const int asleep;
+  const std::optional<FieldHandle> asleep;
   const std::unique_ptr<CellLocator> locator; ///< null where the handler finds the cells itself
   Handler handler;
   int rank;

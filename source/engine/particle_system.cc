@@ -12,14 +12,13 @@ ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const d
                                const double largest_diameter, Timers &timers)
     : domain(domain), physics(std::move(physics_)), model(physics.model), skin(skin),
       ledger(domain.outlets().size()), timers(timers),
-      store(domain, n_components(physics.fields), physics.asleep), halo(domain.communicator()),
+      store(domain, physics.fields.n_components(), physics.asleep), halo(domain.communicator()),
       grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
            largest_diameter + skin + model.range()),
-      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size())
+      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
+      extra_defaults(physics.fields.initial_values())
 {
   pairs.clear(model.history_size());
-  for (const ParticleField &field : physics.fields)
-    extra_defaults.insert(extra_defaults.end(), field.n_components, field.initial);
 }
 
 void ParticleSystem::add_forces(const std::vector<Solid> &solids, const double time,

@@ -50,18 +50,24 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
   prm.leave_subsection();
 }
 
-SparseContacts::SparseContacts(const SparseContactParameters &parameters,
-                               const std::vector<ParticleField> &fields, const double time_step)
-    : parameters(parameters), last_moved(n_components(fields) - 1), asleep(last_moved - 1),
-      rest_steps(parameters.rest_time / time_step)
+SparseContacts::SparseContacts(const SparseContactParameters &parameters, const double time_step)
+    : parameters(parameters), rest_steps(parameters.rest_time / time_step)
 {
+}
+
+void SparseContacts::add_fields(ParticleFields &fields)
+{
+  if (!parameters.enabled)
+    return;
+  asleep = fields.add({"asleep", 1, 0.});
+  last_moved = fields.add({"last_moved_step", 1, -1.});
 }
 
 std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
                                                         const SolidContacts &solids,
                                                         const Stirring &stirring) const
 {
-  std::vector<double> &moved = p.extra[last_moved];
+  std::vector<double> &moved = p.component(*last_moved);
   const auto now = static_cast<double>(stirring.step);
   const double limit = parameters.temperature;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
@@ -94,7 +100,7 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
     awake.swap(wider);
     halo.update(awake);
   }
-  std::vector<double> &sleeps = p.extra[asleep];
+  std::vector<double> &sleeps = p.component(*asleep);
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const double now = awake[row] != 0 ? 0. : 1.;
     if (now == sleeps[row])
@@ -114,18 +120,20 @@ void SparseContacts::stir_neighbours(ParticleArrays &p, const PairList &pairs,
                                      const std::vector<std::uint8_t> &flags,
                                      const unsigned long long step) const
 {
+  std::vector<double> &moved = p.component(*last_moved);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if ((flags[pairs.i[k]] | flags[pairs.j[k]]) != 0)
       for (const std::int32_t row : {pairs.i[k], pairs.j[k]})
         if (static_cast<std::size_t>(row) < p.n_owned)
-          p.extra[last_moved][row] = static_cast<double>(step);
+          moved[row] = static_cast<double>(step);
 }
 
 void SparseContacts::recall(ParticleArrays &p, Halo &halo) const
 {
+  const std::vector<double> &sleeps = p.component(*asleep);
   std::vector<std::uint8_t> awake(p.size(), 1);
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    awake[row] = p.extra[asleep][row] == 0.;
+    awake[row] = sleeps[row] == 0.;
   halo.update(awake);
   set_awake(p, std::move(awake));
 }

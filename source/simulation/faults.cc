@@ -10,15 +10,16 @@ std::vector<std::size_t> Simulation::inspect()
   const auto describe = [this](std::size_t row) { return system.describe(row, solids.list()); };
   const Verdict verdict = guard.judge(faults, system.particles, describe);
   if (const auto half_period = guard.newly_too_short(faults.stiffest))
-    log.warning("at t = " + format(time()) + " s the stiffest contact takes " +
-                format(*half_period) + " s, no more than " + format(*half_period / time_step()) +
-                " time steps, and may gain energy. At most " +
-                format(*half_period / ParticleGuard::steps_per_contact) + " s is advised.");
+    get_log().warning("at t = " + format(time()) + " s the stiffest contact takes " +
+                      format(*half_period) + " s, no more than " +
+                      format(*half_period / time_step()) +
+                      " time steps, and may gain energy. At most " +
+                      format(*half_period / ParticleGuard::steps_per_contact) + " s is advised.");
   if (verdict.stops)
     stop_for(verdict);
   if (verdict.warns)
-    log.warning("At t = " + format(time()) + " s, " + std::to_string(verdict.number) +
-                " lost particle(s) are taken out: " + verdict.first);
+    get_log().warning("At t = " + format(time()) + " s, " + std::to_string(verdict.number) +
+                      " lost particle(s) are taken out: " + verdict.first);
   return verdict.lost;
 }
 

@@ -121,7 +121,7 @@ Forecast Simulation::foresee(const bool writes) const
   const RunEstimate cost = estimate();
   judge_resources(parameters, cost, domain.n_cells(), communicator(), forecast);
   if (writes)
-    judge_output(parameters, cost, n_components(system.fields()), communicator(), forecast);
+    judge_output(parameters, cost, system.fields().n_components(), communicator(), forecast);
   return forecast;
 }
 

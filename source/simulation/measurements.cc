@@ -7,6 +7,16 @@
 
 namespace eunoe {
 
+namespace {
+
+template <typename Entry>
+void append(const std::vector<Entry> &more, std::vector<Entry> &all)
+{
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+} // namespace
+
 std::vector<SolidLoad> Simulation::global_solid_loads() const
 {
   return solids.global_loads(communicator());
@@ -30,7 +40,7 @@ void Simulation::write_pictures(PictureSeries &series)
 std::vector<Measurement> Simulation::measurements() const
 {
   std::vector<Measurement> all;
-  if (const Process *const process = parameters.process())
+  if (process)
     all = process->measurements();
   const std::vector<Measurement> more = outputs.measurements();
   all.insert(all.end(), more.begin(), more.end());
@@ -40,8 +50,8 @@ std::vector<Measurement> Simulation::measurements() const
 std::vector<ObservableDescription> Simulation::described_observables() const
 {
   std::vector<ObservableDescription> all;
-  if (const Process *const process = parameters.process())
-    all = process->observables();
+  if (process)
+    all = parameters.process()->observables();
   const std::vector<ObservableDescription> more = outputs.descriptions();
   all.insert(all.end(), more.begin(), more.end());
   return all;

@@ -19,14 +19,14 @@ namespace {
 class ParticlePatches : public PatchList<0>
 {
 public:
-  ParticlePatches(const ParticleArrays &p, const std::vector<ParticleField> &fields,
+  ParticlePatches(const ParticleArrays &p, const ParticleFields &fields,
                   const std::vector<PictureField> &more)
   {
     for (const char *const name : {"type", "diameter", "mass"})
       add_name(name);
     add_name("velocity", 3);
     add_name("omega", 3);
-    for (const ParticleField &field : fields)
+    for (const ParticleField &field : fields.list())
       add_name(field.name, field.n_components);
     for (const PictureField &field : more)
       add_name(field.name, field.n_components);
@@ -148,8 +148,7 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
 }
 
 void PictureSeries::write(const double time, const ParticleArrays &particles,
-                          const std::vector<ParticleField> &fields,
-                          const std::vector<PictureField> &more)
+                          const ParticleFields &fields, const std::vector<PictureField> &more)
 {
   ParticlePatches patches(particles, fields, more);
   PictureIntegers ids{"ID", {}};

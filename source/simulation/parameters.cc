@@ -85,8 +85,6 @@ std::vector<ParameterSection *> Parameters::sections()
     all.push_back(load.get());
   for (auto &[name, observable] : observables)
     all.push_back(observable.get());
-  for (auto &[name, process] : processes)
-    all.push_back(process.get());
   return all;
 }
 
@@ -96,6 +94,8 @@ void Parameters::declare(dealii::ParameterHandler &prm)
                   "Experiment to run: 'none' for a general case, or a process that makes its own "
                   "mesh, solids and schedule from the section of the same name.");
   for (ParameterSection *section : sections())
+    section->declare(prm);
+  for (const auto &[name, section] : processes)
     section->declare(prm);
 }
 
@@ -122,6 +122,14 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   complete_input = set_entries(prm, seeds, repeated, problems);
 }
 
+Parameters Parameters::of_run() const
+{
+  Parameters complete = *this;
+  if (const ProcessSection *const section = process())
+    section->decide(complete);
+  return complete;
+}
+
 ContactModel Parameters::contact_model(const double largest_diameter) const
 {
   ContactLawOptions options = model.options;
@@ -140,17 +148,15 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
   parameters.set(entries, problems);
 
   const ParameterCheck check(entries, file, problems);
-  Process *const process = parameters.process();
-  for (ParameterSection *section : parameters.sections()) {
-    // A process makes its own insertion; of the processes only the chosen one counts.
-    const bool unused = dynamic_cast<Process *>(section) != nullptr
-                            ? section != process
-                            : process != nullptr && section == &parameters.insertion;
-    if (!unused)
+  const ProcessSection *const process = parameters.process();
+  for (const ParameterSection *const section : parameters.sections())
+    // A process makes its own insertion.
+    if (process == nullptr || section != &parameters.insertion)
       section->check(check);
-  }
-  if (process != nullptr)
+  if (process != nullptr) {
+    process->check(check);
     process->check_with(parameters, check);
+  }
   return parameters;
 }
 

@@ -20,7 +20,7 @@ void Simulation::save(CheckpointWriter &writer)
   if (sleeper.is_enabled())
     writer.head["sleep"] = sleeper.save();
   system.save(writer);
-  if (const Process *const process = parameters.process())
+  if (process)
     process->save(writer);
 }
 
@@ -37,14 +37,14 @@ void Simulation::resume()
     if (sleeper.is_enabled())
       sleeper.load(head.at("sleep"), solids.list().size());
     system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get());
-    if (Process *const process = parameters.process())
+    if (process)
       process->resume(*this, checkpoint);
     outputs.load(head.at("outputs"));
   });
   move_solids();
-  log.line("Continuing from " + checkpoint.path + ": step " + std::to_string(clock.step()) +
-           ", t = " + format(clock.time()) + " s, " + std::to_string(system.n_global()) +
-           " particles");
+  get_log().line("Continuing from " + checkpoint.path + ": step " + std::to_string(clock.step()) +
+                 ", t = " + format(clock.time()) + " s, " + std::to_string(system.n_global()) +
+                 " particles");
   checkpoints.close();
 }
 
@@ -66,7 +66,7 @@ void Simulation::checkpoint_if_due()
   writer.head["balancing"] = balancer.save();
   writer.head["input"] = parameters.as_input_file();
   writer.head["outputs"] = outputs.save();
-  checkpoints.write(writer, clock.step(), log);
+  checkpoints.write(writer, clock.step(), get_log());
 }
 
 } // namespace eunoe

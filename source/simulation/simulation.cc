@@ -11,24 +11,10 @@ namespace eunoe {
 
 namespace {
 
-/// Prepares the parameters that a process decides, before anything is built from them.
-Parameters &prepare(Parameters &parameters)
+/// Null for a general case.
+std::unique_ptr<Process> make_process(const Parameters &parameters)
 {
-  if (Process *const process = parameters.process())
-    process->prepare(parameters);
-  return parameters;
-}
-
-/// Extra doubles of the particles: the process's, then those that tell who sleeps.
-std::vector<ParticleField> make_fields(const Parameters &parameters)
-{
-  std::vector<ParticleField> fields;
-  if (const Process *const process = parameters.process())
-    fields = process->fields();
-  if (parameters.sparse_contacts.enabled)
-    for (const ParticleField &field : SparseContacts::fields())
-      fields.push_back(field);
-  return fields;
+  return parameters.process() != nullptr ? parameters.process()->make(parameters) : nullptr;
 }
 
 /// Null for a process, which makes its own.
@@ -74,23 +60,28 @@ double skin(const Parameters &parameters, const Inserter &inserter)
 }
 
 ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter,
-                           const Sleeper &sleeper)
+                           Process *const process, Sleeper &sleeper)
 {
+  ParticleFields fields;
+  if (process != nullptr)
+    process->add_fields(fields);
+  sleeper.add_fields(fields);
   return {parameters.contact_model(largest_diameter(parameters, inserter)), make_loads(parameters),
-          make_fields(parameters), sleeper.get().flag()};
+          fields, sleeper.get().flag()};
 }
 
 } // namespace
 
-Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const Purpose purpose)
-    : parameters(prepare(parameters_)), log(log), progress(log, parameters.control.log_frequency),
+Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log, const Purpose purpose)
+    : parameters(input.of_run()), process(make_process(parameters)),
+      progress(log, parameters.control.log_frequency),
       inserter(parameters.insertion, make_insertion(parameters, comm, log)),
       domain(background_of(parameters, purpose == Purpose::check, log), parameters.boundaries,
              parameters.physics.wall_material(), comm),
       clock(parameters.control.time_step, parameters.control.n_steps()),
-      sleeper(parameters.sparse_contacts, make_fields(parameters), clock.time_step()),
-      system(domain, physics_of(parameters, inserter, sleeper), skin(parameters, inserter),
-             largest_diameter(parameters, inserter), progress.timers),
+      sleeper(parameters.sparse_contacts, clock.time_step()),
+      system(domain, physics_of(parameters, inserter, process.get(), sleeper),
+             skin(parameters, inserter), largest_diameter(parameters, inserter), progress.timers),
       integrator(integrators().make(parameters.model.integration_method)),
       criterion(parameters.detection, skin(parameters, inserter), comm),
       balancer(parameters.load_balancing),
@@ -114,10 +105,9 @@ Simulation::Simulation(Parameters &parameters_, MPI_Comm comm, Log &log, const P
   checkpoints.find(parameters.as_input_file(), parameters.control.n_steps(), log, problems);
   if (!problems.empty())
     throw UserError(problems);
-  if (Process *const process = parameters.process()) {
+  if (process) {
     const std::size_t n_given = all.size();
-    const std::vector<Solid> more = process->make_solids(parameters);
-    all.insert(all.end(), more.begin(), more.end());
+    process->add_solids(all);
     check_crossings(all, n_given, problems);
   }
   give_materials(all, parameters.physics, problems);
@@ -181,7 +171,8 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
     make_observables();
   int n_ranks;
   MPI_Comm_size(communicator(), &n_ranks);
-  log.line("Eunoe " + std::string(version()) + " on " + format_count(n_ranks, "rank", "ranks"));
+  get_log().line("Eunoe " + std::string(version()) + " on " +
+                 format_count(n_ranks, "rank", "ranks"));
   outputs.folder.write("used.prm", parameters.as_input_file());
   checkpoints.begin();
   if (checkpoints.opened() != nullptr)
@@ -212,8 +203,8 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
 void Simulation::start()
 {
   move_solids();
-  if (parameters.process() != nullptr)
-    parameters.process()->start(*this);
+  if (process)
+    process->start(*this);
   else
     insert_and_remove({}, {});
   do_what_is_due();
@@ -295,8 +286,7 @@ void Simulation::update_sleep(const bool wake_all)
 
 void Simulation::compute_forces()
 {
-  const Process *const process = parameters.process();
-  const bool wanted = (process != nullptr && process->wants_solid_loads(clock.step())) ||
+  const bool wanted = (process && process->wants_solid_loads(clock.step())) ||
                       outputs.want_solid_loads(clock.step());
   system.add_forces(solids.list(), clock.time(), clock.time_step(),
                     wanted ? &solids.new_loads() : nullptr);
@@ -331,9 +321,9 @@ void Simulation::do_what_is_due()
         inserter.next_event(domain, system.particles, solids.list(), clock.time());
     insert_and_remove(event.delivery, event.removed);
   }
-  if (parameters.process() != nullptr) {
+  if (process) {
     const Timers::Scope scope(progress.timers, Section::process);
-    parameters.process()->step(*this);
+    process->step(*this);
   }
   outputs.step(*this);
   if (outputs.are_pictures_due(clock))
@@ -343,16 +333,15 @@ void Simulation::do_what_is_due()
 
 bool Simulation::finished() const
 {
-  return clock.is_at_end() || (parameters.process() != nullptr && parameters.process()->finished());
+  return clock.is_at_end() || (process && process->finished());
 }
 
 void Simulation::report_progress(const bool at_end)
 {
   if (!progress.is_report_due(clock.step(), at_end))
     return;
-  const Process *const process = parameters.process();
-  const double share = process == nullptr ? clock.share() : at_end ? 1. : process->progress(*this);
-  progress.report(clock, system.n_global(), share, process == nullptr ? "" : process->stage());
+  const double share = !process ? clock.share() : at_end ? 1. : process->progress(*this);
+  progress.report(clock, system.n_global(), share, process ? process->stage() : "");
 }
 
 } // namespace eunoe

@@ -96,15 +96,15 @@ void Simulation::write_summary()
   summary["load_balances"] = system.n_balances();
   add_balance(summary, system, domain);
   add_energies(summary, system.particles, comm);
-  if (const Process *const process = parameters.process())
+  if (process)
     process->add_to_summary(summary);
   const std::string shares = progress.add_times(summary, comm);
   outputs.folder.write("summary.json", summary.dump(2) + "\n");
-  log.line("Finished " + format_count(static_cast<double>(clock.step()), "step", "steps") + " in " +
-           format_duration(progress.seconds_of_loop()) + ": " +
-           format(progress.particle_steps_per_second() * 1e-6) +
-           " million particle-steps/s. Share of time: " + shares);
-  log.line("Results are in " + outputs.folder.path);
+  get_log().line("Finished " + format_count(static_cast<double>(clock.step()), "step", "steps") +
+                 " in " + format_duration(progress.seconds_of_loop()) + ": " +
+                 format(progress.particle_steps_per_second() * 1e-6) +
+                 " million particle-steps/s. Share of time: " + shares);
+  get_log().line("Results are in " + outputs.folder.path);
 }
 
 } // namespace eunoe

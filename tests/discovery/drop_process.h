@@ -6,7 +6,7 @@
 
 #include <eunoe/core/declare.h>
 #include <eunoe/core/random.h>
-#include <eunoe/simulation/simulation.h>
+#include <eunoe/processes/loose_powder.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -17,7 +17,8 @@ namespace test {
 
 using namespace eunoe;
 
-class Drop : public Process
+/// The entries of a drop.
+class DropSection : public ProcessSection
 {
 public:
   void declare(dealii::ParameterHandler &prm) override
@@ -29,17 +30,16 @@ public:
     declare::positive(prm, "largest speed", largest_speed, "Above it the run breaks off (m/s).");
     prm.leave_subsection();
   }
-
-  void prepare(Parameters &parameters) override
+  void check_with(const Parameters &, const ParameterCheck &check) const override
+  {
+    check.require(duration > 0., {"drop"}, "duration", "is 0 s.", "Give a positive time.");
+  }
+  void decide(Parameters &parameters) const override
   {
     parameters.mesh.grid_type = "subdivided_hyper_rectangle";
     parameters.mesh.grid_arguments = "4, 4, 4 : -0.01, 0, -0.01 : 0.01, 0.02, 0.01 : true";
     parameters.control.end_control = "time";
     parameters.control.time_end = 2. * duration;
-  }
-  void check_with(const Parameters &, const ParameterCheck &check) const override
-  {
-    check.require(duration > 0., {"drop"}, "duration", "is 0 s.", "Give a positive time.");
   }
   RunEstimate estimate(const Parameters &parameters) const override
   {
@@ -48,42 +48,47 @@ public:
     estimate.steps = duration / parameters.control.time_step;
     return estimate;
   }
-  std::vector<Solid> make_solids(const Parameters &) override { return {}; }
+  std::unique_ptr<Process> make(const Parameters &parameters) const override;
+  std::vector<ObservableDescription> observables() const override
+  {
+    return {{"height", "m", "quarter of the particles, the lowest first", "Median height in it."},
+            {"drift", "m", "0", "Mean place along x."},
+            {"width", "m", "0", "Root mean square of the places along z."},
+            {"speed", "m/s", "0", "Root mean square of the speeds."}};
+  }
+
+  unsigned int n_particles = 48, seed = 1;
+  double duration = 0.05, largest_speed = 10.;
+};
+
+class Drop : public Process
+{
+public:
+  explicit Drop(const DropSection &section) : section(section) {}
+
   void save(CheckpointWriter &) const override {}
   void resume(Simulation &, const Checkpoint &) override {}
-  bool wants_solid_loads(unsigned long long) const override { return false; }
   double progress(const Simulation &simulation) const override
   {
-    return simulation.time() / duration;
+    return simulation.time() / section.duration;
   }
   bool finished() const override { return done; }
 
   void start(Simulation &simulation) override
   {
-    const ParticleType &type = simulation.get_parameters().physics.types[0];
-    const auto sizes = type.sizes.make();
-    const ParticleId first = simulation.take_ids(n_particles);
-    const auto [begin, end] = share_of(n_particles, simulation.communicator());
-    Delivery delivery;
-    for (std::size_t k = begin; k < end; ++k) {
-      NewParticle particle;
-      particle.id = first + static_cast<ParticleId>(k);
-      particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
-      particle.mass = sphere_mass(particle.radius, type.density);
-      const auto place = [&](const std::size_t cell, const std::uint32_t d) {
+    const auto place = [this](const std::size_t k, const ParticleId id) {
+      const auto along = [&](const std::size_t cell, const std::uint32_t d) {
         return 2e-3 *
-               (static_cast<double>(cell) + 0.3 * uniform(seed, Draw::offset, particle.id, d));
+               (static_cast<double>(cell) + 0.3 * uniform(section.seed, Draw::offset, id, d));
       };
-      particle.position = {-5e-3 + place(k % 4, 0), 1e-3 + place(k / 16, 1),
-                           -5e-3 + place(k / 4 % 4, 2)};
-      delivery.particles.push_back(particle);
-    }
-    simulation.insert_and_remove(delivery, {});
+      return Vec3{-5e-3 + along(k % 4, 0), 1e-3 + along(k / 16, 1), -5e-3 + along(k / 4 % 4, 2)};
+    };
+    simulation.insert_and_remove(loose_powder(simulation, section.n_particles, Vec3(), place), {});
   }
 
   void step(Simulation &simulation) override
   {
-    if (simulation.time() < duration)
+    if (simulation.time() < section.duration)
       return;
     done = true;
     const ParticleArrays &p = simulation.complete_step();
@@ -105,7 +110,7 @@ public:
     width.reduce(simulation.communicator());
     energy.reduce(simulation.communicator());
     fastest = dealii::Utilities::MPI::max(fastest, simulation.communicator());
-    if (fastest > largest_speed * largest_speed)
+    if (fastest > section.largest_speed * section.largest_speed)
       throw UserError("A sphere is faster than 'largest speed'.");
     const auto n = static_cast<double>(all.size());
     for (int part = 0; part < 4; ++part)
@@ -116,23 +121,20 @@ public:
   }
 
   std::vector<Measurement> measurements() const override { return results; }
-  std::vector<ObservableDescription> observables() const override
-  {
-    return {{"height", "m", "quarter of the particles, the lowest first", "Median height in it."},
-            {"drift", "m", "0", "Mean place along x."},
-            {"width", "m", "0", "Root mean square of the places along z."},
-            {"speed", "m/s", "0", "Root mean square of the speeds."}};
-  }
 
 private:
-  unsigned int n_particles = 48, seed = 1;
-  double duration = 0.05, largest_speed = 10.;
+  const DropSection section;
   bool done = false;
   std::vector<Measurement> results;
 };
 
+inline std::unique_ptr<Process> DropSection::make(const Parameters &) const
+{
+  return std::make_unique<Drop>(*this);
+}
+
 inline const ProcessRegistry::Registration drop_registration(process_kinds(), "drop", [] {
-  return std::make_unique<Drop>();
+  return std::make_unique<DropSection>();
 });
 
 } // namespace test

@@ -19,8 +19,10 @@ struct Load
 
 Load load_of(const Simulation &simulation)
 {
-  const auto &loads = simulation.global_solid_loads();
-  const SolidLoad &load = loads.at(simulation.find_solid("solid object 0"));
+  const std::vector<Solid> &solids = simulation.get_solids();
+  const auto plate = std::find_if(solids.begin(), solids.end(),
+                                  [](const Solid &solid) { return solid.object == 0u; });
+  const SolidLoad load = simulation.global_solid_loads().at(plate - solids.begin());
   return {{load.force[0].value(), load.force[1].value(), load.force[2].value()},
           {load.torque[0].value(), load.torque[1].value(), load.torque[2].value()}};
 }

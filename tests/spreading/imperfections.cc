@@ -24,7 +24,9 @@ SpreadingParameters small_apparatus()
 /// The first spreader before its first pass.
 Solid spreader_of(const SpreadingParameters &p)
 {
-  return Apparatus(p, 100e-6).make_solids(1)[0];
+  std::vector<Solid> solids;
+  const auto handles = Apparatus(p, 100e-6).add_solids(solids, 1);
+  return solids[handles.spreaders[0].number];
 }
 
 /// Height of the spreader's lowest point at a place in z, from its edges that pass there (m).

@@ -19,8 +19,6 @@ public:
   void take(std::vector<Solid> &&all);
 
   const std::vector<Solid> &list() const { return solids; }
-  /// Number of a solid by its name, -1 if there is none.
-  int find(const std::string &name) const;
 
   void move_to(double time);
 

@@ -7,6 +7,7 @@
 #include <eunoe/state/new_particle.h>
 
 #include <functional>
+#include <optional>
 
 namespace eunoe {
 
@@ -19,8 +20,8 @@ class ParticleStore
 {
 public:
   /// @param n_extra doubles a particle beside the ones of the engine
-  /// @param asleep place among them of the flag that is not 0 for sleepers; -1: nobody sleeps
-  ParticleStore(Domain &domain, unsigned int n_extra, int asleep = -1);
+  /// @param asleep field that is not 0 for sleepers; none: nobody sleeps
+  ParticleStore(Domain &domain, unsigned int n_extra, std::optional<FieldHandle> asleep);
   ~ParticleStore();
 
   /// Number of particles of all ranks.

@@ -31,8 +31,8 @@ struct ParticlePhysics
 {
   ContactModel model;
   std::vector<std::unique_ptr<Load>> loads;
-  std::vector<ParticleField> fields;
-  int asleep = -1; ///< place of the sleepers' flag among the extra doubles, -1 if nobody sleeps
+  ParticleFields fields;
+  std::optional<FieldHandle> asleep; ///< field that is not 0 for sleepers; none: nobody sleeps
 };
 
 /// All particles of a run and their contacts: the store of record, the arrays of the hot loop, the
@@ -47,7 +47,7 @@ public:
 
   const ContactModel &contact_model() const { return physics.model; }
   const std::vector<std::unique_ptr<Load>> &loads() const { return physics.loads; }
-  const std::vector<ParticleField> &fields() const { return physics.fields; }
+  const ParticleFields &fields() const { return physics.fields; }
   const Ledger &get_ledger() const { return ledger; }
 
   /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
@@ -166,8 +166,8 @@ private:
   SolidContacts solid_contacts;
   PairList pairs;
   ContactRows rows;
-  std::vector<double> extra_defaults;
-  std::size_t pairs_with_room = 0; ///< for whose contacts there is room in the memory
+  const std::vector<double> extra_defaults; ///< extra doubles of a new particle
+  std::size_t pairs_with_room = 0;          ///< for whose contacts there is room in the memory
   unsigned long long searches = 0, balances = 0;
 };
 

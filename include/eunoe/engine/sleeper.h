@@ -12,11 +12,14 @@ namespace eunoe {
 class Sleeper
 {
 public:
-  Sleeper(const SparseContactParameters &parameters, const std::vector<ParticleField> &fields,
-          double time_step)
-      : sparse(parameters, fields, time_step)
+  Sleeper(const SparseContactParameters &parameters, double time_step)
+      : sparse(parameters, time_step)
   {
   }
+
+  /// Adds what it keeps of every particle, if anybody ever sleeps. Called once, before there are
+  /// particles.
+  void add_fields(ParticleFields &fields) { sparse.add_fields(fields); }
 
   bool is_enabled() const { return sparse.is_enabled(); }
   const SparseContacts &get() const { return sparse; }
@@ -37,7 +40,7 @@ private:
   /// Whether a solid has begun to move, has come or gone since the last look.
   bool solid_starts(double time, const std::vector<Solid> &solids) const;
 
-  const SparseContacts sparse;
+  SparseContacts sparse;
   double last_time = 0.;               ///< of the last look (s)
   std::vector<RigidState> last_states; ///< of the solids then
 };

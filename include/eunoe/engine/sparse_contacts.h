@@ -7,6 +7,8 @@
 #include <eunoe/engine/solid_contacts.h>
 #include <eunoe/state/particle_field.h>
 
+#include <optional>
+
 namespace eunoe {
 
 /// Who sleeps, so that contacts at rest cost nothing: `subsection adaptive sparse contacts`.
@@ -41,19 +43,15 @@ struct Stirring
 class SparseContacts
 {
 public:
-  /// @param fields of the particles; its own are the last ones
   /// @param time_step (s)
-  SparseContacts(const SparseContactParameters &parameters,
-                 const std::vector<ParticleField> &fields, double time_step);
+  SparseContacts(const SparseContactParameters &parameters, double time_step);
 
-  /// What it keeps of every particle.
-  static std::vector<ParticleField> fields()
-  {
-    return {{"asleep", 1, 0.}, {"last_moved_step", 1, -1.}};
-  }
+  /// Adds what it keeps of every particle, if it is enabled. Called once, before there are
+  /// particles.
+  void add_fields(ParticleFields &fields);
 
-  /// Place of the flag of sleepers among the extra doubles, -1 if nobody sleeps.
-  int flag() const { return parameters.enabled ? static_cast<int>(asleep) : -1; }
+  /// The field that is not 0 for sleepers; none if nobody ever sleeps.
+  const std::optional<FieldHandle> &flag() const { return asleep; }
   bool is_enabled() const { return parameters.enabled; }
   unsigned int frequency() const { return parameters.frequency; }
 
@@ -74,7 +72,8 @@ private:
                                           const Stirring &stirring) const;
 
   const SparseContactParameters &parameters;
-  const unsigned int last_moved, asleep; ///< places of the fields among the extra doubles
+  std::optional<FieldHandle> asleep;
+  std::optional<FieldHandle> last_moved; ///< step at which the particle was last not at rest
   const double rest_steps;
 };
 

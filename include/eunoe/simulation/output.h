@@ -1,9 +1,9 @@
 #ifndef eunoe_simulation_output_h
 #define eunoe_simulation_output_h
 
-#include <eunoe/simulation/process.h>
 #include <eunoe/solids/solid.h>
 #include <eunoe/state/particle_arrays.h>
+#include <eunoe/state/particle_field.h>
 
 #include <cstdint>
 #include <mpi.h>
@@ -45,9 +45,9 @@ public:
 
   /// Writes the owned particles of all ranks; collective. Throws a UserError on every rank if a
   /// file cannot be written, like all that follows.
-  /// @param fields names of the extra doubles
+  /// @param fields of the extra doubles
   /// @param more further data of the particles
-  void write(double time, const ParticleArrays &particles, const std::vector<ParticleField> &fields,
+  void write(double time, const ParticleArrays &particles, const ParticleFields &fields,
              const std::vector<PictureField> &more = {});
 
   /// Writes what all ranks together draw with deal.II, cells or lines; collective.

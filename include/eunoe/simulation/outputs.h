@@ -27,7 +27,7 @@ public:
   void open(const nlohmann::ordered_json *saved);
 
   /// Makes those observables that are asked for; collective.
-  using Sections = std::map<std::string, std::unique_ptr<ObservableSection>>;
+  using Sections = std::map<std::string, std::shared_ptr<ObservableSection>>;
   void make_observables(const Sections &sections, Simulation &simulation);
   bool has_observables() const { return !observables.empty(); }
 

@@ -50,8 +50,12 @@ public:
   /// All entries, with one of each of the numbered subsections: see describe_entries.
   static std::string description();
 
-  /// The chosen process, null for a general case.
-  Process *process() const
+  /// What a run is built from: these parameters, with what the process decides. Throws a UserError
+  /// if that is impossible.
+  Parameters of_run() const;
+
+  /// The section of the chosen process, null for a general case.
+  const ProcessSection *process() const
   {
     return process_name == "none" ? nullptr : processes.at(process_name).get();
   }
@@ -77,12 +81,16 @@ public:
   SolidObjectParameters solids;
   RestartParameters restart;
   std::string process_name = "none";
-  std::map<std::string, std::unique_ptr<Process>> processes;
-  std::map<std::string, std::unique_ptr<LoadSection>> loads;
-  std::map<std::string, std::unique_ptr<ObservableSection>> observables;
+  /// The sections of plug-ins. Copies share them, as nothing changes them once they are read.
+  ///@{
+  std::map<std::string, std::shared_ptr<ProcessSection>> processes;
+  std::map<std::string, std::shared_ptr<LoadSection>> loads;
+  std::map<std::string, std::shared_ptr<ObservableSection>> observables;
+  ///@}
 
 private:
   void declare(dealii::ParameterHandler &prm);
+  /// Those of the engine, then those of loads and observables.
   std::vector<ParameterSection *> sections();
   void set(std::vector<InputEntry> &entries, Problems &problems);
 

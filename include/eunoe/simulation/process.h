@@ -30,28 +30,18 @@ struct RunEstimate
   double core_seconds() const { return particle_steps() / speed(); }
 };
 
-/// A kind of experiment with its own geometry, schedule, insertion and measurements, composed from
-/// the parts of the engine. A process is a section of the input file.
-class Process : public ParameterSection
+/// A running experiment with its own geometry, schedule, insertion and measurements, composed from
+/// the parts of the engine. Its section of the input makes it.
+class Process
 {
 public:
-  /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
-  virtual void prepare(Parameters &parameters) = 0;
+  virtual ~Process() = default;
 
-  /// What is wrong with the process together with the other parameters.
-  virtual void check_with(const Parameters &parameters, const ParameterCheck &check) const = 0;
+  /// Adds what the process attaches to every particle. Called once, before there are particles.
+  virtual void add_fields(ParticleFields &) {}
 
-  /// What the run will cost, as far as it can be known.
-  virtual RunEstimate estimate(const Parameters &parameters) const = 0;
-
-  /// Extra doubles that the process attaches to every particle.
-  virtual std::vector<ParticleField> fields() const { return {}; }
-
-  /// Solids of the process.
-  virtual std::vector<Solid> make_solids(const Parameters &parameters) = 0;
-
-  /// Largest speed at which a solid of the process will move (m/s).
-  virtual double fastest_solid() const { return 0.; }
+  /// Adds the solids of the process. Called once, before the first step.
+  virtual void add_solids(std::vector<Solid> &) {}
 
   /// Called once before the first step.
   virtual void start(Simulation &simulation) = 0;
@@ -65,7 +55,7 @@ public:
   virtual void step(Simulation &simulation) = 0;
 
   /// Whether the forces on the solids are to be summed during the coming step.
-  virtual bool wants_solid_loads(unsigned long long step) const = 0;
+  virtual bool wants_solid_loads(unsigned long long /*step*/) const { return false; }
 
   /// Share of the work that is done, in [0, 1], and what is being done now.
   virtual double progress(const Simulation &simulation) const = 0;
@@ -74,15 +64,40 @@ public:
   /// Whether all work is done.
   virtual bool finished() const = 0;
 
-  /// What has been measured so far, the same on every rank, and what those observables are.
+  /// What has been measured so far, the same on every rank.
   virtual std::vector<Measurement> measurements() const { return {}; }
-  virtual std::vector<ObservableDescription> observables() const { return {}; }
 
   /// Adds what the process has found to the keys of summary.json.
   virtual void add_to_summary(nlohmann::ordered_json &) const {}
 };
 
-using ProcessRegistry = Registry<std::unique_ptr<Process>>;
+/// What the input file says of a process.
+class ProcessSection : public ParameterSection
+{
+public:
+  /// What is wrong with the process together with the other parameters.
+  virtual void check_with(const Parameters &parameters, const ParameterCheck &check) const = 0;
+
+  /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
+  /// Throws a UserError if they are impossible.
+  virtual void decide(Parameters &parameters) const = 0;
+
+  /// What the run will cost, as far as it can be known.
+  /// @param parameters with what the process decides
+  virtual RunEstimate estimate(const Parameters &parameters) const = 0;
+
+  /// Largest speed at which a solid of the process will move (m/s).
+  virtual double fastest_solid() const { return 0.; }
+
+  /// The process itself.
+  /// @param parameters with what the process decides
+  virtual std::unique_ptr<Process> make(const Parameters &parameters) const = 0;
+
+  /// What the process measures.
+  virtual std::vector<ObservableDescription> observables() const { return {}; }
+};
+
+using ProcessRegistry = Registry<std::unique_ptr<ProcessSection>>;
 ProcessRegistry &process_kinds();
 
 } // namespace eunoe

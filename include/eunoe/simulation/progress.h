@@ -23,6 +23,7 @@ public:
 
   /// Of the loop, once it has begun.
   Timers timers;
+  Log &get_log() const { return log; }
 
   void begin_loop();
   void end_loop() { loop_seconds = MPI_Wtime() - start_of_loop; }

@@ -35,7 +35,7 @@ public:
 
   /// Builds all parts; writes nothing. Throws a UserError on every rank if the case makes no sense.
   /// Collective, like all that follows.
-  Simulation(Parameters &parameters, MPI_Comm comm, Log &log, Purpose purpose = Purpose::run);
+  Simulation(const Parameters &parameters, MPI_Comm comm, Log &log, Purpose purpose = Purpose::run);
   ~Simulation();
 
   /// What the run would stumble over, and what else is known of it beforehand.
@@ -75,8 +75,6 @@ public:
   const Domain &get_domain() const { return domain; }
   const ContactModel &contact_model() const { return system.contact_model(); }
   const std::vector<Solid> &get_solids() const { return solids.list(); }
-  /// Number of a solid by its name, -1 if there is none.
-  int find_solid(const std::string &name) const { return solids.find(name); }
   const Ledger &get_ledger() const { return system.get_ledger(); }
   const ParticleSystem &get_system() const { return system; }
   const ParticleIds &particle_ids() const { return inserter.get_ids(); }
@@ -93,7 +91,7 @@ public:
 
   /// @name What they say and write
   ///@{
-  Log &get_log() { return log; }
+  Log &get_log() { return progress.get_log(); }
   OutputFolder &output_folder() { return outputs.folder; }
   /// Writes the particles to a series of their own, beside the regular output.
   void write_pictures(PictureSeries &series);
@@ -101,7 +99,7 @@ public:
 
   /// @name What processes do
   ///@{
-  /// Owned particles whose extra doubles (see Process::fields) may be changed.
+  /// Owned particles whose extra doubles (see Process::add_fields) may be changed.
   ParticleArrays &changeable_particles();
   /// Takes ids for particles of all ranks, see ParticleIds::take.
   ParticleId take_ids(std::uint64_t n) { return inserter.take_ids(n); }
@@ -139,8 +137,8 @@ private:
   /// Writes measurements.csv, where something was measured.
   void write_measurements();
 
-  Parameters &parameters;
-  Log &log;
+  const Parameters parameters;            ///< with what the process decides
+  const std::unique_ptr<Process> process; ///< null for a general case
   Progress progress;
   Inserter inserter;
   Domain domain;

@@ -50,6 +50,18 @@ struct Solid
   }
 };
 
+/// A solid among those of a run, as the one who added it knows it.
+struct SolidHandle
+{
+  std::size_t number = 0;
+};
+
+inline SolidHandle add_solid(std::vector<Solid> &solids, Solid solid)
+{
+  solids.push_back(std::move(solid));
+  return {solids.size() - 1};
+}
+
 /// Largest distance that a point of a solid has moved between two states (m).
 double displacement(const Solid &solid, const RigidState &before, const RigidState &after);
 

@@ -2,6 +2,7 @@
 #define eunoe_state_particle_arrays_h
 
 #include <eunoe/core/vec3.h>
+#include <eunoe/state/particle_field.h>
 
 #include <cstdint>
 #include <vector>
@@ -39,8 +40,22 @@ struct ParticleArrays
   /// @name Owned particles only
   ///@{
   std::vector<Vec3> reference; ///< position at the last search
-  /// Further data that processes attach to particles (layer tag, ...), `[component][particle]`.
+  /// The extra doubles of all fields, `[component][particle]`, for those who store them. A field is
+  /// found by its handle.
   std::vector<std::vector<double>> extra;
+  std::vector<double> &component(FieldHandle field, unsigned int d = 0)
+  {
+    return extra[field.first + d];
+  }
+  Vec3 vector(FieldHandle field, std::size_t row) const
+  {
+    return {extra[field.first][row], extra[field.first + 1][row], extra[field.first + 2][row]};
+  }
+  void set_vector(FieldHandle field, std::size_t row, const Vec3 &value)
+  {
+    for (unsigned int d = 0; d < 3; ++d)
+      extra[field.first + d][row] = value[d];
+  }
   ///@}
 
   std::size_t size() const { return n_owned + n_ghosts; }

@@ -1,5 +1,6 @@
 #include <eunoe/core/random.h>
 #include <eunoe/processes/heap/apparatus.h>
+#include <eunoe/processes/loose_powder.h>
 #include <eunoe/solids/shapes.h>
 
 #include <nlohmann/json.hpp>
@@ -10,8 +11,6 @@ namespace eunoe::heap {
 
 namespace {
 
-/// Distance of the grid points of loose particles over the largest diameter, and their shifts.
-constexpr double loose_pitch = 1.05, loose_offset = 0.05;
 /// Solid fraction of settled powder, for numbers that need not be exact.
 constexpr double settled_fraction = 0.55;
 /// The measured angle of the paper's powder, for the expected mass of a heap (degrees).
@@ -30,17 +29,19 @@ RigidState Lift::at(const double time) const
   return state;
 }
 
-Apparatus::Apparatus(const HeapParameters &p, const double largest_diameter,
-                     const double mean_volume, const double density)
-    : tube(std::make_shared<Lift>(p.lifting_velocity)), p(p), largest_diameter(largest_diameter),
+Apparatus::Apparatus(const HeapParameters &p, const PhysicalProperties &physics)
+    : gravity(-physics.gravity.y), tube(std::make_shared<Lift>(p.lifting_velocity)), p(p),
+      largest_diameter(physics.largest_diameter()),
       rim_height(p.rim_height > 0. ? p.rim_height : 5. * largest_diameter),
       pitch(loose_pitch * largest_diameter)
 {
+  const ParticleType &type = physics.types[0];
+  const double mean_volume = M_PI / 6. * type.sizes.make()->mean_cube();
   const double disc_radius = 0.5 * p.disc_diameter, tube_radius = 0.5 * p.tube_diameter;
   const double heap = M_PI / 3. * std::pow(disc_radius, 3) *
                       std::tan(expected_angle * M_PI / 180.) * settled_fraction;
   const double number = p.n_particles > 0 ? p.n_particles
-                        : p.mass > 0.     ? p.mass / (density * mean_volume)
+                        : p.mass > 0.     ? p.mass / (type.density * mean_volume)
                                           : p.fill_ratio * heap / mean_volume;
   n_particles = static_cast<unsigned int>(std::max(1., std::round(number)));
   settled_height =
@@ -74,21 +75,31 @@ Vec3 Apparatus::loose_place(const std::size_t k, const ParticleId id) const
   return x;
 }
 
-std::vector<Solid> Apparatus::make_solids(const int material) const
+std::array<double, 3> Apparatus::expected_durations() const
 {
-  std::vector<Solid> solids(2);
-  solids[0].name = "tube";
-  solids[0].shape = std::make_shared<TriangulatedSurface>(
+  const double v = p.insertion_speed;
+  const double fall = (std::sqrt(v * v + 2. * gravity * loose_height()) - v) / gravity;
+  const double lift = (settled_height + clearance()) / p.lifting_velocity;
+  // Times in which waves of a collapse die out, from runs.
+  return {fall + 0.02 + p.rest_duration, lift, 0.05 + p.rest_duration};
+}
+
+void Apparatus::add_solids(std::vector<Solid> &solids, const int material) const
+{
+  Solid moving, resting;
+  moving.name = "tube";
+  moving.shape = std::make_shared<TriangulatedSurface>(
       shapes::cylinder_shell({0., p.gap, 0.}, {0., loose_height() + clearance() - p.gap, 0.},
                              0.5 * p.tube_diameter, p.n_facets));
-  solids[0].motion = tube;
-  solids[1].name = "disc";
-  solids[1].shape = std::make_shared<TriangulatedSurface>(
+  moving.motion = tube;
+  resting.name = "disc";
+  resting.shape = std::make_shared<TriangulatedSurface>(
       shapes::disc({0., -rim_height, 0.}, {0., rim_height, 0.}, 0.5 * p.disc_diameter, p.n_facets));
-  solids[1].motion = std::make_shared<AtRest>();
-  for (Solid &solid : solids)
-    solid.material = material;
-  return solids;
+  resting.motion = std::make_shared<AtRest>();
+  for (Solid *const solid : {&moving, &resting}) {
+    solid->material = material;
+    add_solid(solids, *solid);
+  }
 }
 
 std::string Apparatus::as_json(const double density) const

@@ -1,7 +1,7 @@
 // The filling of the tube, its lifting, and when powder is at rest.
 
-#include <eunoe/core/random.h>
 #include <eunoe/processes/heap/heap.h>
+#include <eunoe/processes/loose_powder.h>
 
 #include <algorithm>
 
@@ -9,21 +9,10 @@ namespace eunoe::heap {
 
 void Heap::fill(Simulation &simulation)
 {
-  const ParticleType &type = simulation.get_parameters().physics.types[0];
-  const auto sizes = type.sizes.make();
-  const ParticleId first = simulation.take_ids(apparatus->n_particles);
-  const auto [begin, end] = share_of(apparatus->n_particles, simulation.communicator());
-  Delivery delivery;
-  for (std::size_t k = begin; k < end; ++k) {
-    NewParticle particle;
-    particle.id = first + static_cast<ParticleId>(k);
-    particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
-    particle.mass = sphere_mass(particle.radius, type.density);
-    particle.position = apparatus->loose_place(k, particle.id);
-    particle.velocity = {0., -p.insertion_speed, 0.};
-    delivery.particles.push_back(particle);
-  }
-  simulation.insert_and_remove(delivery, {});
+  simulation.insert_and_remove(
+      loose_powder(simulation, apparatus.n_particles, {0., -p.insertion_speed, 0.},
+                   [&](std::size_t k, ParticleId id) { return apparatus.loose_place(k, id); }),
+      {});
 }
 
 bool Heap::is_at_rest(Simulation &simulation)
@@ -38,11 +27,11 @@ bool Heap::is_at_rest(Simulation &simulation)
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     const double radius = particles.radius(row);
     if (phase == Phase::resting &&
-        apparatus->clings_to_tube(particles.position[row].y, radius, tube_height))
+        apparatus.clings_to_tube(particles.position[row].y, radius, tube_height))
       continue;
     ++all;
     if (0.5 * norm_square(particles.velocity[row].vec()) >
-        p.rest_energy_share * gravity * 2. * radius)
+        p.rest_energy_share * apparatus.gravity * 2. * radius)
       ++moving;
   }
   MPI_Allreduce(MPI_IN_PLACE, &moving, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
@@ -72,8 +61,8 @@ void Heap::begin_lifting(Simulation &simulation)
   MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
   phase = Phase::lifting;
   phase_start = lift_start = simulation.time();
-  lift_way = top + apparatus->clearance() - p.gap;
-  apparatus->tube->begin(lift_start, lift_way);
+  lift_way = top + apparatus.clearance() - p.gap;
+  apparatus.tube->begin(lift_start, lift_way);
   simulation.renew_solids();
   simulation.get_log().line("The powder is at rest in the tube after " + format(lift_start) +
                             " s, " + format(top) + " m high; the tube rises by " +
@@ -82,7 +71,7 @@ void Heap::begin_lifting(Simulation &simulation)
 
 void Heap::finish(Simulation &simulation)
 {
-  results = measure(simulation, p, *apparatus, height_of_tube(simulation));
+  results = measure(simulation, p, apparatus, height_of_tube(simulation));
   results.keys["heap_rest_time"] = simulation.time();
   phase = Phase::done;
   simulation.get_log().line(

@@ -114,10 +114,9 @@ TriangleMesh Apparatus::spreader_surface() const
   return all;
 }
 
-std::vector<Solid> Apparatus::make_solids(const int material) const
+Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const int material) const
 {
   const double z = -margin, length = depth + 2. * margin;
-  std::vector<Solid> solids;
   const auto add = [&](const std::string &name, const TriangleMesh &mesh,
                        std::shared_ptr<const Motion> motion) {
     Solid solid;
@@ -125,18 +124,19 @@ std::vector<Solid> Apparatus::make_solids(const int material) const
     solid.shape = std::make_shared<TriangulatedSurface>(mesh);
     solid.motion = std::move(motion);
     solid.material = material;
-    solids.push_back(solid);
+    return add_solid(solids, solid);
   };
+  SolidHandles handles;
   const TriangleMesh spreader = spreader_surface();
   for (unsigned int k = 0; k < n_spreaders; ++k) {
     std::shared_ptr<const Motion> motion = spreaders[k];
     if (p.vibration_amplitude > 0.)
       motion = std::make_shared<VibratingMotion>(motion, Vec3{0., p.vibration_amplitude, 0.},
                                                  p.vibration_frequency);
-    add("spreader " + std::to_string(k), spreader, motion);
+    handles.spreaders[k] = add("spreader " + std::to_string(k), spreader, motion);
   }
-  add("feedstock platform", extrude({{-margin, 0., 0.}, {x_transfer, 0., 0.}}, z, length),
-      platform);
+  handles.platform = add("feedstock platform",
+                         extrude({{-margin, 0., 0.}, {x_transfer, 0., 0.}}, z, length), platform);
   add("transfer plate",
       extrude({{x_transfer, y_bottom - margin, 0.},
                {x_transfer, 0., 0.},
@@ -144,17 +144,17 @@ std::vector<Solid> Apparatus::make_solids(const int material) const
                {x_gap, -p.lip, 0.}},
               z, length),
       std::make_shared<AtRest>());
-  add("measuring plate",
-      extrude({{x_plate, -p.lip, 0.},
-               {x_plate, 0., 0.},
-               {x_plate_end, 0., 0.},
-               {x_plate_end, -p.lip, 0.}},
-              z, length),
-      yielding_plate ? std::shared_ptr<const Motion>(yielding_plate) : plate);
+  handles.plate = add("measuring plate",
+                      extrude({{x_plate, -p.lip, 0.},
+                               {x_plate, 0., 0.},
+                               {x_plate_end, 0., 0.},
+                               {x_plate_end, -p.lip, 0.}},
+                              z, length),
+                      yielding_plate ? std::shared_ptr<const Motion>(yielding_plate) : plate);
   add("exit plate",
       extrude({{x_exit, -p.lip, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
       std::make_shared<AtRest>());
-  return solids;
+  return handles;
 }
 
 } // namespace eunoe::spreading

@@ -1,6 +1,8 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
+#include <eunoe/core/gather.h>
 #include <eunoe/core/random.h>
+#include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 
 #include <algorithm>
@@ -9,28 +11,24 @@ namespace eunoe::spreading {
 
 namespace {
 
-/// Ids of all ranks, ascending; collective.
-std::vector<ParticleId> gather_sorted(const std::vector<ParticleId> &mine, MPI_Comm comm)
+/// Places in a row of a checkpoint; behind the last come the contacts.
+namespace place {
+constexpr unsigned int id = 0, type = 1, radius = 2, mass = 3, position = 4, velocity = 7,
+                       spin = 10, n_places = 13;
+} // namespace place
+
+Vec3 vector_at(const double *values)
 {
-  int n_ranks;
-  MPI_Comm_size(comm, &n_ranks);
-  const int n = static_cast<int>(mine.size());
-  std::vector<int> counts(n_ranks), starts(n_ranks, 0);
-  MPI_Allgather(&n, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  for (int r = 1; r < n_ranks; ++r)
-    starts[r] = starts[r - 1] + counts[r - 1];
-  std::vector<ParticleId> all(starts.back() + counts.back());
-  MPI_Allgatherv(mine.data(), n, MPI_UINT32_T, all.data(), counts.data(), starts.data(),
-                 MPI_UINT32_T, comm);
-  std::sort(all.begin(), all.end());
-  return all;
+  return {values[0], values[1], values[2]};
 }
 
-/// Numbers of the two walls of the domain at the ends in z.
-std::array<std::uint32_t, 2> find_side_walls(const Simulation &simulation)
+/// Number of the wall at a side of the domain; that of no solid if particles pass there.
+std::uint32_t find_wall(const Simulation &simulation, const unsigned int side)
 {
-  return {static_cast<std::uint32_t>(simulation.find_solid("boundary 4")),
-          static_cast<std::uint32_t>(simulation.find_solid("boundary 5"))};
+  const std::vector<Solid> &solids = simulation.get_solids();
+  const auto wall = std::find_if(solids.begin(), solids.end(),
+                                 [side](const Solid &solid) { return solid.boundary == side; });
+  return static_cast<std::uint32_t>(wall - solids.begin());
 }
 
 } // namespace
@@ -61,8 +59,9 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
   std::vector<ParticleId> ids;
   for (const std::size_t row : found)
     ids.push_back(p.id[row]);
-  const std::vector<ParticleId> bed = gather_sorted(ids, simulation.communicator());
-  const auto place = [&](ParticleId id) {
+  std::vector<ParticleId> bed = gather_all(ids, simulation.communicator());
+  std::sort(bed.begin(), bed.end());
+  const auto number_of = [&](ParticleId id) {
     const auto it = std::lower_bound(bed.begin(), bed.end(), id);
     return it != bed.end() && *it == id ? it - bed.begin() : -1;
   };
@@ -73,7 +72,7 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
   rows = ContactRows(simulation.contact_model().history_size());
   for (const std::size_t row : found) {
     NewParticle particle;
-    particle.id = static_cast<ParticleId>(place(p.id[row]));
+    particle.id = static_cast<ParticleId>(number_of(p.id[row]));
     particle.type = p.type[row];
     particle.radius = p.radius(row);
     particle.mass = p.mass(row);
@@ -84,7 +83,7 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
     rows.start_row();
     for (ContactRows::Record record : all_rows.records(row)) {
       if (!record.with_solid) {
-        const auto partner = place(record.partner);
+        const auto partner = number_of(record.partner);
         if (partner < 0)
           continue;
         record.partner = static_cast<std::uint32_t>(partner);
@@ -106,9 +105,10 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
   std::vector<double> history(n_history);
 
   const bool has_walls = !simulation.get_domain().periods().is_periodic(2);
-  const auto walls = find_side_walls(simulation);
-  const auto opposite_wall = [&](std::uint32_t solid) {
-    return solid == walls[0] ? walls[1] : solid == walls[1] ? walls[0] : solid;
+  const std::uint32_t lower = find_wall(simulation, box_side::lower_z);
+  const std::uint32_t upper = find_wall(simulation, box_side::upper_z);
+  const auto opposite_wall = [=](std::uint32_t solid) {
+    return solid == lower ? upper : solid == upper ? lower : solid;
   };
   const auto n_copies = static_cast<unsigned int>(std::ceil(-platform_height / depth - 1e-9));
   for (unsigned int copy = 0; copy < n_copies; ++copy) {
@@ -173,29 +173,28 @@ void FeedBed::save(CheckpointWriter &writer) const
 
 void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
 {
-  constexpr std::size_t n_fixed = 13;
   const unsigned int n_history = simulation.contact_model().history_size();
   depth = number_in(checkpoint.head.at("bed_depth"));
   const Rows all = checkpoint.rows("feed bed");
   bool ok = true;
   for (std::size_t k = 0; k < all.size(); ++k)
-    ok = ok && all.length(k) >= n_fixed && are_of_particle(all[k], 1.) &&
-         ContactRows::are_records(all[k] + n_fixed, all[k] + all.length(k), n_history);
+    ok = ok && all.length(k) >= place::n_places && are_of_particle(all[k] + place::id, 1.) &&
+         ContactRows::are_records(all[k] + place::n_places, all[k] + all.length(k), n_history);
   checkpoint.require(ok, "its feedstock is not that of the case.");
   particles.clear();
   Rows contacts;
   for (std::size_t k = 0; k < all.size(); ++k) {
     const double *const row = all[k];
     NewParticle p;
-    p.id = static_cast<ParticleId>(row[0]);
-    p.type = static_cast<int>(row[1]);
-    p.radius = row[2];
-    p.mass = row[3];
-    p.position = {row[4], row[5], row[6]};
-    p.velocity = {row[7], row[8], row[9]};
-    p.spin = {row[10], row[11], row[12]};
+    p.id = static_cast<ParticleId>(row[place::id]);
+    p.type = static_cast<int>(row[place::type]);
+    p.radius = row[place::radius];
+    p.mass = row[place::mass];
+    p.position = vector_at(row + place::position);
+    p.velocity = vector_at(row + place::velocity);
+    p.spin = vector_at(row + place::spin);
     particles.push_back(p);
-    contacts.append(row + n_fixed, row + all.length(k));
+    contacts.append(row + place::n_places, row + all.length(k));
   }
   rows = ContactRows(n_history, std::move(contacts));
   unsigned long long n = particles.size();

@@ -1,6 +1,6 @@
 // How the feedstock comes into the reservoir and to rest.
 
-#include <eunoe/core/random.h>
+#include <eunoe/processes/loose_powder.h>
 #include <eunoe/processes/powder_spreading/powder_spreading.h>
 
 #include <algorithm>
@@ -12,8 +12,6 @@ namespace {
 
 /// Steps between two looks at whether the bed has come to rest.
 constexpr unsigned long long settling_check = 500;
-/// Distance of the grid points of loose particles over the largest diameter, and their shifts.
-constexpr double loose_pitch = 1.05, loose_offset = 0.05;
 /// Loose particles inserted over those that the settled bed is expected to take.
 constexpr double loose_excess = 1.2;
 /// Share of the particles that may still move in a bed that counts as settled.
@@ -23,52 +21,41 @@ constexpr double moving_share = 0.01;
 
 void PowderSpreading::insert_loose_bed(Simulation &simulation)
 {
-  const Parameters &parameters = simulation.get_parameters();
-  const ParticleType &type = parameters.physics.types[0];
-  const auto sizes = type.sizes.make();
-  const double largest = sizes->largest();
+  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  const double largest = type.sizes.make()->largest();
   const ParticleArrays &particles = simulation.complete_step();
 
-  double top = -apparatus->bed_depth;
-  for (const std::size_t row : in_reservoir(particles, *apparatus))
+  double top = -apparatus.bed_depth;
+  for (const std::size_t row : in_reservoir(particles, apparatus))
     top = std::max(top, particles.position[row].y + particles.radius(row));
   MPI_Allreduce(MPI_IN_PLACE, &top, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
 
   VolumeGrid grid;
   grid.lower = {0., top, 0.};
-  grid.upper = {apparatus->x_transfer, apparatus->y_top, apparatus->depth};
+  grid.upper = {apparatus.x_transfer, apparatus.y_top, apparatus.depth};
   grid.pitch = loose_pitch * largest;
   grid.offset = loose_offset * largest;
   grid.order = {0, 2, 1};
   // More than the bed takes, as what stands above the level is taken away; what is still missing
   // after settling is added then.
-  const double missing = n_fillings == 0 ? apparatus->bed_depth : 0.2 * apparatus->bed_depth;
+  const double missing = n_fillings == 0 ? apparatus.bed_depth : 0.2 * apparatus.bed_depth;
   const auto n = std::min<std::size_t>(
       grid.capacity(),
-      static_cast<std::size_t>(loose_excess * bed_particles(parameters, missing)) + 1);
+      static_cast<std::size_t>(loose_excess * apparatus.particles_in_bed(type, missing)) + 1);
 
-  const ParticleId first = simulation.take_ids(n);
-  const auto [begin, end] = share_of(n, simulation.communicator());
-  Delivery delivery;
-  for (std::size_t k = begin; k < end; ++k) {
-    NewParticle particle;
-    particle.id = first + static_cast<ParticleId>(k);
-    particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
-    particle.mass = sphere_mass(particle.radius, type.density);
-    particle.position = grid.point(k, p.seed, particle.id);
-    particle.velocity = {0., -p.insertion_speed, 0.};
-    delivery.particles.push_back(particle);
-  }
-  simulation.insert_and_remove(delivery, {});
+  simulation.insert_and_remove(
+      loose_powder(simulation, n, {0., -p.insertion_speed, 0.},
+                   [&](std::size_t k, ParticleId id) { return grid.point(k, p.seed, id); }),
+      {});
   phase_start = simulation.time();
   ++n_fillings;
 }
 
 void PowderSpreading::fill_reservoir(Simulation &simulation, const double platform_height)
 {
-  simulation.insert_and_remove(bed.stack(simulation, *apparatus, platform_height, p.seed,
+  simulation.insert_and_remove(bed.stack(simulation, apparatus, platform_height, p.seed,
                                          static_cast<unsigned int>(next_feed)),
-                               in_reservoir(simulation.complete_step(), *apparatus));
+                               in_reservoir(simulation.complete_step(), apparatus));
 }
 
 bool PowderSpreading::has_settled(Simulation &simulation)
@@ -96,7 +83,7 @@ bool PowderSpreading::has_settled(Simulation &simulation)
 
 void PowderSpreading::go_on_after_settling(Simulation &simulation)
 {
-  const std::vector<std::size_t> above = above_level(simulation.complete_step(), *apparatus);
+  const std::vector<std::size_t> above = above_level(simulation.complete_step(), apparatus);
   unsigned long long n_above = above.size();
   MPI_Allreduce(MPI_IN_PLACE, &n_above, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
                 simulation.communicator());
@@ -107,13 +94,13 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
   }
   simulation.insert_and_remove({}, above);
   if (phase == Phase::settling_bed) {
-    bed.take(simulation, *apparatus, -apparatus->bed_depth);
+    bed.take(simulation, apparatus, -apparatus.bed_depth);
     simulation.get_log().line("The feedstock bed is at rest after " + format(simulation.time()) +
                               " s: " + std::to_string(bed.size()) + " particles");
-    if (apparatus->first_bed_depth > apparatus->bed_depth) {
+    if (apparatus.first_bed_depth > apparatus.bed_depth) {
       lower_platform(simulation.time());
       simulation.renew_solids();
-      fill_reservoir(simulation, -apparatus->first_bed_depth);
+      fill_reservoir(simulation, -apparatus.first_bed_depth);
       phase = Phase::settling_stack;
       phase_start = simulation.time();
       return;
@@ -127,7 +114,7 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
 void PowderSpreading::lower_platform(const double time)
 {
   lowering = time;
-  apparatus->platform->add(time, 0., {0., apparatus->bed_depth - apparatus->first_bed_depth, 0.});
+  apparatus.platform->add(time, 0., {0., apparatus.bed_depth - apparatus.first_bed_depth, 0.});
 }
 
 } // namespace eunoe::spreading

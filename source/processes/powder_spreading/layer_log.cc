@@ -1,4 +1,5 @@
 #include <eunoe/checkpoint/head_values.h>
+#include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/layer_log.h>
 
 #include <cmath>
@@ -8,18 +9,6 @@ namespace eunoe::spreading {
 
 namespace {
 
-/// Places of the extra doubles of a particle.
-enum Extra : unsigned int
-{
-  layer_tag = 0,
-  tracked = 1,      ///< 1 if the particle was on the plate at this weighing and the last
-  displacement = 2, ///< between these two, against the plate
-  on_plate = 5,     ///< 1 if the particle was on the plate at the last weighing
-  last_position = 6
-};
-
-constexpr unsigned int outlet_right = 1, outlet_bottom = 2;
-
 /// The column that is no measurement.
 const std::string wall_clock = "wall_seconds";
 
@@ -28,19 +17,22 @@ constexpr double column_width = 0.25;
 
 } // namespace
 
-std::vector<ParticleField> LayerLog::fields()
+LayerLog::Fields LayerLog::add_fields(ParticleFields &fields)
 {
-  return {{"layer", 1, -1.},
-          {"tracked", 1, 0.},
-          {"displacement", 3, 0.},
-          {"on_plate", 1, 0.},
-          {"last_position", 3, 0.}};
+  Fields handles;
+  handles.layer = fields.add({"layer", 1, -1.});
+  handles.tracked = fields.add({"tracked", 1, 0.});
+  handles.displacement = fields.add({"displacement", 3, 0.});
+  handles.on_plate = fields.add({"on_plate", 1, 0.});
+  handles.last_position = fields.add({"last_position", 3, 0.});
+  return handles;
 }
 
 LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
-                   const Apparatus &apparatus)
-    : apparatus(apparatus), full_layer_mass(simulation.get_parameters().physics.types[0].density *
-                                            apparatus.plate_area() * parameters.layer_thickness),
+                   const Apparatus &apparatus, const Fields &fields)
+    : apparatus(apparatus), fields(fields),
+      full_layer_mass(simulation.get_parameters().physics.types[0].density *
+                      apparatus.plate_area() * parameters.layer_thickness),
       file(simulation.output_folder().table(
           "layers.csv",
           {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
@@ -60,17 +52,17 @@ LayerLog::OutletTotals LayerLog::outlet_totals(const Simulation &simulation) con
   for (std::size_t o = 0; o < outlets.size(); ++o) {
     ExactSum mass = simulation.get_ledger().through_outlet[o].mass;
     mass.reduce(simulation.communicator());
-    if (outlets[o].boundary_id == outlet_bottom)
+    if (outlets[o].boundary_id == box_side::lower_y)
       totals.gap += mass;
-    else if (outlets[o].boundary_id == outlet_right)
+    else if (outlets[o].boundary_id == box_side::upper_x)
       totals.collector += mass;
   }
   return totals;
 }
 
-void LayerLog::sample_force(const Simulation &simulation, const std::string &spreader)
+void LayerLog::sample_force(const Simulation &simulation, const SolidHandle spreader)
 {
-  const SolidLoad load = simulation.global_solid_loads()[simulation.find_solid(spreader)];
+  const SolidLoad load = simulation.global_solid_loads()[spreader.number];
   const double force =
       norm(Vec3{load.force[0].value(), load.force[1].value(), load.force[2].value()});
   force_sum += force;
@@ -78,9 +70,12 @@ void LayerLog::sample_force(const Simulation &simulation, const std::string &spr
   ++n_forces;
 }
 
-void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const double plate_height)
+LayerLog::OnPlate LayerLog::look_at_particles(Simulation &simulation, const unsigned int layer,
+                                              const double plate_height) const
 {
   ParticleArrays &p = simulation.changeable_particles();
+  std::vector<double> &tags = p.component(fields.layer), &tracked = p.component(fields.tracked),
+                      &on_plate = p.component(fields.on_plate);
   const PeriodicBox &box = simulation.get_domain().periods();
   const Vec3 plate_moved = {0., plate_height - last_plate_height, 0.};
   Tally present, kept;
@@ -88,29 +83,27 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
     const Vec3 x = p.position[row].vec();
     const double mass = p.mass(row);
     const bool is_on = apparatus.is_over_plate(x, plate_height);
-    const bool was_on = p.extra[on_plate][row] != 0.;
-    double &tag = p.extra[layer_tag][row];
+    const bool was_on = on_plate[row] != 0.;
     if (is_on)
       present.count(mass);
     if (is_on && was_on)
       kept.count(mass);
-    if (is_on && tag < 0.)
-      tag = layer;
+    if (is_on && tags[row] < 0.)
+      tags[row] = layer;
     Vec3 moved;
     if (is_on && was_on)
-      moved = box.shortest(x -
-                           Vec3{p.extra[last_position][row], p.extra[last_position + 1][row],
-                                p.extra[last_position + 2][row]} -
-                           plate_moved);
-    p.extra[tracked][row] = is_on && was_on ? 1. : 0.;
-    p.extra[on_plate][row] = is_on ? 1. : 0.;
-    for (unsigned int d = 0; d < 3; ++d) {
-      p.extra[displacement + d][row] = moved[d];
-      p.extra[last_position + d][row] = x[d];
-    }
+      moved = box.shortest(x - p.vector(fields.last_position, row) - plate_moved);
+    tracked[row] = is_on && was_on ? 1. : 0.;
+    on_plate[row] = is_on ? 1. : 0.;
+    p.set_vector(fields.displacement, row, moved);
+    p.set_vector(fields.last_position, row, x);
   }
-  present = present.global(simulation.communicator());
-  kept = kept.global(simulation.communicator());
+  return {present.global(simulation.communicator()), kept.global(simulation.communicator())};
+}
+
+void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const double plate_height)
+{
+  const auto [present, kept] = look_at_particles(simulation, layer, plate_height);
   // Some of what was there has left the domain, so it is not counted but inferred.
   ExactSum removed = last_present;
   removed -= kept.mass;

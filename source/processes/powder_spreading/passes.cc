@@ -6,22 +6,22 @@ namespace eunoe::spreading {
 
 void PowderSpreading::schedule_passes(const double beginning)
 {
-  passes = make_schedule(p, *apparatus, beginning);
-  double height = -apparatus->first_bed_depth;
+  passes = make_schedule(p, apparatus, beginning);
+  double height = -apparatus.first_bed_depth;
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pass &pass = passes[k];
     const double stroke = p.actual_stroke(static_cast<unsigned int>(k));
     if (k > 0 && p.feedstock == "replenished") {
-      apparatus->platform->add(pass.feed, 0., {0., -apparatus->bed_depth - height, 0.});
-      height = -apparatus->bed_depth;
+      apparatus.platform->add(pass.feed, 0., {0., -apparatus.bed_depth - height, 0.});
+      height = -apparatus.bed_depth;
     }
-    apparatus->platform->add(pass.feed, stroke / p.platform_velocity, {0., stroke, 0.});
+    apparatus.platform->add(pass.feed, stroke / p.platform_velocity, {0., stroke, 0.});
     height += stroke;
-    apparatus->spreaders[k % Apparatus::n_spreaders]->add(pass.start);
-    apparatus->plate->add(pass.weighing, p.plate_stroke() / p.plate_velocity,
-                          {0., -p.plate_stroke(), 0.});
-    if (apparatus->yielding_plate)
-      apparatus->yielding_plate->add(pass.over_plate, pass.past_plate - pass.over_plate);
+    apparatus.spreaders[k % Apparatus::n_spreaders]->add(pass.start);
+    apparatus.plate->add(pass.weighing, p.plate_stroke() / p.plate_velocity,
+                         {0., -p.plate_stroke(), 0.});
+    if (apparatus.yielding_plate)
+      apparatus.yielding_plate->add(pass.over_plate, pass.past_plate - pass.over_plate);
   }
 }
 
@@ -29,11 +29,10 @@ void PowderSpreading::step_passes(Simulation &simulation)
 {
   const double t = simulation.time();
   if (wants_solid_loads(simulation.step_number()))
-    layers->sample_force(simulation,
-                         "spreader " + std::to_string(pass_over_plate % Apparatus::n_spreaders));
+    layers->sample_force(simulation, handles.spreaders[pass_over_plate % Apparatus::n_spreaders]);
   if (next_feed < passes.size() && t >= passes[next_feed].feed) {
     if (p.feedstock == "replenished")
-      fill_reservoir(simulation, -apparatus->bed_depth);
+      fill_reservoir(simulation, -apparatus.bed_depth);
     ++next_feed;
   }
   pass_over_plate = -1;
@@ -41,7 +40,7 @@ void PowderSpreading::step_passes(Simulation &simulation)
     if (t < passes[k].past_plate)
       pass_over_plate = static_cast<int>(k);
   if (t >= passes[next_weighing].weighing) {
-    const double plate_height = apparatus->plate->at(t).centre.y;
+    const double plate_height = apparatus.plate->at(t).centre.y;
     layers->weigh(simulation, static_cast<unsigned int>(next_weighing), plate_height);
     if (++next_weighing == passes.size()) {
       layers->take_profile(simulation, plate_height);

@@ -4,6 +4,9 @@
 #include <eunoe/processes/heap/parameters.h>
 #include <eunoe/solids/solid.h>
 #include <eunoe/state/new_particle.h>
+#include <eunoe/state/physical_properties.h>
+
+#include <array>
 
 namespace eunoe::heap {
 
@@ -33,11 +36,9 @@ private:
 class Apparatus
 {
 public:
-  /// @param largest_diameter of the powder
-  /// @param mean_volume of a particle
-  Apparatus(const HeapParameters &parameters, double largest_diameter, double mean_volume,
-            double density);
+  Apparatus(const HeapParameters &parameters, const PhysicalProperties &physics);
 
+  double gravity; ///< (m/s2)
   unsigned int n_particles;
   double y_bottom, y_top, half_width; ///< of the domain
   double settled_height;              ///< that the powder in the tube is expected to have
@@ -63,7 +64,10 @@ public:
     return x.y > 0. && std::hypot(x.x, x.z) < 0.5 * p.disc_diameter + radius;
   }
 
-  std::vector<Solid> make_solids(int material) const;
+  /// Expected durations of filling, lifting and coming to rest (s).
+  std::array<double, 3> expected_durations() const;
+
+  void add_solids(std::vector<Solid> &solids, int material) const;
 
   /// The lengths (m) and velocities (m/s) for programs that evaluate the run, as an object of JSON.
   std::string as_json(double density) const;

@@ -10,20 +10,19 @@ namespace eunoe::heap {
 class Heap : public Process
 {
 public:
-  void declare(dealii::ParameterHandler &prm) override { p.declare(prm); }
-  void check(const ParameterCheck &check) const override { p.check(check); }
-  void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
-  void prepare(Parameters &parameters) override;
-  RunEstimate estimate(const Parameters &parameters) const override;
-  std::vector<Solid> make_solids(const Parameters &parameters) override
+  Heap(const HeapParameters &parameters, const PhysicalProperties &physics)
+      : p(parameters), wall_material(physics.wall_material()), apparatus(parameters, physics)
   {
-    return apparatus->make_solids(parameters.physics.wall_material());
+  }
+
+  void add_solids(std::vector<Solid> &solids) override
+  {
+    apparatus.add_solids(solids, wall_material);
   }
   void start(Simulation &simulation) override;
   void save(CheckpointWriter &writer) const override;
   void resume(Simulation &simulation, const Checkpoint &checkpoint) override;
   void step(Simulation &simulation) override;
-  bool wants_solid_loads(unsigned long long) const override { return false; }
   double progress(const Simulation &simulation) const override;
   std::string stage() const override;
   bool finished() const override { return phase == Phase::done; }
@@ -32,7 +31,6 @@ public:
     summary.update(results.keys);
   }
   std::vector<Measurement> measurements() const override { return results.measured; }
-  std::vector<ObservableDescription> observables() const override { return heap::observables(); }
 
 private:
   enum class Phase
@@ -43,21 +41,19 @@ private:
     done
   };
 
-  /// Expected durations of filling, lifting and coming to rest (s).
-  std::array<double, 3> expected_durations() const;
   /// Of its lower end (m).
   double height_of_tube(const Simulation &simulation) const
   {
-    return p.gap + apparatus->tube->at(simulation.time()).centre.y;
+    return p.gap + apparatus.tube->at(simulation.time()).centre.y;
   }
   void fill(Simulation &simulation);
   bool is_at_rest(Simulation &simulation);
   void begin_lifting(Simulation &simulation);
   void finish(Simulation &simulation);
 
-  HeapParameters p;
-  std::unique_ptr<Apparatus> apparatus;
-  double gravity = 0.; ///< (m/s2)
+  const HeapParameters p;
+  const int wall_material;
+  Apparatus apparatus;
 
   Phase phase = Phase::filling;
   double phase_start = 0.;                ///< (s)

@@ -1,12 +1,12 @@
 #ifndef eunoe_processes_heap_parameters_h
 #define eunoe_processes_heap_parameters_h
 
-#include <eunoe/core/parameter_section.h>
+#include <eunoe/simulation/process.h>
 
 namespace eunoe::heap {
 
 /// `subsection heap`: the heap instrument and what it does. SI units.
-struct HeapParameters : public ParameterSection
+struct HeapParameters : public ProcessSection
 {
   double tube_diameter = 10e-3, disc_diameter = 10e-3;
   double gap = 0., rim_height = 0.;
@@ -30,6 +30,11 @@ struct HeapParameters : public ParameterSection
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
+  void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
+  void decide(Parameters &parameters) const override;
+  RunEstimate estimate(const Parameters &parameters) const override;
+  std::unique_ptr<Process> make(const Parameters &parameters) const override;
+  std::vector<ObservableDescription> observables() const override;
 };
 
 } // namespace eunoe::heap

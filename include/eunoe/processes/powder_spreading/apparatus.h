@@ -6,8 +6,14 @@
 #include <eunoe/solids/scheduled_motion.h>
 #include <eunoe/solids/solid.h>
 #include <eunoe/solids/triangulated_surface.h>
+#include <eunoe/state/physical_properties.h>
+
+#include <array>
 
 namespace eunoe::spreading {
+
+/// Solid fraction of a settled bed, for estimates.
+constexpr double bed_fraction = 0.55;
 
 /// The spreading apparatus: x along the passes with the platform's left end at 0, y upwards with
 /// the transfer plate's surface at 0, z periodic or between side walls. SI units.
@@ -39,6 +45,14 @@ public:
   /// Length of the pile that a stroke gives the spreader to push.
   double pile_length() const;
 
+  /// Number of particles that a settled bed in the reservoir is expected to take.
+  /// @param bed_depth (m)
+  double particles_in_bed(const ParticleType &type, double bed_depth) const
+  {
+    const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
+    return bed_fraction * x_transfer * depth * bed_depth / volume;
+  }
+
   bool is_over_plate(const Vec3 &x, double plate_height) const
   {
     return x.x >= x_plate && x.x < x_plate_end && x.y > plate_height;
@@ -49,12 +63,19 @@ public:
   /// the run, as an object of JSON.
   std::string as_json(double density) const;
 
-  /// The solids, with the motions that a schedule fills. The first two are the spreaders, which
-  /// take turns so that passes may overlap.
+  /// Spreaders take turns, so that passes may overlap.
   static constexpr unsigned int n_spreaders = 2;
-  std::vector<Solid> make_solids(int material) const;
 
-  std::shared_ptr<PassMotion> spreaders[n_spreaders];
+  /// Where the solids are among those of a run.
+  struct SolidHandles
+  {
+    std::array<SolidHandle, n_spreaders> spreaders;
+    SolidHandle platform, plate;
+  };
+  /// Adds the solids, with the motions that a schedule fills.
+  SolidHandles add_solids(std::vector<Solid> &solids, int material) const;
+
+  std::array<std::shared_ptr<PassMotion>, n_spreaders> spreaders;
   std::shared_ptr<StrokeMotion> platform, plate;
   /// The plate's motion where it yields under the spreader, else null.
   std::shared_ptr<YieldingMotion> yielding_plate;

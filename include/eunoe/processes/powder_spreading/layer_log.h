@@ -12,14 +12,22 @@ namespace eunoe::spreading {
 class LayerLog
 {
 public:
-  /// The extra doubles of a particle, in this order.
-  static std::vector<ParticleField> fields();
+  /// What it keeps of every particle.
+  struct Fields
+  {
+    FieldHandle layer;         ///< that first brought the particle onto the plate, -1 before
+    FieldHandle tracked;       ///< 1 if the particle was on the plate at this weighing and the last
+    FieldHandle displacement;  ///< between these two, against the plate (m)
+    FieldHandle on_plate;      ///< 1 if the particle was on the plate at the last weighing
+    FieldHandle last_position; ///< at the last weighing (m)
+  };
+  static Fields add_fields(ParticleFields &fields);
 
   LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
-           const Apparatus &apparatus);
+           const Apparatus &apparatus, const Fields &fields);
 
   /// Reads the force on a spreader; only after a step for which solid loads were wanted.
-  void sample_force(const Simulation &simulation, const std::string &spreader);
+  void sample_force(const Simulation &simulation, SolidHandle spreader);
 
   /// Weighs a layer, now; collective.
   /// @param plate_height of the measuring plate (m)
@@ -41,11 +49,19 @@ private:
     ExactSum gap, collector;
   };
   OutletTotals outlet_totals(const Simulation &simulation) const;
+  /// The powder on the plate of all ranks.
+  struct OnPlate
+  {
+    Tally present, kept; ///< now; now and at the last weighing
+  };
+  /// Looks which particles are on the plate, and notes it with each of them; collective.
+  OnPlate look_at_particles(Simulation &simulation, unsigned int layer, double plate_height) const;
   /// Writes the row of a layer and takes it into the measurements.
   void record(unsigned int layer, double time,
               const std::vector<std::pair<std::string, double>> &row);
 
   const Apparatus &apparatus;
+  const Fields fields;
   const double full_layer_mass; ///< of solid material that fills a layer (kg)
   const std::shared_ptr<CsvFile> file;
   const std::shared_ptr<PictureSeries> pictures, solid_pictures;

@@ -1,7 +1,7 @@
 #ifndef eunoe_processes_powder_spreading_parameters_h
 #define eunoe_processes_powder_spreading_parameters_h
 
-#include <eunoe/core/parameter_section.h>
+#include <eunoe/simulation/process.h>
 
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace eunoe::spreading {
 
 /// `subsection powder spreading`: the apparatus and the procedure of Gaboriault et al. (2025), in
 /// the symbols of that paper. SI units.
-struct SpreadingParameters : public ParameterSection
+struct SpreadingParameters : public ProcessSection
 {
   double w1 = 0.069, w2 = 0.056, w3 = 0.073, w4 = 0.0465; ///< lengths of the parts in x
   double length_factor = 1.;                              ///< on w1 ... w4
@@ -57,6 +57,12 @@ struct SpreadingParameters : public ParameterSection
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
+  void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
+  void decide(Parameters &parameters) const override;
+  RunEstimate estimate(const Parameters &parameters) const override;
+  double fastest_solid() const override;
+  std::unique_ptr<Process> make(const Parameters &parameters) const override;
+  std::vector<ObservableDescription> observables() const override;
 
   double mean_clearance() const { return clearance + clearance_offset; }
   /// Stroke of the measuring plate.
@@ -70,7 +76,11 @@ struct SpreadingParameters : public ParameterSection
   double vibration_speed() const { return 2. * M_PI * vibration_frequency * vibration_amplitude; }
 
 private:
+  /// Whether the powder and the lengths of the apparatus go together.
+  void check_lengths(const Parameters &parameters, const ParameterCheck &check) const;
   void check_imperfections(const ParameterCheck &check) const;
+  /// What happens at the sides of the domain.
+  void decide_boundaries(Parameters &parameters) const;
 };
 
 } // namespace eunoe::spreading

@@ -5,8 +5,6 @@
 #include <eunoe/processes/powder_spreading/layer_log.h>
 #include <eunoe/processes/powder_spreading/schedule.h>
 
-#include <algorithm>
-
 namespace eunoe::spreading {
 
 /// Layer-by-layer spreading of powder: settles a bed of feedstock, then runs the passes of the
@@ -14,21 +12,16 @@ namespace eunoe::spreading {
 class PowderSpreading : public Process
 {
 public:
-  void declare(dealii::ParameterHandler &prm) override { p.declare(prm); }
-  void check(const ParameterCheck &check) const override { p.check(check); }
-  void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
-  void prepare(Parameters &parameters) override;
-  RunEstimate estimate(const Parameters &parameters) const override;
-  std::vector<ParticleField> fields() const override { return LayerLog::fields(); }
-  std::vector<Solid> make_solids(const Parameters &parameters) override
+  PowderSpreading(const SpreadingParameters &parameters, const PhysicalProperties &physics)
+      : p(parameters), wall_material(physics.wall_material()),
+        apparatus(parameters, physics.largest_diameter())
   {
-    return apparatus->make_solids(parameters.physics.wall_material());
   }
-  double fastest_solid() const override
+
+  void add_fields(ParticleFields &fields) override { layer_fields = LayerLog::add_fields(fields); }
+  void add_solids(std::vector<Solid> &solids) override
   {
-    // A smooth stroke is at most twice as fast as on average.
-    return std::max({std::hypot(p.velocity, p.vibration_speed()),
-                     2. * p.plate_velocity + recoil_speed(), 2. * p.platform_velocity});
+    handles = apparatus.add_solids(solids, wall_material);
   }
   void start(Simulation &simulation) override;
   void save(CheckpointWriter &writer) const override;
@@ -45,10 +38,6 @@ public:
   {
     return layers ? layers->measurements() : std::vector<Measurement>();
   }
-  std::vector<ObservableDescription> observables() const override
-  {
-    return LayerLog::observables();
-  }
 
 private:
   enum class Phase
@@ -59,13 +48,6 @@ private:
     done
   };
 
-  /// What happens at the sides of the domain.
-  void set_boundaries(Parameters &parameters) const;
-  /// Largest speed at which the plate yields under the spreader (m/s).
-  double recoil_speed() const
-  {
-    return M_PI * p.plate_recoil * p.velocity / (p.length_factor * p.w3);
-  }
   void insert_loose_bed(Simulation &simulation);
   void fill_reservoir(Simulation &simulation, double platform_height);
   bool has_settled(Simulation &simulation);
@@ -73,11 +55,12 @@ private:
   void lower_platform(double time);
   void schedule_passes(double beginning);
   void step_passes(Simulation &simulation);
-  /// Number of particles that a settled bed is expected to take.
-  double bed_particles(const Parameters &parameters, double bed_depth) const;
 
-  SpreadingParameters p;
-  std::unique_ptr<Apparatus> apparatus;
+  const SpreadingParameters p;
+  const int wall_material;
+  Apparatus apparatus;
+  Apparatus::SolidHandles handles;
+  LayerLog::Fields layer_fields;
   std::unique_ptr<LayerLog> layers;
   FeedBed bed;
 

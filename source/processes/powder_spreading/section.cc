@@ -1,0 +1,149 @@
+// What powder spreading asks of the other parameters, what it decides of them, what it will cost.
+
+#include <eunoe/processes/box_mesh.h>
+#include <eunoe/processes/common_checks.h>
+#include <eunoe/processes/powder_spreading/powder_spreading.h>
+
+#include <algorithm>
+
+namespace eunoe::spreading {
+
+namespace {
+
+const std::string section = "powder spreading";
+
+const ProcessRegistry::Registration registration(process_kinds(), section, [] {
+  return std::make_unique<SpreadingParameters>();
+});
+
+} // namespace
+
+void SpreadingParameters::check_with(const Parameters &parameters,
+                                     const ParameterCheck &check) const
+{
+  check_powder_of_process(parameters, check, "Powder spreading",
+                          "in powder spreading y points upwards");
+  check_lengths(parameters, check);
+  // The powder that is there does not depend on how it is dosed.
+  const double bed = bed_depth > 0. ? bed_depth : stroke + bed_margin;
+  const double first_bed = std::max(bed, first_stroke + bed_margin);
+  check.require(actual_stroke(0) <= first_bed && actual_stroke(1) <= bed, {section},
+                "feedstock stroke error",
+                "is " + format(stroke_error) +
+                    ": the platform would rise above the level of the "
+                    "transfer plate, as the bed is only " +
+                    format(bed) + " m deep, and " + format(first_bed) + " m for the first layer.",
+                "Give a smaller error or a larger 'feedstock margin'.");
+  refuse_decisions_of_process(check, "its last layer is weighed", "'number of layers' rules");
+}
+
+void SpreadingParameters::check_lengths(const Parameters &parameters,
+                                        const ParameterCheck &check) const
+{
+  const double largest = parameters.physics.largest_diameter();
+  for (const auto &[value, entry] :
+       {std::pair(w1, "feedstock platform length W1"), std::pair(w3, "measuring plate length W3")})
+    check.require(length_factor * value > 3. * largest, {section}, entry,
+                  "times the length factor is " + format(length_factor * value) +
+                      " m, less than three of the largest particles.",
+                  "Give a larger length or factor.");
+  check.require(depth >= 2. * largest, {section}, "depth",
+                "is " + format(depth) + " m, less than two of the largest particles.",
+                "Give a larger depth, 2e-3 in the paper.");
+  const double reach =
+      largest + parameters.detection.skin(largest) + parameters.contact_model(largest).range();
+  check.require(side_walls || depth >= 2. * reach || depth < 2. * largest, {section}, "depth",
+                "is " + format(depth) + " m, less than twice the " + format(reach) +
+                    " m that particles can reach (largest diameter, skin and range of cohesion), "
+                    "so that two particles could touch on both sides of the periodic slice.",
+                "Give a larger depth, 2e-3 in the paper, or a smaller 'neighborhood threshold'.");
+  // Each of its two contacts gives way by a hundredth of the diameter.
+  constexpr double squeezed = 0.98;
+  const double lowest = mean_clearance() - 0.5 * spreader_tilt - vibration_amplitude;
+  check.advise(
+      lowest <= 0. || lowest >= squeezed * largest, {section}, "spreader clearance delta_s",
+      "leaves " + format(lowest) + " m below the spreader, less than the largest grain of " +
+          format(largest) + " m, which cannot pass below it and is pushed along or jams.",
+      "Give a larger clearance, or sieve out the grains with 'maximum diameter cutoff'.");
+}
+
+void SpreadingParameters::decide(Parameters &parameters) const
+{
+  const double largest = parameters.physics.largest_diameter();
+  const Apparatus a(*this, largest);
+  parameters.mesh =
+      box_mesh(section, {0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
+               parameters.detection.skin(largest) + parameters.contact_model(largest).range());
+  decide_boundaries(parameters);
+  // The process decides when all is done; this is no more than an upper bound.
+  parameters.control.end_control = "time";
+  parameters.control.time_end =
+      make_schedule(*this, a, 22. * settling_time).back().end + settling_time;
+}
+
+void SpreadingParameters::decide_boundaries(Parameters &parameters) const
+{
+  BoundaryCondition collector, bottom;
+  collector.type = bottom.type = "outlet";
+  collector.id = box_side::upper_x;
+  bottom.id = box_side::lower_y;
+  parameters.boundaries.conditions = {collector, bottom};
+  if (side_walls) {
+    PhysicalProperties &physics = parameters.physics;
+    physics.other_walls = {physics.wall};
+    if (side_wall_friction >= 0.)
+      physics.other_walls[0].friction = side_wall_friction;
+    for (const unsigned int id : {box_side::lower_z, box_side::upper_z}) {
+      BoundaryCondition wall;
+      wall.id = id;
+      wall.material = physics.wall_material(physics.wall_materials.size());
+      parameters.boundaries.conditions.push_back(wall);
+    }
+  } else {
+    BoundaryCondition period;
+    period.type = "periodic";
+    period.periodic_ids[0] = box_side::lower_z;
+    period.periodic_ids[1] = box_side::upper_z;
+    period.periodic_direction = 2;
+    parameters.boundaries.conditions.push_back(period);
+  }
+}
+
+RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
+{
+  const ParticleType &type = parameters.physics.types[0];
+  const Apparatus a(*this, parameters.physics.largest_diameter());
+  const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
+  const double layer = bed_fraction * a.plate_area() * layer_thickness / volume;
+  const double first = a.particles_in_bed(type, a.first_bed_depth);
+  const double later = feedstock == "full" ? 0.5 * (first + a.particles_in_bed(type, bed_margin))
+                                           : a.particles_in_bed(type, a.bed_depth);
+  const double transit = a.particles_in_bed(type, actual_stroke(1));
+  const auto schedule = make_schedule(*this, a, 0.25 * settling_time);
+  RunEstimate estimate;
+  estimate.steps = schedule.back().weighing / parameters.control.time_step;
+  estimate.particles = later + transit + 0.5 * n_layers * layer;
+  estimate.most_particles = std::max(first + transit, later + transit + n_layers * layer);
+  return estimate;
+}
+
+std::unique_ptr<Process> SpreadingParameters::make(const Parameters &parameters) const
+{
+  return std::make_unique<PowderSpreading>(*this, parameters.physics);
+}
+
+double SpreadingParameters::fastest_solid() const
+{
+  // Of the plate that yields under the spreader.
+  const double recoil_speed = M_PI * plate_recoil * velocity / (length_factor * w3);
+  // A smooth stroke is at most twice as fast as on average.
+  return std::max({std::hypot(velocity, vibration_speed()), 2. * plate_velocity + recoil_speed,
+                   2. * platform_velocity});
+}
+
+std::vector<ObservableDescription> SpreadingParameters::observables() const
+{
+  return LayerLog::observables();
+}
+
+} // namespace eunoe::spreading
