@@ -15,8 +15,8 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
                     "Whether checkpoints are written: at intervals, and when the run is asked to "
                     "stop (SIGTERM, SIGINT, SIGUSR1), by which it ends with exit code 3.");
   declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
-  declare::positive(prm, "wall time interval", minutes,
-                    "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
+  declare::not_negative(prm, "wall time interval", minutes,
+                        "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
   declare::count(prm, "number of checkpoints", keep, "Number of checkpoints that stay.", 1);
   prm.add_parameter("filename", filename,
                     "Beginning of the names of the checkpoints in the output folder.");

@@ -59,8 +59,8 @@ void declare_nuisance(dealii::ParameterHandler &prm, NuisanceParameters &nuisanc
   prm.add_parameter("value", nuisance.value,
                     "Their value, with 'amplitude', which is 0 on average, and 'base', the value "
                     "in the case.");
-  declare::positive(prm, "standard deviation", nuisance.standard_deviation,
-                    "Standard deviation of the amplitude.");
+  declare::not_negative(prm, "standard deviation", nuisance.standard_deviation,
+                        "Standard deviation of the amplitude.");
 }
 
 void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
@@ -91,9 +91,9 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                  "Most effects that are named together.", 1);
   declare::count(prm, "seed", options.seed, "Seed of the study, from which those of its runs come.",
                  0);
-  declare::positive(prm, "model tolerance", options.model_tolerance,
-                    "Relative deviation that is forgiven to every value of the base model, for "
-                    "what its step or depth leaves out.");
+  declare::not_negative(prm, "model tolerance", options.model_tolerance,
+                        "Relative deviation that is forgiven to every value of the base model, for "
+                        "what its step or depth leaves out.");
   prm.add_parameter("common random numbers", options.common_random_numbers,
                     "Whether effects are compared with the base model at equal seeds where that "
                     "pays.");
@@ -118,9 +118,9 @@ void declare_twin(dealii::ParameterHandler &prm, TwinParameters &twin)
                     declare::Patterns::Double(0.05, 2.));
   prm.add_parameter("jitter nuisances", twin.jitter_nuisances,
                     "Whether the truth's nuisances are drawn from their distributions.");
-  declare::positive(prm, "noise", twin.noise,
-                    "Standard deviation of the measurement, relative to the observable's root "
-                    "mean square over its cells.");
+  declare::not_negative(prm, "noise", twin.noise,
+                        "Standard deviation of the measurement, relative to the observable's root "
+                        "mean square over its cells.");
   declare::count(prm, "repeats", twin.repeats, "Number of repeated measurements.", 2);
   declare::count(prm, "seed", twin.seed, "Seed of the truth: powder, packing, noise, nuisances.",
                  0);

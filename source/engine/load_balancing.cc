@@ -22,11 +22,11 @@ void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
   declare::count(prm, "particle weight", particle_weight,
                  "Cost of a particle, beside that of a cell.");
   declare::count(prm, "cell weight", cell_weight, "Cost of a cell.", 1);
-  declare::positive(prm, "active weight factor", active_factor,
-                    "Factor on the weight of particles that are awake (see 'adaptive sparse "
-                    "contacts').");
-  declare::positive(prm, "inactive weight factor", inactive_factor,
-                    "Factor on the weight of particles that sleep.");
+  declare::not_negative(prm, "active weight factor", active_factor,
+                        "Factor on the weight of particles that are awake (see 'adaptive sparse "
+                        "contacts').");
+  declare::not_negative(prm, "inactive weight factor", inactive_factor,
+                        "Factor on the weight of particles that sleep.");
   prm.enter_subsection("cell weight function");
   prm.add_parameter("Function expression", cell_weight_expression,
                     "Cost of a cell as an expression in x, y, z, its centre (m); empty: 'cell "

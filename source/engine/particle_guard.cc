@@ -28,9 +28,10 @@ void FaultParameters::declare(dealii::ParameterHandler &prm)
                   "What happens when a particle has left the mesh other than through an outlet, or "
                   "is not a number any more: the run stops, or the particle is taken out and "
                   "counted, with or without a warning.");
-  declare::positive(prm, "largest overlap", largest_overlap,
-                    "Overlap over the radius of the smaller particle above which the run stops, as "
-                    "no contact law holds there; 0: never.");
+  declare::not_negative(
+      prm, "largest overlap", largest_overlap,
+      "Overlap over the radius of the smaller particle above which the run stops, as "
+      "no contact law holds there; 0: never.");
   prm.leave_subsection();
 }
 

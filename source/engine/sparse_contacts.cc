@@ -38,10 +38,11 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
                     "Whether particles that are at rest, and whose neighbours are, sleep: they do "
                     "not move and their contacts with each other are not computed, until something "
                     "stirs near them.");
-  declare::positive(prm, "granular temperature threshold", temperature,
-                    "Square of the speed below which a particle is at rest (m2/s2).");
-  declare::positive(prm, "rest time", rest_time,
-                    "Time for which a particle must have been at rest before it may sleep (s).");
+  declare::not_negative(prm, "granular temperature threshold", temperature,
+                        "Square of the speed below which a particle is at rest (m2/s2).");
+  declare::not_negative(
+      prm, "rest time", rest_time,
+      "Time for which a particle must have been at rest before it may sleep (s).");
   declare::count(prm, "check frequency", frequency,
                  "Steps between two looks at who may sleep and who must wake; every search for "
                  "contacts looks as well.",

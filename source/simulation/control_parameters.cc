@@ -14,11 +14,11 @@ const std::string section = "simulation control";
 void ControlParameters::declare(dealii::ParameterHandler &prm)
 {
   prm.enter_subsection(section);
-  declare::positive(prm, "time step", time_step, "Time step (s).");
+  declare::not_negative(prm, "time step", time_step, "Time step (s).");
   declare::choice(prm, "end control", end_control, "time|iteration",
                   "Whether 'time end' or 'iteration end' ends the run. A process may end it "
                   "earlier, when all its work is done.");
-  declare::positive(prm, "time end", time_end, "Simulated time at which the run ends (s).");
+  declare::not_negative(prm, "time end", time_end, "Simulated time at which the run ends (s).");
   declare::count(prm, "iteration end", iteration_end, "Number of steps of the run.");
   prm.add_parameter("output path", output_path, "Folder of all results; created if missing.");
   prm.add_parameter("output name", output_name,
@@ -27,8 +27,8 @@ void ControlParameters::declare(dealii::ParameterHandler &prm)
                   "Whether 'output frequency' or 'output time' rules the files for pictures.");
   declare::count(prm, "output frequency", output_frequency,
                  "Steps between files for pictures; 0: none.");
-  declare::positive(prm, "output time", output_time,
-                    "Simulated time between files for pictures (s).");
+  declare::not_negative(prm, "output time", output_time,
+                        "Simulated time between files for pictures (s).");
   prm.add_parameter("output time interval", output_window,
                     "Simulated times between which files for pictures are written (s).",
                     declare::Patterns::List(declare::Patterns::Double(), 2, 2));

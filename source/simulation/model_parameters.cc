@@ -51,15 +51,16 @@ std::string names_of_models()
 void declare_capillary_bridges(dealii::ParameterHandler &prm, ContactLawOptions &options)
 {
   prm.enter_subsection(capillary_section);
-  declare::positive(prm, "surface tension", options.surface_tension,
-                    "Surface tension of the liquid that forms a bridge where two bodies touch and "
-                    "holds it until they are too far apart (N/m); 0: no bridges.");
-  declare::positive(prm, "contact angle", options.contact_angle,
-                    "Angle at which the liquid meets the bodies (degrees).");
-  declare::positive(prm, "volume share", options.bridge_share,
-                    "Volume of a bridge over that of a particle.");
-  declare::positive(prm, "bridge volume", options.bridge_volume,
-                    "Volume of every bridge (m3); 0: 'volume share' rules.");
+  declare::not_negative(
+      prm, "surface tension", options.surface_tension,
+      "Surface tension of the liquid that forms a bridge where two bodies touch and "
+      "holds it until they are too far apart (N/m); 0: no bridges.");
+  declare::not_negative(prm, "contact angle", options.contact_angle,
+                        "Angle at which the liquid meets the bodies (degrees).");
+  declare::not_negative(prm, "volume share", options.bridge_share,
+                        "Volume of a bridge over that of a particle.");
+  declare::not_negative(prm, "bridge volume", options.bridge_volume,
+                        "Volume of every bridge (m3); 0: 'volume share' rules.");
   prm.leave_subsection();
 }
 
@@ -108,9 +109,10 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
 
   declare_capillary_bridges(prm, options);
   prm.enter_subsection("electrostatic charge");
-  declare::positive(prm, "cut-off share", options.charge_cut_off,
-                    "Gap at which the force between two charged particles has fallen to zero, over "
-                    "the largest radius. The larger, the longer the lists of pairs.");
+  declare::not_negative(
+      prm, "cut-off share", options.charge_cut_off,
+      "Gap at which the force between two charged particles has fallen to zero, over "
+      "the largest radius. The larger, the longer the lists of pairs.");
   prm.leave_subsection();
   prm.leave_subsection();
 }

@@ -185,7 +185,7 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     declare::count(prm, "number of particles", type.number,
                    "Number of particles of this type to insert.");
     prm.declare_alias("number of particles", "number");
-    declare::positive(prm, "density particles", type.density, "Density (kg/m3).");
+    declare::not_negative(prm, "density particles", type.density, "Density (kg/m3).");
     declare_material(prm, type.material, "particles");
     prm.add_parameter("surface charge density particles", type.material.surface_charge,
                       "Charge of a particle over its surface (C/m2), of either sign; see 'model "

@@ -26,8 +26,9 @@ public:
     prm.enter_subsection("drop");
     declare::count(prm, "number", n_particles, "Number of particles.", 1);
     declare::count(prm, "seed", seed, "Seed of their places.");
-    declare::positive(prm, "duration", duration, "Time at which all is measured (s).");
-    declare::positive(prm, "largest speed", largest_speed, "Above it the run breaks off (m/s).");
+    declare::not_negative(prm, "duration", duration, "Time at which all is measured (s).");
+    declare::not_negative(prm, "largest speed", largest_speed,
+                          "Above it the run breaks off (m/s).");
     prm.leave_subsection();
   }
   void check_with(const Parameters &, const ParameterCheck &check) const override

@@ -55,8 +55,8 @@ inline void choice(dealii::ParameterHandler &prm, const std::string &entry, std:
 }
 
 /// A number that is not negative.
-inline void positive(dealii::ParameterHandler &prm, const std::string &entry, double &value,
-                     const std::string &documentation)
+inline void not_negative(dealii::ParameterHandler &prm, const std::string &entry, double &value,
+                         const std::string &documentation)
 {
   prm.add_parameter(entry, value, documentation, Patterns::Double(0.));
 }

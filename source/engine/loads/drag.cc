@@ -46,12 +46,14 @@ public:
   {
     prm.enter_subsection("model parameters");
     prm.enter_subsection("drag");
-    declare::positive(prm, "dynamic viscosity", viscosity,
-                      "Dynamic viscosity of the still gas around the particles (Pa s), 1.8e-5 for "
-                      "air; 0: no drag.");
-    declare::positive(prm, "density", density,
-                      "Density of that gas (kg/m3), 1.2 for air. 0: Stokes's drag; else that of "
-                      "Schiller and Naumann.");
+    declare::not_negative(
+        prm, "dynamic viscosity", viscosity,
+        "Dynamic viscosity of the still gas around the particles (Pa s), 1.8e-5 for "
+        "air; 0: no drag.");
+    declare::not_negative(
+        prm, "density", density,
+        "Density of that gas (kg/m3), 1.2 for air. 0: Stokes's drag; else that of "
+        "Schiller and Naumann.");
     prm.leave_subsection();
     prm.leave_subsection();
   }

@@ -9,24 +9,25 @@ const std::string section = "heap";
 
 void declare_powder(dealii::ParameterHandler &prm, HeapParameters &p)
 {
-  using declare::positive;
+  using declare::not_negative;
   declare::count(prm, "number of particles", p.n_particles,
                  "Number of particles that are filled in; 0: 'mass' or 'fill ratio' rules.");
-  positive(prm, "mass", p.mass,
-           "Mass of powder that is filled in, to within the scatter of the sizes (kg); 0: 'number "
-           "of particles' or 'fill ratio' rules.");
-  positive(prm, "fill ratio", p.fill_ratio,
-           "Without number and mass: powder that is filled in over that of a heap with a base "
-           "angle of 37.5 degrees, so that discs of any size are filled alike.");
-  positive(prm, "insertion speed", p.insertion_speed,
-           "Speed at which the loose particles start to fall into the tube (m/s).");
+  not_negative(
+      prm, "mass", p.mass,
+      "Mass of powder that is filled in, to within the scatter of the sizes (kg); 0: 'number "
+      "of particles' or 'fill ratio' rules.");
+  not_negative(prm, "fill ratio", p.fill_ratio,
+               "Without number and mass: powder that is filled in over that of a heap with a base "
+               "angle of 37.5 degrees, so that discs of any size are filled alike.");
+  not_negative(prm, "insertion speed", p.insertion_speed,
+               "Speed at which the loose particles start to fall into the tube (m/s).");
   declare::count(prm, "seed", p.seed, "Seed of the random places of the loose particles.");
 }
 
 void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
 {
-  using declare::positive;
-  positive(
+  using declare::not_negative;
+  not_negative(
       prm, "rest energy share", p.rest_energy_share,
       "A particle is calm when its kinetic energy of translation is below this share of m g d, "
       "the energy that lifts it by its diameter.");
@@ -35,33 +36,37 @@ void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
                     declare::Patterns::Double(0., 1.));
   declare::count(prm, "rest check frequency", p.rest_check_frequency,
                  "Steps between two looks at the energies.", 1);
-  positive(
+  not_negative(
       prm, "rest duration", p.rest_duration,
       "Time for which all other particles must stay calm until the powder counts as at rest (s).");
-  positive(prm, "longest wait", p.longest_wait,
-           "Longest wait for rest, after the filling and after the lifting (s); the run then goes "
-           "on with a warning.");
+  not_negative(
+      prm, "longest wait", p.longest_wait,
+      "Longest wait for rest, after the filling and after the lifting (s); the run then goes "
+      "on with a warning.");
 }
 
 } // namespace
 
 void HeapParameters::declare(dealii::ParameterHandler &prm)
 {
-  using declare::positive;
+  using declare::not_negative;
   using declare::Patterns::Integer;
   prm.enter_subsection(section);
-  positive(prm, "tube inner diameter", tube_diameter, "Inner diameter of the tube (m).");
-  positive(prm, "disc diameter", disc_diameter,
-           "Diameter of the disc on which the heap stands (m), at least that of the tube.");
-  positive(prm, "gap below the tube", gap,
-           "Height of the tube's lower end over the disc before it is lifted (m); 0: it stands on "
-           "the disc.");
-  positive(prm, "disc rim height", rim_height,
-           "Height of the disc's vertical rim, below which powder falls freely (m); 0: five of the "
-           "largest diameters.");
+  not_negative(prm, "tube inner diameter", tube_diameter, "Inner diameter of the tube (m).");
+  not_negative(prm, "disc diameter", disc_diameter,
+               "Diameter of the disc on which the heap stands (m), at least that of the tube.");
+  not_negative(
+      prm, "gap below the tube", gap,
+      "Height of the tube's lower end over the disc before it is lifted (m); 0: it stands on "
+      "the disc.");
+  not_negative(
+      prm, "disc rim height", rim_height,
+      "Height of the disc's vertical rim, below which powder falls freely (m); 0: five of the "
+      "largest diameters.");
   prm.add_parameter("facets", n_facets, "Number of flat facets around the tube and the disc.",
                     Integer(25, 1000));
-  positive(prm, "lifting velocity", lifting_velocity, "Velocity at which the tube rises (m/s).");
+  not_negative(prm, "lifting velocity", lifting_velocity,
+               "Velocity at which the tube rises (m/s).");
   declare_powder(prm, *this);
   declare_rest(prm, *this);
   prm.add_parameter("number of views", n_views,

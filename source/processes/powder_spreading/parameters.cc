@@ -9,32 +9,35 @@ const std::string section = "powder spreading";
 
 void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  using declare::positive;
-  positive(prm, "feedstock platform length W1", p.w1, "Length of the rising platform in x (m).");
-  positive(prm, "transfer plate length W2", p.w2,
-           "Length of the plate between platform and gap (m).");
-  positive(prm, "measuring plate length W3", p.w3, "Length of the falling plate (m).");
-  positive(prm, "exit plate length W4", p.w4,
-           "Length of the plate between the measuring plate's gap and the collector (m).");
-  positive(prm, "length factor", p.length_factor,
-           "Factor on the four lengths: n/7 for the paper's L_n; the gap and the spreader keep "
-           "their sizes.");
-  positive(prm, "depth", p.depth, "Depth of the simulated slice in z, which is periodic (m).");
-  positive(prm, "gap", p.gap, "Width of the gap on both sides of the measuring plate (m).");
-  positive(prm, "lip height", p.lip,
-           "Height of the edges of the plates at the gap, below which powder falls freely (m).");
+  using declare::not_negative;
+  not_negative(prm, "feedstock platform length W1", p.w1,
+               "Length of the rising platform in x (m).");
+  not_negative(prm, "transfer plate length W2", p.w2,
+               "Length of the plate between platform and gap (m).");
+  not_negative(prm, "measuring plate length W3", p.w3, "Length of the falling plate (m).");
+  not_negative(prm, "exit plate length W4", p.w4,
+               "Length of the plate between the measuring plate's gap and the collector (m).");
+  not_negative(prm, "length factor", p.length_factor,
+               "Factor on the four lengths: n/7 for the paper's L_n; the gap and the spreader keep "
+               "their sizes.");
+  not_negative(prm, "depth", p.depth, "Depth of the simulated slice in z, which is periodic (m).");
+  not_negative(prm, "gap", p.gap, "Width of the gap on both sides of the measuring plate (m).");
+  not_negative(
+      prm, "lip height", p.lip,
+      "Height of the edges of the plates at the gap, below which powder falls freely (m).");
 }
 
 void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  using declare::positive;
+  using declare::not_negative;
   using declare::Patterns::Integer;
   declare::choice(prm, "spreader", p.spreader, "half round|flat blade", "Shape of the spreader.");
-  positive(prm, "spreader radius R_s", p.spreader_radius, "half round: radius (m).");
-  positive(prm, "spreader thickness", p.spreader_thickness, "flat blade: thickness in x (m).");
-  positive(prm, "spreader height", p.spreader_height,
-           "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
-           "can pile up.");
+  not_negative(prm, "spreader radius R_s", p.spreader_radius, "half round: radius (m).");
+  not_negative(prm, "spreader thickness", p.spreader_thickness, "flat blade: thickness in x (m).");
+  not_negative(
+      prm, "spreader height", p.spreader_height,
+      "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
+      "can pile up.");
   prm.add_parameter("spreader facets", p.spreader_facets,
                     "half round: number of facets of the half circle.", Integer(4, 1000));
   prm.add_parameter("spreader clearance delta_s", p.clearance,
@@ -43,74 +46,78 @@ void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)
 
 void declare_passes(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  using declare::positive;
+  using declare::not_negative;
   using declare::Patterns::Integer;
   prm.add_parameter("number of layers", p.n_layers,
                     "Number of passes; the layers are numbered from 0.", Integer(0, 10000));
-  positive(prm, "layer thickness delta_l", p.layer_thickness,
-           "Stroke of the measuring plate after every pass (m).");
-  positive(prm, "spreading velocity v_s", p.velocity, "Velocity of the spreader (m/s).");
-  positive(prm, "feedstock stroke delta_f", p.stroke,
-           "Stroke of the feedstock platform before every pass (m).");
-  positive(prm, "first feedstock stroke", p.first_stroke,
-           "Stroke of the feedstock platform before the first pass (m).");
-  positive(prm, "measuring plate velocity", p.plate_velocity,
-           "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
-  positive(prm, "feedstock platform velocity", p.platform_velocity,
-           "Mean velocity of the feedstock platform's strokes (m/s).");
+  not_negative(prm, "layer thickness delta_l", p.layer_thickness,
+               "Stroke of the measuring plate after every pass (m).");
+  not_negative(prm, "spreading velocity v_s", p.velocity, "Velocity of the spreader (m/s).");
+  not_negative(prm, "feedstock stroke delta_f", p.stroke,
+               "Stroke of the feedstock platform before every pass (m).");
+  not_negative(prm, "first feedstock stroke", p.first_stroke,
+               "Stroke of the feedstock platform before the first pass (m).");
+  not_negative(
+      prm, "measuring plate velocity", p.plate_velocity,
+      "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
+  not_negative(prm, "feedstock platform velocity", p.platform_velocity,
+               "Mean velocity of the feedstock platform's strokes (m/s).");
   prm.add_parameter("pass overlap", p.overlap,
                     "Share of a pass after which the next may start, as far as the plates' strokes "
                     "allow it; 1: one after the other.",
                     declare::Patterns::Double(0.05, 1.));
-  positive(prm, "rest before weighing", p.rest_before_weighing,
-           "Time between the passing of the spreader's rear over the end of the measuring plate "
-           "and the weighing (s).");
+  not_negative(
+      prm, "rest before weighing", p.rest_before_weighing,
+      "Time between the passing of the spreader's rear over the end of the measuring plate "
+      "and the weighing (s).");
 }
 
 void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  using declare::positive;
+  using declare::not_negative;
   declare::choice(prm, "feedstock", p.feedstock, "replenished|full",
                   "replenished: a shallow bed is settled once and copied back before every pass, "
                   "shifted and mirrored in z at random, after what was left has been taken out. "
                   "full: one deep reservoir for all passes.");
-  positive(prm, "feedstock bed depth", p.bed_depth,
-           "Depth of the bed that is settled (m); 0: the stroke and the margin.");
-  positive(prm, "feedstock margin", p.bed_margin,
-           "Powder left below the level of the transfer plate after the stroke (m).");
-  positive(prm, "feedstock insertion speed", p.insertion_speed,
-           "Downward velocity of the particles inserted for the bed (m/s).");
+  not_negative(prm, "feedstock bed depth", p.bed_depth,
+               "Depth of the bed that is settled (m); 0: the stroke and the margin.");
+  not_negative(prm, "feedstock margin", p.bed_margin,
+               "Powder left below the level of the transfer plate after the stroke (m).");
+  not_negative(prm, "feedstock insertion speed", p.insertion_speed,
+               "Downward velocity of the particles inserted for the bed (m/s).");
   positive(
       prm, "settled speed", p.settled_speed,
       "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
-  positive(prm, "settling time", p.settling_time,
-           "Longest time that the bed is given to come to rest (s).");
+  not_negative(prm, "settling time", p.settling_time,
+               "Longest time that the bed is given to come to rest (s).");
   declare::count(prm, "seed", p.seed, "Seed of the random positions, shifts and mirrorings.");
 }
 
 void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  using declare::positive;
+  using declare::not_negative;
   using declare::Patterns::Double;
   prm.add_parameter("spreader clearance offset", p.clearance_offset,
                     "Error of the clearance: the spreader is higher by this (m).", Double());
-  positive(prm, "spreader tilt", p.spreader_tilt,
-           "Difference between the largest and the smallest clearance over the depth (m), about "
-           "the same mean. Between side walls the spreader rises along z; in a periodic slice it "
-           "falls over one half of the depth and rises over the other.");
-  positive(prm, "spreader vibration amplitude", p.vibration_amplitude,
-           "Amplitude of a vertical vibration of the spreader (m).");
-  positive(prm, "spreader vibration frequency", p.vibration_frequency,
-           "Frequency of that vibration (Hz).");
+  not_negative(
+      prm, "spreader tilt", p.spreader_tilt,
+      "Difference between the largest and the smallest clearance over the depth (m), about "
+      "the same mean. Between side walls the spreader rises along z; in a periodic slice it "
+      "falls over one half of the depth and rises over the other.");
+  not_negative(prm, "spreader vibration amplitude", p.vibration_amplitude,
+               "Amplitude of a vertical vibration of the spreader (m).");
+  not_negative(prm, "spreader vibration frequency", p.vibration_frequency,
+               "Frequency of that vibration (Hz).");
   prm.add_parameter("layer thickness error", p.plate_stroke_error,
                     "Relative error of the measuring plate's stroke: it falls by delta_l (1 + "
                     "error), while the relative densities are computed with delta_l.",
                     Double());
   prm.add_parameter("feedstock stroke error", p.stroke_error,
                     "Relative error of the feedstock platform's strokes.", Double());
-  positive(prm, "plate recoil", p.plate_recoil,
-           "Way that the measuring plate yields while the spreader passes over it, and springs "
-           "back (m): a squared sine of the time between the spreader's arrival and its leaving.");
+  not_negative(
+      prm, "plate recoil", p.plate_recoil,
+      "Way that the measuring plate yields while the spreader passes over it, and springs "
+      "back (m): a squared sine of the time between the spreader's arrival and its leaving.");
   prm.add_parameter("side walls", p.side_walls,
                     "Whether the slice ends at two walls in z, instead of being periodic.");
   prm.add_parameter("side wall friction", p.side_wall_friction,

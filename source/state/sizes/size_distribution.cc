@@ -19,11 +19,12 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "size distribution type", type, size_distributions().names(),
                   "Distribution of the diameters: 'uniform' (all alike), 'normal', 'lognormal', or "
                   "'custom' (listed classes).");
-  declare::positive(prm, "average diameter", average_diameter,
-                    "Diameter of a uniform distribution, mean of a normal or lognormal one (m).");
+  declare::not_negative(
+      prm, "average diameter", average_diameter,
+      "Diameter of a uniform distribution, mean of a normal or lognormal one (m).");
   prm.declare_alias("average diameter", "diameter");
-  declare::positive(prm, "standard deviation", standard_deviation,
-                    "Standard deviation of the diameter itself, normal and lognormal (m).");
+  declare::not_negative(prm, "standard deviation", standard_deviation,
+                        "Standard deviation of the diameter itself, normal and lognormal (m).");
   prm.add_parameter(
       "minimum diameter cutoff", smallest,
       "Smallest diameter drawn (m); -1: 2.5 standard deviations below the mean (of the "
