@@ -7,7 +7,8 @@ namespace eunoe {
 
 ContactLawRegistry &contact_laws(const std::string &family)
 {
-  static std::map<std::string, ContactLawRegistry> registries;
+  static RegistryFamilies<ContactLawRegistry> registries(
+      "contact law", {"normal", "cohesion", "further", "tangential", "rolling"});
   return registries[family];
 }
 

@@ -6,7 +6,7 @@ namespace eunoe {
 
 ObservableRegistry &observables()
 {
-  static ObservableRegistry registry;
+  static ObservableRegistry registry("observable");
   return registry;
 }
 

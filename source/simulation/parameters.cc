@@ -11,7 +11,7 @@ namespace eunoe {
 
 ProcessRegistry &process_kinds()
 {
-  static ProcessRegistry registry;
+  static ProcessRegistry registry("process");
   return registry;
 }
 
@@ -66,12 +66,9 @@ Parameters::Parameters(const SectionCounts &counts)
       physics(counts.particle_types, counts.wall_materials), floating_walls(counts.floating_walls),
       solids(counts.solids)
 {
-  for (const std::string &name : process_kinds().list())
-    processes[name] = process_kinds().make(name);
-  for (const std::string &name : eunoe::loads().list())
-    loads[name] = eunoe::loads().make(name);
-  for (const std::string &name : eunoe::observables().list())
-    observables[name] = eunoe::observables().make(name);
+  processes = process_kinds().make_all();
+  loads = eunoe::loads().make_all();
+  observables = eunoe::observables().make_all();
 }
 
 std::vector<ParameterSection *> Parameters::sections()

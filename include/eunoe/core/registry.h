@@ -9,18 +9,28 @@
 
 namespace eunoe {
 
-/// Plug-ins of one kind by name. A plug-in's file holds one static `Registration`.
+/// Ends the program with a sentence about its own code, where plug-ins contradict each other. Most
+/// register before `main`, where nobody could catch an exception.
+[[noreturn]] void end_for_registration(const std::string &sentence);
+
+/// Plug-ins of one kind by name. A plug-in's file holds one static `Registration`. A name that is
+/// given twice ends the program when it starts.
 template <typename Product, typename... Arguments>
 class Registry
 {
 public:
   using Maker = std::function<Product(Arguments...)>;
 
+  /// @param kind in a word or two, "contact law" for example
+  explicit Registry(std::string kind) : kind(std::move(kind)) {}
+
   struct Registration
   {
     Registration(Registry &registry, const std::string &name, Maker maker)
     {
-      registry.makers[name] = std::move(maker);
+      if (!registry.makers.emplace(name, std::move(maker)).second)
+        end_for_registration("The " + registry.kind + " '" + name +
+                             "' is registered twice. Give one of the two another name.");
     }
   };
 
@@ -32,6 +42,15 @@ public:
     if (maker == makers.end())
       throw std::invalid_argument("there is no '" + name + "' among " + names());
     return maker->second(std::forward<Arguments>(arguments)...);
+  }
+
+  /// One of each, by name.
+  std::map<std::string, Product> make_all() const
+  {
+    std::map<std::string, Product> all;
+    for (const auto &[name, maker] : makers)
+      all[name] = maker();
+    return all;
   }
 
   /// All names, in alphabetical order.
@@ -53,7 +72,38 @@ public:
   }
 
 private:
+  const std::string kind;
   std::map<std::string, Maker> makers;
+};
+
+/// A registry for each family of a kind of plug-ins. A family that does not exist ends the program
+/// when it starts.
+template <typename Registry>
+class RegistryFamilies
+{
+public:
+  RegistryFamilies(const std::string &kind, const std::vector<std::string> &families) : kind(kind)
+  {
+    for (const std::string &family : families)
+      registries.emplace(family, family + " " + kind);
+  }
+
+  Registry &operator[](const std::string &family)
+  {
+    const auto registry = registries.find(family);
+    if (registry == registries.end()) {
+      std::string known;
+      for (const auto &entry : registries)
+        known += (known.empty() ? "'" : ", '") + entry.first + "'";
+      end_for_registration("There is no " + kind + " of the family '" + family +
+                           "'. The families are " + known + ".");
+    }
+    return registry->second;
+  }
+
+private:
+  const std::string kind;
+  std::map<std::string, Registry> registries;
 };
 
 } // namespace eunoe

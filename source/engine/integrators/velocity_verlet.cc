@@ -5,7 +5,7 @@ namespace eunoe {
 
 IntegratorRegistry &integrators()
 {
-  static IntegratorRegistry registry;
+  static IntegratorRegistry registry("integration method");
   return registry;
 }
 

@@ -5,7 +5,7 @@ namespace eunoe {
 
 LoadRegistry &loads()
 {
-  static LoadRegistry registry;
+  static LoadRegistry registry("load");
   return registry;
 }
 

@@ -12,7 +12,7 @@ const std::string section = "insertion info";
 
 InsertionRegistry &insertion_methods()
 {
-  static InsertionRegistry registry;
+  static InsertionRegistry registry("insertion method");
   return registry;
 }
 

@@ -10,7 +10,7 @@ namespace eunoe {
 
 ShapeRegistry &named_shapes()
 {
-  static ShapeRegistry registry;
+  static ShapeRegistry registry("shape");
   return registry;
 }
 

@@ -5,7 +5,7 @@ namespace eunoe {
 
 SizeDistributionRegistry &size_distributions()
 {
-  static SizeDistributionRegistry registry;
+  static SizeDistributionRegistry registry("size distribution");
   return registry;
 }
 
