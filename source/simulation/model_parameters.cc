@@ -101,8 +101,6 @@ void ModelParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "epsd inertia", epsd_inertia, "contact point|centre",
                   "EPSD: point about which the moments of inertia in the damping are taken. Ai et "
                   "al. (2011) use the contact point.");
-  declare::choice(prm, "integration method", integration_method, "velocity_verlet|explicit_euler",
-                  "Time integration.");
   prm.add_action("epsd inertia", [this](const std::string &value) {
     options.epsd_inertia_about_contact = value == "contact point";
   });

@@ -73,11 +73,15 @@ Parameters::Parameters(const SectionCounts &counts)
 
 std::vector<ParameterSection *> Parameters::sections()
 {
-  std::vector<ParameterSection *> all = {
-      &control,         &mesh,           &refinement,      &grid_motion,
-      &boundaries,      &physics,        &insertion,       &model,
-      &detection,       &faults,         &contact_history, &load_balancing,
-      &sparse_contacts, &floating_walls, &solids,          &restart};
+  std::vector<ParameterSection *> all = {&control,        &mesh,
+                                         &refinement,     &grid_motion,
+                                         &boundaries,     &physics,
+                                         &insertion,      &integration,
+                                         &model,          &detection,
+                                         &faults,         &contact_history,
+                                         &load_balancing, &sparse_contacts,
+                                         &floating_walls, &solids,
+                                         &restart};
   for (auto &[name, load] : loads)
     all.push_back(load.get());
   for (auto &[name, observable] : observables)

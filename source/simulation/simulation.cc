@@ -82,7 +82,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log, const P
       sleeper(parameters.sparse_contacts, clock.time_step()),
       system(domain, physics_of(parameters, inserter, process.get(), sleeper),
              skin(parameters, inserter), largest_diameter(parameters, inserter), progress.timers),
-      integrator(integrators().make(parameters.model.integration_method)),
+      integrator(parameters.integration.make()),
       criterion(parameters.detection, skin(parameters, inserter), comm),
       balancer(parameters.load_balancing),
       // Two bodies must not come closer by more than the skin without a search; half of it is the

@@ -1,6 +1,7 @@
 #ifndef eunoe_engine_integrator_h
 #define eunoe_engine_integrator_h
 
+#include <eunoe/core/plugin_section.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/state/particle_arrays.h>
 
@@ -31,8 +32,27 @@ public:
   virtual void complete(ParticleArrays &particles, double dt) = 0;
 };
 
-using IntegratorRegistry = Registry<std::unique_ptr<Integrator>>;
+/// What the input says of an integrator, in entries that the integrator's own file declares.
+using IntegratorSection = PluginSection<Integrator>;
+
+using IntegratorRegistry = Registry<std::unique_ptr<IntegratorSection>>;
 IntegratorRegistry &integrators();
+
+/// The entry `integration method` of `subsection model parameters`, and those of the integrators.
+class IntegratorParameters : public ParameterSection
+{
+public:
+  IntegratorParameters();
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+
+  std::unique_ptr<Integrator> make() const;
+
+private:
+  std::string method = "velocity_verlet";
+  std::map<std::string, std::unique_ptr<IntegratorSection>> sections;
+};
 
 } // namespace eunoe
 

@@ -1,7 +1,7 @@
 #ifndef eunoe_engine_load_h
 #define eunoe_engine_load_h
 
-#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/plugin_section.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/state/particle_arrays.h>
 
@@ -27,14 +27,7 @@ public:
 };
 
 /// What the input file says of a load, in entries that the load's own file declares, if it has any.
-class LoadSection : public ParameterSection
-{
-public:
-  void declare(dealii::ParameterHandler &) override {}
-
-  /// Null where the load does not act.
-  virtual std::unique_ptr<Load> make(const PhysicalProperties &physics) const = 0;
-};
+using LoadSection = PluginSection<Load, const PhysicalProperties &>;
 
 using LoadRegistry = Registry<std::unique_ptr<LoadSection>>;
 LoadRegistry &loads();

@@ -14,7 +14,6 @@ struct ModelParameters : public ParameterSection
   std::string rolling_method = "constant";
   ContactLawOptions options;
   std::string epsd_inertia = "contact point";
-  std::string integration_method = "velocity_verlet";
 
   /// The laws behind the names of the input file.
   ContactModelNames laws() const;

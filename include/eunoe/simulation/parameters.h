@@ -4,6 +4,7 @@
 #include <eunoe/checkpoint/restart_parameters.h>
 #include <eunoe/domain/domain.h>
 #include <eunoe/engine/contact_history.h>
+#include <eunoe/engine/integrator.h>
 #include <eunoe/engine/load.h>
 #include <eunoe/engine/load_balancing.h>
 #include <eunoe/engine/particle_guard.h>
@@ -71,6 +72,7 @@ public:
   BoundaryParameters boundaries;
   PhysicalProperties physics;
   InsertionParameters insertion;
+  IntegratorParameters integration;
   ModelParameters model;
   ContactDetectionParameters detection;
   FaultParameters faults;

@@ -28,9 +28,8 @@ public:
   void complete(ParticleArrays &, double) override {}
 };
 
-const IntegratorRegistry::Registration registration(integrators(), "explicit_euler", [] {
-  return std::make_unique<ExplicitEuler>();
-});
+const IntegratorRegistry::Registration registration(
+    integrators(), "explicit_euler", IntegratorSection::without_entries<ExplicitEuler>);
 
 } // namespace
 } // namespace eunoe

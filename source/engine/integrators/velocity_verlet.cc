@@ -2,13 +2,6 @@
 #include <eunoe/engine/integrator.h>
 
 namespace eunoe {
-
-IntegratorRegistry &integrators()
-{
-  static IntegratorRegistry registry("integration method");
-  return registry;
-}
-
 namespace {
 
 EUNOE_ALWAYS_INLINE void kick(Quad &velocity, const Quad &force, const double dt)
@@ -91,9 +84,8 @@ private:
   bool half_pending = false;
 };
 
-const IntegratorRegistry::Registration registration(integrators(), "velocity_verlet", [] {
-  return std::make_unique<VelocityVerlet>();
-});
+const IntegratorRegistry::Registration registration(
+    integrators(), "velocity_verlet", IntegratorSection::without_entries<VelocityVerlet>);
 
 } // namespace
 } // namespace eunoe
