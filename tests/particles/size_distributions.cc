@@ -2,6 +2,8 @@
 
 #include <eunoe/core/random.h>
 
+#include <deal.II/base/parameter_handler.h>
+
 #include "../tests.h"
 
 #include <fstream>
@@ -12,6 +14,14 @@ using namespace test;
 namespace {
 
 constexpr unsigned int n = 200000;
+
+/// Reads further entries, as an input file has them.
+void set(SizeDistributionParameters &parameters, const std::string &entries)
+{
+  dealii::ParameterHandler prm;
+  parameters.declare(prm);
+  prm.parse_input_from_string(entries);
+}
 
 std::vector<double> draw(const SizeDistributionParameters &parameters)
 {
@@ -36,9 +46,14 @@ void test_classes()
   SizeDistributionParameters p;
   p.type = "custom";
   p.basis = "volume";
-  p.diameters = {52.6220e-6, 57.7666e-6, 63.4141e-6, 69.6138e-6,
-                 76.4196e-6, 83.8907e-6, 92.0923e-6, 101.0960e-6};
-  p.fractions = {0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927, 0.050544};
+  const std::vector<double> classes = {52.6220e-6, 57.7666e-6, 63.4141e-6, 69.6138e-6,
+                                       76.4196e-6, 83.8907e-6, 92.0923e-6, 101.0960e-6};
+  const std::vector<double> fractions = {0.146168, 0.168842, 0.168577, 0.152019,
+                                         0.129519, 0.105404, 0.078927, 0.050544};
+  set(p, "set custom diameters = 52.6220e-6, 57.7666e-6, 63.4141e-6, 69.6138e-6, 76.4196e-6, "
+         "83.8907e-6, 92.0923e-6, 101.0960e-6\n"
+         "set custom distribution diameters probabilities = 0.146168, 0.168842, 0.168577, "
+         "0.152019, 0.129519, 0.105404, 0.078927, 0.050544\n");
   const auto diameters = draw(p);
   std::map<double, double> volume;
   double total = 0.;
@@ -46,12 +61,12 @@ void test_classes()
     volume[d] += d * d * d;
     total += d * d * d;
   }
-  bool all = volume.size() == p.diameters.size();
-  for (std::size_t c = 0; c < p.diameters.size(); ++c) {
-    const double share = volume[p.diameters[c]] / total;
+  bool all = volume.size() == classes.size();
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    const double share = volume[classes[c]] / total;
     // Four standard errors of a count of that many particles, as a share of the volume.
-    const double count = volume[p.diameters[c]] / std::pow(p.diameters[c], 3);
-    all = all && std::abs(share - p.fractions[c]) < 4. * p.fractions[c] / std::sqrt(count) + 1e-5;
+    const double count = volume[classes[c]] / std::pow(classes[c], 3);
+    all = all && std::abs(share - fractions[c]) < 4. * fractions[c] / std::sqrt(count) + 1e-5;
   }
   check("volume shares of the classes", all);
   check_relative("mean cube", mean_power(diameters, 3.), p.make()->mean_cube(), 5e-3);
@@ -59,8 +74,8 @@ void test_classes()
   p.basis = "number";
   double first = 0.;
   for (const double d : draw(p))
-    first += d == p.diameters[0] ? 1. : 0.;
-  check_close("number shares of the classes", first / n, p.fractions[0], 4. * 0.36 / std::sqrt(n));
+    first += d == classes[0] ? 1. : 0.;
+  check_close("number shares of the classes", first / n, fractions[0], 4. * 0.36 / std::sqrt(n));
 }
 
 void test_normal()
@@ -114,8 +129,9 @@ void test_weighting()
 {
   SizeDistributionParameters p;
   p.type = "custom";
-  p.diameters = {50e-6, 100e-6};
-  p.fractions = {0.3, 0.7};
+  const double smaller = 50e-6;
+  set(p, "set custom diameters = 50e-6, 100e-6\n"
+         "set custom distribution diameters probabilities = 0.3, 0.7\n");
   const auto by_number = draw(p);
   p.basis = "volume";
   p.weighting_exponent = 3.;
@@ -124,7 +140,7 @@ void test_weighting()
   p.weighting_exponent = -2.;
   double small = 0.;
   for (const double d : draw(p))
-    small += d == p.diameters[0] ? 1. : 0.;
+    small += d == smaller ? 1. : 0.;
   // The shares of the number go with the inverse fifth power.
   const double share = 0.3 * 32. / (0.3 * 32. + 0.7);
   check_close("more fines", small / n, share, 4. * std::sqrt(share * (1. - share) / n));
@@ -139,9 +155,9 @@ void test_tables()
   }
   SizeDistributionParameters p;
   p.type = "custom";
-  p.from_file = true;
-  p.file = "sizes.txt";
-  p.function_type = "CDF";
+  set(p, "set custom distribution from file = true\n"
+         "set custom distribution filename = sizes.txt\n"
+         "set custom distribution probability function type = CDF\n");
   const auto share_below = [&p](double d) {
     double below = 0.;
     for (const double drawn : draw(p))
@@ -152,7 +168,7 @@ void test_tables()
   check_close("CDF: classes", share_below(60e-6), 0.5, error);
   check("CDF: nothing between the classes", share_below(99e-6) == share_below(60e-6));
 
-  p.interpolates = true;
+  set(p, "set custom distribution interpolation = true\n");
   // Half of the share between 60 and 100 um.
   check_close("interpolated: between diameters", share_below(80e-6), 0.75, error);
   check_close("interpolated: the first share at its diameter", share_below(40e-6), 0.2, error);
@@ -182,7 +198,7 @@ void test_tables()
   check_close("cut-offs", share_below(60e-6), 0.15 / 0.4, error);
   check("cut-offs: smallest and largest",
         p.make()->smallest() == 50e-6 && p.make()->largest() == 80e-6);
-  p.interpolates = false;
+  set(p, "set custom distribution interpolation = false\n");
   check("cut-offs of classes", share_below(60e-6) > 0.9999);
 }
 

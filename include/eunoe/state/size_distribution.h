@@ -26,13 +26,33 @@ public:
   virtual double mean_cube() const = 0;
 };
 
-/// Diameters (m) and the share of each.
-struct SizeTable
+struct SizeDistributionParameters;
+
+/// What the input says of one kind of distribution, in entries that its own file declares in the
+/// subsection of a particle type.
+class SizeDistributionSection
 {
-  std::vector<double> diameters, shares;
+public:
+  virtual ~SizeDistributionSection() = default;
+
+  virtual void declare(dealii::ParameterHandler &) {}
+
+  /// Asked of the chosen kind only.
+  /// @param path of the particle type
+  virtual void check(const SizeDistributionParameters &, const ParameterCheck &,
+                     const ParameterCheck::Path & /*path*/) const
+  {
+  }
+
+  /// @param shared entries that several kinds read
+  virtual std::unique_ptr<SizeDistribution> make(
+      const SizeDistributionParameters &shared) const = 0;
 };
 
-/// The entries of a particle type that describe its sizes.
+using SizeDistributionRegistry = Registry<std::unique_ptr<SizeDistributionSection>>;
+SizeDistributionRegistry &size_distributions();
+
+/// The entries of a particle type that describe its sizes. Copies share the entries of the kinds.
 struct SizeDistributionParameters
 {
   std::string type = "uniform";
@@ -40,21 +60,17 @@ struct SizeDistributionParameters
   double standard_deviation = 0.;
   double smallest = -1.; ///< cut-off; -1: 2.5 standard deviations below the mean, none for custom
   double largest = -1.;
-  std::vector<double> diameters = {0.001, 0.0005};
-  std::vector<double> fractions = {0.6, 0.4};
-  bool from_file = false; ///< the two lists are in a file
-  std::string file = "custom_distribution.txt";
-  std::string function_type = "PDF"; ///< of each diameter, or "CDF": up to it
-  bool interpolates = false;         ///< sizes between the listed ones
-  std::string basis = "number";      ///< what the distribution counts: "number" or "volume"
-  double weighting_exponent = 0.;    ///< of the diameter, over all shares
+  std::string basis = "number";   ///< what the distribution counts: "number" or "volume"
+  double weighting_exponent = 0.; ///< of the diameter, over all shares
   unsigned int seed = 1;
+
+  SizeDistributionParameters();
 
   void declare(dealii::ParameterHandler &prm);
   void check(const ParameterCheck &check, const ParameterCheck::Path &path) const;
   std::unique_ptr<SizeDistribution> make() const;
-  /// Of a custom distribution. Throws std::invalid_argument if its file cannot be read.
-  SizeTable table() const;
+  /// For kinds that need an average diameter.
+  void check_average(const ParameterCheck &check, const ParameterCheck::Path &path) const;
   /// Factor on the share of a diameter (m), of any scale.
   double weight(double diameter) const
   {
@@ -62,14 +78,10 @@ struct SizeDistributionParameters
   }
 
 private:
-  void check_custom(const ParameterCheck &check, const ParameterCheck::Path &path) const;
-
   static constexpr double weighting_scale = 50e-6;
-};
 
-using SizeDistributionRegistry =
-    Registry<std::unique_ptr<SizeDistribution>, const SizeDistributionParameters &>;
-SizeDistributionRegistry &size_distributions();
+  std::map<std::string, std::shared_ptr<SizeDistributionSection>> kinds;
+};
 
 } // namespace eunoe
 

@@ -1,3 +1,4 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/quoted_text.h>
 
@@ -12,6 +13,12 @@
 
 namespace eunoe {
 namespace {
+
+/// Diameters (m) and the share of each.
+struct SizeTable
+{
+  std::vector<double> diameters, shares;
+};
 
 /// Classes of equal diameters, with their shares of the number.
 class Classes : public SizeDistribution
@@ -137,18 +144,6 @@ SizeTable read_table(const std::string &file)
   return table;
 }
 
-std::unique_ptr<SizeDistribution> make_custom(const SizeDistributionParameters &p)
-{
-  try {
-    const SizeTable table = p.table();
-    if (table.diameters.size() != table.shares.size())
-      throw cannot_be_made("there are not as many probabilities as diameters.");
-    return p.interpolates ? make_spread(p, table) : make_classes(p, table);
-  } catch (const std::invalid_argument &error) {
-    throw cannot_be_made("the file " + std::string(error.what()));
-  }
-}
-
 /// Whether shares are 1, or 100 of percent, in all.
 void check_sum(const SizeTable &table, const bool is_cdf, const ParameterCheck &check,
                const ParameterCheck::Path &path, const std::string &entry)
@@ -174,12 +169,49 @@ void check_sum(const SizeTable &table, const bool is_cdf, const ParameterCheck &
                 mend);
 }
 
-const SizeDistributionRegistry::Registration registration(size_distributions(), "custom",
-                                                          make_custom);
+class Custom : public SizeDistributionSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const SizeDistributionParameters &shared, const ParameterCheck &check,
+             const ParameterCheck::Path &path) const override;
+  std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &shared) const override;
 
-} // namespace
+private:
+  /// Throws std::invalid_argument if the file cannot be read.
+  SizeTable table() const;
 
-SizeTable SizeDistributionParameters::table() const
+  std::vector<double> diameters = {0.001, 0.0005};
+  std::vector<double> fractions = {0.6, 0.4};
+  bool from_file = false; ///< the two lists are in a file
+  std::string file = "custom_distribution.txt";
+  std::string function_type = "PDF"; ///< of each diameter, or "CDF": up to it
+  bool interpolates = false;         ///< sizes between the listed ones
+};
+
+void Custom::declare(dealii::ParameterHandler &prm)
+{
+  prm.add_parameter("custom distribution diameters values", diameters,
+                    "Diameters of the classes of a custom distribution (m).",
+                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
+  prm.declare_alias("custom distribution diameters values", "custom diameters");
+  prm.add_parameter("custom distribution diameters probabilities", fractions,
+                    "Share of each class of a custom distribution, which sum to 1; of a CDF, the "
+                    "share up to each diameter.",
+                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
+  prm.add_parameter("custom distribution from file", from_file,
+                    "Whether diameters and probabilities of a custom distribution are in a file.");
+  prm.add_parameter("custom distribution filename", file,
+                    "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
+                    "space.");
+  declare::choice(prm, "custom distribution probability function type", function_type, "PDF|CDF",
+                  "Whether probabilities are those of each diameter or of all up to it.");
+  prm.add_parameter("custom distribution interpolation", interpolates,
+                    "Whether each share is spread evenly over the diameters since the one before, "
+                    "instead of having its own.");
+}
+
+SizeTable Custom::table() const
 {
   SizeTable result = from_file ? read_table(file) : SizeTable{diameters, fractions};
   // What a CDF gains at each diameter.
@@ -188,8 +220,20 @@ SizeTable SizeDistributionParameters::table() const
   return result;
 }
 
-void SizeDistributionParameters::check_custom(const ParameterCheck &check,
-                                              const ParameterCheck::Path &path) const
+std::unique_ptr<SizeDistribution> Custom::make(const SizeDistributionParameters &shared) const
+{
+  try {
+    const SizeTable read = table();
+    if (read.diameters.size() != read.shares.size())
+      throw cannot_be_made("there are not as many probabilities as diameters.");
+    return interpolates ? make_spread(shared, read) : make_classes(shared, read);
+  } catch (const std::invalid_argument &error) {
+    throw cannot_be_made("the file " + std::string(error.what()));
+  }
+}
+
+void Custom::check(const SizeDistributionParameters &shared, const ParameterCheck &check,
+                   const ParameterCheck::Path &path) const
 {
   const std::string of_diameters =
       from_file ? "custom distribution filename" : "custom distribution diameters values";
@@ -223,7 +267,7 @@ void SizeDistributionParameters::check_custom(const ParameterCheck &check,
                 function_type == "CDF" ? "decreases, which no CDF does." : "has a negative value.",
                 "Correct the value.");
   check_sum(read, function_type == "CDF", check, path, of_shares);
-  const auto [low, high] = range_of(*this);
+  const auto [low, high] = range_of(shared);
   double within = 0.;
   for (std::size_t c = 0; c < n; ++c) {
     const double from = interpolates && c > 0 ? read.diameters[c - 1] : read.diameters[c];
@@ -235,4 +279,9 @@ void SizeDistributionParameters::check_custom(const ParameterCheck &check,
                 "Widen the cut-offs.");
 }
 
+const SizeDistributionRegistry::Registration registration(size_distributions(), "custom", [] {
+  return std::make_unique<Custom>();
+});
+
+} // namespace
 } // namespace eunoe

@@ -17,10 +17,27 @@ private:
   const double d;
 };
 
-const SizeDistributionRegistry::Registration registration(
-    size_distributions(), "uniform", [](const SizeDistributionParameters &parameters) {
-      return std::make_unique<Uniform>(parameters.average_diameter);
-    });
+class UniformSection : public SizeDistributionSection
+{
+public:
+  void check(const SizeDistributionParameters &shared, const ParameterCheck &check,
+             const ParameterCheck::Path &path) const override
+  {
+    check.require(shared.weighting_exponent == 0., path, "size weighting exponent",
+                  "is " + format(shared.weighting_exponent) + ", but all particles have one size.",
+                  "Remove the entry, or choose another 'size distribution type'.");
+    shared.check_average(check, path);
+  }
+
+  std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &shared) const override
+  {
+    return std::make_unique<Uniform>(shared.average_diameter);
+  }
+};
+
+const SizeDistributionRegistry::Registration registration(size_distributions(), "uniform", [] {
+  return std::make_unique<UniformSection>();
+});
 
 } // namespace
 } // namespace eunoe
