@@ -86,6 +86,13 @@ void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm co
   });
 }
 
+double file_size(const std::string &path)
+{
+  std::error_code failure;
+  const auto size = fs::file_size(path, failure);
+  return failure ? 0. : static_cast<double>(size);
+}
+
 void remove_file(const std::string &path)
 {
   std::error_code failure;

@@ -6,11 +6,7 @@
 namespace eunoe {
 
 class Log;
-class Parameters;
 struct Background;
-
-/// Before the insertion is made.
-void announce_insertion(const Parameters &parameters, Log &log);
 
 /// Before the mesh is made.
 void announce_mesh(const Background &background, Log &log);

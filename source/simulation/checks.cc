@@ -69,10 +69,9 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
                        " m that particles can reach, so that two particles could touch on both "
                        "sides.",
                    "Make the domain longer in that direction.");
-  const InsertionParameters &insertion = parameters.insertion;
   const std::vector<BoundaryCondition> &conditions = parameters.boundaries.conditions;
   if (domain.moves() &&
-      (parameters.process_name != "none" || insertion.method == "plane" ||
+      (parameters.process_name != "none" || parameters.insertion.chosen().needs_cells() ||
        std::any_of(conditions.begin(), conditions.end(), [](const BoundaryCondition &c) {
          return c.type != "fixed_wall" && c.type != "outlet";
        })))
@@ -80,20 +79,6 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
                  "a mesh that moves has walls and outlets only, no surfaces that move in place nor "
                  "periodic ones, and neither a process nor insertion by 'plane'.",
                  "Give 'none', or take these out.");
-  const bool inserts = std::any_of(parameters.physics.types.begin(), parameters.physics.types.end(),
-                                   [](const ParticleType &type) { return type.number > 0; });
-  if (parameters.process_name == "none" && insertion.method == "volume" && inserts)
-    for (unsigned int d = 0; d < 3; ++d)
-      if (insertion.box_lower[d] < domain.lower()[d] - 1e-12 ||
-          insertion.box_upper[d] > domain.upper()[d] + 1e-12)
-      {
-        problems.add("subsection 'insertion info' / entry 'insertion box points coordinates':",
-                     "the box reaches out of the mesh in direction " + std::to_string(d) +
-                         ", which spans " + format(domain.lower()[d]) + " to " +
-                         format(domain.upper()[d]) + " m.",
-                     "Move the box inside, or enlarge the mesh.");
-        break;
-      }
 }
 
 } // namespace eunoe

@@ -36,20 +36,14 @@ std::size_t number_of_events(const Parameters &parameters)
 
 namespace {
 
-/// Whether the input gives the particles one by one, whatever the diameters of their type.
-bool gives_particles(const Parameters &parameters)
-{
-  const std::string &method = parameters.insertion.method;
-  return parameters.process_name == "none" && (method == "list" || method == "file");
-}
-
 /// Diameters of each type that has particles: those of the particles that are given one by one,
 /// else those of the types.
-std::vector<DiameterRange> find_diameters(const Parameters &parameters,
+/// @param are_given whether the input gives the particles one by one
+std::vector<DiameterRange> find_diameters(const Parameters &parameters, const bool are_given,
                                           const std::vector<std::vector<NewParticle>> &events,
                                           MPI_Comm comm)
 {
-  if (gives_particles(parameters)) {
+  if (are_given) {
     // The largest of the negatives, so that one call serves both.
     double extremes[2] = {-std::numeric_limits<double>::max(), 0.};
     for (const std::vector<NewParticle> &event : events)
@@ -92,10 +86,12 @@ Forecast Simulation::foresee(const bool writes) const
   Forecast forecast;
   std::vector<std::vector<NewParticle>> events;
   const Insertion *const insertion = inserter.get_method();
+  const bool are_given = insertion != nullptr && insertion->gives_particles();
   const bool is_continued = checkpoints.opened() != nullptr;
-  if (insertion != nullptr && (!is_continued || gives_particles(parameters)))
+  if (insertion != nullptr && (!is_continued || are_given))
     events = insertion->known_events();
-  const std::vector<DiameterRange> diameters = find_diameters(parameters, events, communicator());
+  const std::vector<DiameterRange> diameters =
+      find_diameters(parameters, are_given, events, communicator());
   judge_time_step(parameters, diameters, forecast);
   forecast.facts.push_back("Domain: " + describe(Box{domain.lower(), domain.upper()}) + ", " +
                            format_count(domain.n_cells(), "cell", "cells") + " of at least " +

@@ -156,8 +156,7 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
     wanted += type.number;
   const std::size_t n_events = number_of_events(parameters);
   const auto coming = static_cast<double>(insertion.supply(n_events));
-  const std::string &method = parameters.insertion.method;
-  const bool counts = method != "list" && method != "file";
+  const bool counts = !insertion.gives_particles();
   const std::string number = "subsection 'lagrangian physical properties' / subsection 'particle "
                              "type 0' / entry 'number of particles':";
   if (coming > most_particles)
@@ -201,14 +200,13 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
 {
   Problems &problems = forecast.problems;
   judge_number(parameters, insertion, problems);
-  const std::string &method = parameters.insertion.method;
-  if (method == "volume" && !parameters.insertion.removes && number_of_events(parameters) > 1 &&
-      insertion.supply(2) > insertion.supply(1))
+  if (insertion.repeats_places() && !parameters.insertion.removes &&
+      number_of_events(parameters) > 1 && insertion.supply(2) > insertion.supply(1))
     judge_interval(parameters, insertion.largest_diameter(), problems);
   Overlap of_pairs, with_solids;
   for (std::size_t e = 0; e < events.size(); ++e) {
     const std::vector<NewParticle> &event = events[e];
-    if (method == "volume") {
+    if (!insertion.gives_particles()) {
       std::vector<Vec3> places;
       for (const NewParticle &particle : event)
         places.push_back(particle.position);

@@ -22,9 +22,9 @@ std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm
 {
   if (parameters.process_name != "none")
     return nullptr;
-  announce_insertion(parameters, log);
-  return insertion_methods().make(parameters.insertion.method, parameters.insertion,
-                                  parameters.physics, comm);
+  const InsertionSection &method = parameters.insertion.chosen();
+  method.announce(parameters.insertion, parameters.physics, log);
+  return method.make(parameters.insertion, parameters.physics, comm);
 }
 
 /// The mesh, with a word before it if its making takes long.
@@ -32,9 +32,8 @@ std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm
 Background background_of(const Parameters &parameters, const bool is_check, Log &log)
 {
   Background background = {parameters.mesh, parameters.refinement, parameters.grid_motion.make()};
-  // Insertion by a plane counts the cells.
-  background.is_only_looked_at =
-      is_check && (parameters.process_name != "none" || parameters.insertion.method != "plane");
+  background.is_only_looked_at = is_check && (parameters.process_name != "none" ||
+                                              !parameters.insertion.chosen().needs_cells());
   announce_mesh(background, log);
   return background;
 }

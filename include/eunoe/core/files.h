@@ -23,6 +23,9 @@ void write_file(const std::string &path, const std::string &text, bool sync = fa
 /// writes: with MPI's own files, some ranks would learn of a full disk, and none of some.
 void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm comm);
 
+/// Size of a file (bytes), 0 if there is none.
+double file_size(const std::string &path);
+
 /// Removes a file if there is one. To be called by one rank.
 void remove_file(const std::string &path);
 

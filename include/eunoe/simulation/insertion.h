@@ -13,6 +13,7 @@
 namespace eunoe {
 
 class Domain;
+class Log;
 struct Solid;
 
 /// What an insertion finds where its particles are to come.
@@ -25,19 +26,11 @@ struct Surroundings
   double time;                      ///< (s)
 };
 
-/// `subsection insertion info`.
-struct InsertionParameters : public ParameterSection
+/// Entries of `subsection insertion info` that several methods read.
+struct InsertionSettings
 {
-  std::string method = "volume";
-  unsigned int per_event = 0; ///< "inserted number of particles at each time step"
   unsigned int frequency = 0; ///< steps between events; 0: one event only
-  std::vector<std::string> files = {"particles.input"};
-  std::vector<double> list_x, list_y, list_z, list_vx, list_vy, list_vz, list_wx, list_wy, list_wz,
-      list_diameters;
-  std::vector<int> directions = {0, 1, 2};
   Vec3 box_lower, box_upper = {1., 1., 1.};
-  Vec3 plane_point, plane_normal = {1., 0., 0.};
-  double distance_threshold = 1.;
   double maximum_offset = 0.; ///< Lethe has 1, by which neighbours overlap
   unsigned int seed = 1;
   Vec3 velocity, spin;
@@ -45,8 +38,8 @@ struct InsertionParameters : public ParameterSection
   bool removes = false; ///< empties the removal box before every event
   Vec3 removal_lower, removal_upper = {1., 1., 1.};
 
-  void declare(dealii::ParameterHandler &prm) override;
-  void check(const ParameterCheck &check) const override;
+  /// For methods that fill the box.
+  void check_box(const ParameterCheck &check) const;
 };
 
 /// Supplies the particles of one event after another. Whatever is wrong with its input is found
@@ -61,6 +54,13 @@ public:
 
   /// Number of particles that @p n_events events supply together.
   virtual std::size_t supply(std::size_t n_events) const = 0;
+
+  /// Whether the input gives the particles one by one, whatever their type says of numbers and
+  /// sizes.
+  virtual bool gives_particles() const { return false; }
+
+  /// Whether every event comes to the same places.
+  virtual bool repeats_places() const { return false; }
 
   /// What is wrong with the insertion in the light of the mesh; collective.
   virtual void check(const Domain &, Problems &) const {}
@@ -88,9 +88,46 @@ public:
   virtual bool finished() const = 0;
 };
 
-using InsertionRegistry = Registry<std::unique_ptr<Insertion>, const InsertionParameters &,
-                                   const PhysicalProperties &, MPI_Comm>;
+/// What the input says of a method, in entries of `subsection insertion info` that the method's own
+/// file declares.
+class InsertionSection
+{
+public:
+  virtual ~InsertionSection() = default;
+
+  /// Called within the subsection.
+  virtual void declare(dealii::ParameterHandler &) {}
+
+  /// Asked of the chosen method only.
+  virtual void check(const InsertionSettings &, const ParameterCheck &) const {}
+
+  /// Says what will take more than a second.
+  virtual void announce(const InsertionSettings &, const PhysicalProperties &, Log &) const {}
+
+  /// Whether the insertion asks for cells of a mesh that stays where it is.
+  virtual bool needs_cells() const { return false; }
+
+  virtual std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                          const PhysicalProperties &physics,
+                                          MPI_Comm comm) const = 0;
+};
+
+using InsertionRegistry = Registry<std::unique_ptr<InsertionSection>>;
 InsertionRegistry &insertion_methods();
+
+/// `subsection insertion info`.
+struct InsertionParameters : public ParameterSection, public InsertionSettings
+{
+  static constexpr const char *section = "insertion info";
+
+  std::string method = "volume";
+  std::map<std::string, std::unique_ptr<InsertionSection>> methods = insertion_methods().make_all();
+
+  const InsertionSection &chosen() const { return *methods.at(method); }
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+};
 
 /// Particles of all types that are still to come, one type after another.
 class ParticleSupply

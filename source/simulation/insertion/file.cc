@@ -1,4 +1,8 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/core/files.h>
+#include <eunoe/core/log.h>
+#include <eunoe/core/machine.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
@@ -19,14 +23,17 @@ bool may_lack(const std::string &column)
 class File : public Insertion
 {
 public:
-  File(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
-      : repeats(parameters.frequency > 0), density(physics.types[0].density)
+  File(const std::vector<std::string> &names, const bool repeats, const PhysicalProperties &physics,
+       MPI_Comm comm)
+      : repeats(repeats), density(physics.types[0].density)
   {
-    for (const std::string &file : parameters.files)
+    for (const std::string &file : names)
       read(file, comm);
   }
 
   double largest_diameter() const override { return largest; }
+
+  bool gives_particles() const override { return true; }
 
   std::size_t supply(const std::size_t n_events) const override
   {
@@ -124,11 +131,45 @@ private:
   std::size_t n_events = 0;
 };
 
-const InsertionRegistry::Registration registration(
-    insertion_methods(), "file",
-    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
-      return std::make_unique<File>(parameters, physics, comm);
-    });
+class FileSection : public InsertionSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.add_parameter(
+        "list of input files", files,
+        "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
+        "w_x; w_y; w_z; diameters'; after the last the first is used again.");
+  }
+
+  void check(const InsertionSettings &, const ParameterCheck &check) const override
+  {
+    check.require(!files.empty(), {InsertionParameters::section}, "list of input files",
+                  "is empty.", "Name at least one file.");
+  }
+
+  void announce(const InsertionSettings &, const PhysicalProperties &, Log &log) const override
+  {
+    // They take a second, more or less.
+    constexpr double many_bytes = 5e7;
+    for (const std::string &file : files)
+      if (file_size(file) > many_bytes)
+        log.line("Reading " + format_bytes(file_size(file)) + " of particles from " +
+                 shortened(file) + " ...");
+  }
+
+  std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                  const PhysicalProperties &physics, MPI_Comm comm) const override
+  {
+    return std::make_unique<File>(files, settings.frequency > 0, physics, comm);
+  }
+
+private:
+  std::vector<std::string> files = {"particles.input"};
+};
+
+const InsertionRegistry::Registration registration(insertion_methods(), "file",
+                                                   [] { return std::make_unique<FileSection>(); });
 
 } // namespace
 } // namespace eunoe

@@ -257,8 +257,8 @@ std::vector<Vec3> Packing::pack(const std::vector<double> &radii, const unsigned
 class Packed : public Insertion
 {
 public:
-  Packed(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
-      : parameters(parameters), particles(physics.types), comm(comm)
+  Packed(const InsertionSettings &settings, const PhysicalProperties &physics, MPI_Comm comm)
+      : settings(settings), particles(physics.types), comm(comm)
   {
   }
 
@@ -269,7 +269,7 @@ public:
 
   void check(const Domain &domain, Problems &problems) const override
   {
-    const Vec3 &low = parameters.box_lower, &high = parameters.box_upper;
+    const Vec3 &low = settings.box_lower, &high = settings.box_upper;
     const std::string place =
         "subsection 'insertion info' / entry 'insertion box points coordinates':";
     bool has_room = true, is_inside = true;
@@ -308,8 +308,8 @@ public:
     for (unsigned int d = 0; d < 3; ++d) {
       const double tolerance = 1e-9 * box.length[d];
       const bool spans =
-          box.is_periodic(d) && std::abs(parameters.box_lower[d] - box.origin[d]) <= tolerance &&
-          std::abs(parameters.box_upper[d] - parameters.box_lower[d] - box.length[d]) <= tolerance;
+          box.is_periodic(d) && std::abs(settings.box_lower[d] - box.origin[d]) <= tolerance &&
+          std::abs(settings.box_upper[d] - settings.box_lower[d] - box.length[d]) <= tolerance;
       periods.length[d] = spans ? box.length[d] : 0.;
       periods.origin[d] = spans ? box.origin[d] : 0.;
     }
@@ -323,19 +323,19 @@ public:
       return share;
     const ParticleId first = ids.take(n);
     // A wrong text has been refused when the parameters were checked.
-    const Expressions acceptance(parameters.acceptance, parameters.acceptance_constants, 1);
-    const bool takes_all = parameters.acceptance == "1";
+    const Expressions acceptance(settings.acceptance, settings.acceptance_constants, 1);
+    const bool takes_all = settings.acceptance == "1";
     Packing packing(
-        parameters.box_lower, parameters.box_upper, periods,
+        settings.box_lower, settings.box_upper, periods,
         [&](const Vec3 &x) { return takes_all ? 1. : acceptance.value(0, x, 0.); },
         [this](const Vec3 &x) { return domain->contains(x); }, solids, comm);
-    const std::vector<Vec3> places = packing.pack(radii(first), parameters.seed, first);
+    const std::vector<Vec3> places = packing.pack(radii(first), settings.seed, first);
     const auto [begin, end] = share_of(n, comm);
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle = particles.particle(k, first + static_cast<ParticleId>(k));
       particle.position = places[k];
-      particle.velocity = parameters.velocity;
-      particle.spin = parameters.spin;
+      particle.velocity = settings.velocity;
+      particle.spin = settings.spin;
       share.push_back(particle);
     }
     particles.take(n);
@@ -352,7 +352,7 @@ private:
     return all;
   }
 
-  const InsertionParameters parameters;
+  const InsertionSettings settings;
   ParticleSupply particles;
   MPI_Comm comm;
   PeriodicBox periods;
@@ -360,11 +360,24 @@ private:
   const Domain *domain = nullptr;
 };
 
-const InsertionRegistry::Registration registration(
-    insertion_methods(), "packed",
-    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
-      return std::make_unique<Packed>(parameters, physics, comm);
-    });
+class PackedSection : public InsertionSection
+{
+public:
+  void check(const InsertionSettings &settings, const ParameterCheck &check) const override
+  {
+    settings.check_box(check);
+  }
+
+  std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                  const PhysicalProperties &physics, MPI_Comm comm) const override
+  {
+    return std::make_unique<Packed>(settings, physics, comm);
+  }
+};
+
+const InsertionRegistry::Registration registration(insertion_methods(), "packed", [] {
+  return std::make_unique<PackedSection>();
+});
 
 } // namespace
 } // namespace eunoe

@@ -1,3 +1,4 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/random.h>
 #include <eunoe/domain/mesh.h>
@@ -9,12 +10,19 @@
 namespace eunoe {
 namespace {
 
+/// The points x with normal . (x - point) = 0.
+struct CuttingPlane
+{
+  Vec3 point, normal = {1., 0., 0.};
+};
+
 /// Lethe's "plane": at every event one particle in each empty cell that a plane cuts.
 class Plane : public Insertion
 {
 public:
-  Plane(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
-      : parameters(parameters), particles(physics.types), comm(comm)
+  Plane(const InsertionSettings &settings, const CuttingPlane &plane,
+        const PhysicalProperties &physics, MPI_Comm comm)
+      : settings(settings), plane(plane), particles(physics.types), comm(comm)
   {
   }
 
@@ -38,7 +46,7 @@ public:
       problems.add("subsection 'insertion info' / entry 'insertion plane point':",
                    "the plane cuts no cell of the mesh.",
                    "Move the plane into the mesh, or turn it.");
-    else if (parameters.frequency == 0 && n_cells < particles.n_remaining())
+    else if (settings.frequency == 0 && n_cells < particles.n_remaining())
       problems.add("subsection 'insertion info' / entry 'insertion frequency':",
                    "is 0, so that there is a single event, and the plane cuts " +
                        std::to_string(n_cells) + " cells only for " +
@@ -51,9 +59,9 @@ public:
     cells = all_of_ranks(find_cells(surroundings.domain));
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (unsigned int d = 0; d < 3; ++d) {
-        const double shift = uniform(parameters.seed, Draw::offset, n_events << 32 | c, d) - 0.5;
-        cells[c].place[d] += shift * std::min(parameters.maximum_offset * largest_diameter(),
-                                              2. * cells[c].slack[d]);
+        const double shift = uniform(settings.seed, Draw::offset, n_events << 32 | c, d) - 0.5;
+        cells[c].place[d] +=
+            shift * std::min(settings.maximum_offset * largest_diameter(), 2. * cells[c].slack[d]);
       }
     find_free(surroundings);
   }
@@ -70,8 +78,8 @@ public:
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle = particles.particle(k, first + static_cast<ParticleId>(k));
       particle.position = free[k].place;
-      particle.velocity = parameters.velocity;
-      particle.spin = parameters.spin;
+      particle.velocity = settings.velocity;
+      particle.spin = settings.spin;
       share.push_back(particle);
     }
     particles.take(n);
@@ -93,7 +101,7 @@ private:
   /// This rank's cells that the plane cuts. A plane along faces cuts the cells behind it.
   std::vector<Cell> find_cells(const Domain &domain) const
   {
-    const Vec3 normal = parameters.plane_normal / norm(parameters.plane_normal);
+    const Vec3 normal = plane.normal / norm(plane.normal);
     const double tolerance = 1e-10 * norm(domain.upper() - domain.lower());
     std::vector<Cell> found;
     for (const auto &cell : domain.mesh().triangulation.active_cell_iterators()) {
@@ -101,7 +109,7 @@ private:
         continue;
       double lowest = 0., highest = 0.;
       for (const unsigned int v : cell->vertex_indices()) {
-        const double height = dot(to_vec3(cell->vertex(v)) - parameters.plane_point, normal);
+        const double height = dot(to_vec3(cell->vertex(v)) - plane.point, normal);
         lowest = v == 0 ? height : std::min(lowest, height);
         highest = v == 0 ? height : std::max(highest, height);
       }
@@ -140,8 +148,8 @@ private:
   /// Whether a particle or one of its images is closer to the plane than @p reach (m).
   bool is_near_plane(const Vec3 &x, const PeriodicBox &box, double reach) const
   {
-    const Vec3 normal = parameters.plane_normal / norm(parameters.plane_normal);
-    const Vec3 away = x - parameters.plane_point;
+    const Vec3 normal = plane.normal / norm(plane.normal);
+    const Vec3 away = x - plane.point;
     for (const double i : {-1., 0., 1.})
       for (const double j : {-1., 0., 1.})
         for (const double k : {-1., 0., 1.}) {
@@ -184,18 +192,45 @@ private:
       cells[c].is_free = taken[c] == 0;
   }
 
-  const InsertionParameters parameters;
+  const InsertionSettings settings;
+  const CuttingPlane plane;
   ParticleSupply particles;
   MPI_Comm comm;
   std::uint64_t n_events = 0;
   std::vector<Cell> cells;
 };
 
-const InsertionRegistry::Registration registration(
-    insertion_methods(), "plane",
-    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
-      return std::make_unique<Plane>(parameters, physics, comm);
-    });
+class PlaneSection : public InsertionSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    declare::vector(prm, "insertion plane point", plane.point, "plane: a point of the plane (m).");
+    declare::vector(prm, "insertion plane normal vector", plane.normal,
+                    "plane: direction normal to the plane.");
+  }
+
+  void check(const InsertionSettings &, const ParameterCheck &check) const override
+  {
+    check.require(norm(plane.normal) > 0., {InsertionParameters::section},
+                  "insertion plane normal vector", "is zero.",
+                  "Give the direction normal to the plane.");
+  }
+
+  bool needs_cells() const override { return true; }
+
+  std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                  const PhysicalProperties &physics, MPI_Comm comm) const override
+  {
+    return std::make_unique<Plane>(settings, plane, physics, comm);
+  }
+
+private:
+  CuttingPlane plane;
+};
+
+const InsertionRegistry::Registration registration(insertion_methods(), "plane",
+                                                   [] { return std::make_unique<PlaneSection>(); });
 
 } // namespace
 } // namespace eunoe

@@ -1,5 +1,8 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/core/expressions.h>
+#include <eunoe/core/log.h>
 #include <eunoe/core/random.h>
+#include <eunoe/domain/domain.h>
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
@@ -62,19 +65,28 @@ void VolumeGrid::restrict_to(const std::function<bool(const Vec3 &)> &accepts)
 
 namespace {
 
+/// How the points of the grid are filled.
+struct Filling
+{
+  unsigned int per_event = 0; ///< "inserted number of particles at each time step"
+  std::vector<int> directions = {0, 1, 2};
+  double distance_threshold = 1.; ///< distance of the points over the largest diameter
+};
+
 /// Lethe's "volume": events that fill a grid of points in a box, one type after another.
 class Volume : public Insertion
 {
 public:
-  Volume(const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm)
-      : parameters(parameters), particles(physics.types), comm(comm)
+  Volume(const InsertionSettings &settings, const Filling &filling,
+         const PhysicalProperties &physics, MPI_Comm comm)
+      : settings(settings), per_event(filling.per_event), particles(physics.types), comm(comm)
   {
-    grid.lower = parameters.box_lower;
-    grid.upper = parameters.box_upper;
-    grid.pitch = parameters.distance_threshold * largest_diameter();
-    grid.offset = parameters.maximum_offset * largest_diameter();
-    grid.order = parameters.directions;
-    if (parameters.acceptance != "1")
+    grid.lower = settings.box_lower;
+    grid.upper = settings.box_upper;
+    grid.pitch = filling.distance_threshold * largest_diameter();
+    grid.offset = settings.maximum_offset * largest_diameter();
+    grid.order = filling.directions;
+    if (settings.acceptance != "1")
       restrict_grid();
 
     const std::size_t room = grid.capacity(), wanted = particles.n_remaining();
@@ -91,15 +103,15 @@ public:
           " m at its narrowest. Lengths are in metres: correct the diameter or the box.");
     if (wanted > 0 && room == 0)
       throw UserError(box + "there are particles to insert. Enlarge the box.");
-    if (parameters.frequency == 0 && room < of_next_event())
+    if (settings.frequency == 0 && room < of_next_event())
       throw UserError(box + std::to_string(of_next_event()) +
                       " are to be inserted at once. Enlarge the box, or set an 'insertion "
                       "frequency' for several events.");
-    if (parameters.frequency == 0 && of_next_event() < wanted)
+    if (settings.frequency == 0 && of_next_event() < wanted)
       throw UserError(
           "subsection 'insertion info' / entry 'inserted number of particles at each time step' "
           "is " +
-          std::to_string(parameters.per_event) + ", but all " + std::to_string(wanted) +
+          std::to_string(per_event) + ", but all " + std::to_string(wanted) +
           " particles come in a single event, as the 'insertion frequency' is 0. Set it to 0 for "
           "all at once, or set an 'insertion frequency'.");
   }
@@ -117,6 +129,21 @@ public:
   void skip(std::size_t, std::size_t n_particles) override { particles.take(n_particles); }
 
   bool finished() const override { return particles.n_remaining() == 0; }
+
+  bool repeats_places() const override { return true; }
+
+  void check(const Domain &domain, Problems &problems) const override
+  {
+    for (unsigned int d = 0; d < 3 && particles.n_remaining() > 0; ++d)
+      if (grid.lower[d] < domain.lower()[d] - 1e-12 || grid.upper[d] > domain.upper()[d] + 1e-12) {
+        problems.add("subsection 'insertion info' / entry 'insertion box points coordinates':",
+                     "the box reaches out of the mesh in direction " + std::to_string(d) +
+                         ", which spans " + format(domain.lower()[d]) + " to " +
+                         format(domain.upper()[d]) + " m.",
+                     "Move the box inside, or enlarge the mesh.");
+        break;
+      }
+  }
 
   std::vector<std::vector<NewParticle>> known_events() const override
   {
@@ -142,9 +169,9 @@ private:
     std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; k += stride) {
       NewParticle p = particles.particle(k, first_id + static_cast<ParticleId>(k));
-      p.position = grid.point(k, parameters.seed, p.id);
-      p.velocity = parameters.velocity;
-      p.spin = parameters.spin;
+      p.position = grid.point(k, settings.seed, p.id);
+      p.velocity = settings.velocity;
+      p.spin = settings.spin;
       share.push_back(p);
     }
     return share;
@@ -153,7 +180,7 @@ private:
   void restrict_grid()
   {
     // A wrong text has been refused when the parameters were checked.
-    const Expressions acceptance(parameters.acceptance, parameters.acceptance_constants, 1);
+    const Expressions acceptance(settings.acceptance, settings.acceptance_constants, 1);
     if (grid.capacity() > most_restricted)
       throw UserError("subsection 'insertion info': the acceptance function would be asked at " +
                       std::to_string(grid.capacity()) +
@@ -163,20 +190,76 @@ private:
   std::size_t of_next_event() const
   {
     const std::size_t left = particles.n_remaining();
-    return parameters.per_event > 0 ? std::min<std::size_t>(parameters.per_event, left) : left;
+    return per_event > 0 ? std::min<std::size_t>(per_event, left) : left;
   }
 
-  const InsertionParameters parameters;
+  const InsertionSettings settings;
+  const unsigned int per_event;
   ParticleSupply particles;
   MPI_Comm comm;
   VolumeGrid grid;
 };
 
-const InsertionRegistry::Registration registration(
-    insertion_methods(), "volume",
-    [](const InsertionParameters &parameters, const PhysicalProperties &physics, MPI_Comm comm) {
-      return std::make_unique<Volume>(parameters, physics, comm);
-    });
+class VolumeSection : public InsertionSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    using declare::Patterns::Integer;
+    declare::count(prm, "inserted number of particles at each time step", filling.per_event,
+                   "volume: number of particles of an event.");
+    prm.add_parameter("insertion direction sequence", filling.directions,
+                      "volume: axes in the order in which the box is filled.",
+                      declare::Patterns::List(Integer(0, 2), 3, 3));
+    prm.add_parameter("insertion distance threshold", filling.distance_threshold,
+                      "volume: distance of the grid points over the largest diameter.",
+                      declare::Patterns::Double(0.5));
+  }
+
+  void check(const InsertionSettings &settings, const ParameterCheck &check) const override
+  {
+    const ParameterCheck::Path section = {InsertionParameters::section};
+    settings.check_box(check);
+    std::vector<int> sorted = filling.directions;
+    std::sort(sorted.begin(), sorted.end());
+    check.require(sorted == std::vector<int>({0, 1, 2}), section, "insertion direction sequence",
+                  "does not name each axis once.", "Give a permutation of 0, 1, 2.");
+    check.advise(settings.maximum_offset <= filling.distance_threshold - 1. + 1e-12, section,
+                 "insertion maximum offset",
+                 "of " + format(settings.maximum_offset) +
+                     " lets neighbours overlap at a threshold of " +
+                     format(filling.distance_threshold) + ".",
+                 "Give at most 'insertion distance threshold' - 1, or raise the threshold.");
+  }
+
+  void announce(const InsertionSettings &settings, const PhysicalProperties &physics,
+                Log &log) const override
+  {
+    // They take a second, more or less.
+    constexpr double many_points = 2e6;
+    if (settings.acceptance == "1")
+      return;
+    const double pitch = filling.distance_threshold * physics.largest_diameter();
+    const Vec3 size = settings.box_upper - settings.box_lower;
+    const double points = size.x * size.y * size.z / (pitch * pitch * pitch);
+    if (points > many_points)
+      log.line("Asking the insertion acceptance function at about " + format(points) +
+               " points ...");
+  }
+
+  std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                  const PhysicalProperties &physics, MPI_Comm comm) const override
+  {
+    return std::make_unique<Volume>(settings, filling, physics, comm);
+  }
+
+private:
+  Filling filling;
+};
+
+const InsertionRegistry::Registration registration(insertion_methods(), "volume", [] {
+  return std::make_unique<VolumeSection>();
+});
 
 } // namespace
 } // namespace eunoe
