@@ -1,7 +1,5 @@
 // The solids of the input before the run: where they are, how large, where they go, how fast.
 
-#include <eunoe/solids/expression_motion.h>
-
 #include "judgements.h"
 
 #include <algorithm>
@@ -73,12 +71,10 @@ struct MeshPath
 Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, const double duration)
 {
   const double interval = std::max(duration, 1e-12) / n_looks;
-  const ExpressionMotion motion(object.centre, object.velocity, object.velocity_constants,
-                                object.angular_velocity, object.angular_velocity_constants,
-                                interval);
+  const std::shared_ptr<const Motion> motion = object.make_motion(interval);
   Path path;
   for (unsigned int k = 0; k <= n_looks; ++k) {
-    const RigidState state = motion.at(k * interval);
+    const RigidState state = motion->at(k * interval);
     path.meets_mesh = path.meets_mesh || overlap(box_at(own, state), mesh.at(k * interval));
     for (const Vec3 &corner : corners_at(own, state)) {
       const double speed = norm(state.velocity_at(corner));

@@ -1,6 +1,5 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/quoted_text.h>
-#include <eunoe/solids/expression_motion.h>
 #include <eunoe/solids/shapes.h>
 #include <eunoe/solids/solid_parameters.h>
 
@@ -24,17 +23,6 @@ ParameterCheck::Path path_of(std::size_t k, const std::string &subsection = "")
   return path;
 }
 
-void declare_function(dealii::ParameterHandler &prm, const std::string &name,
-                      std::string &expression, std::string &constants, const std::string &what)
-{
-  prm.enter_subsection(name);
-  prm.add_parameter("Function expression", expression,
-                    what + ": three expressions in x, y, z (the centre of rotation) and t, "
-                           "separated by ';'.");
-  prm.add_parameter("Function constants", constants, "Constants of the expressions, 'a=1, b=2'.");
-  prm.leave_subsection();
-}
-
 TriangleMesh make_mesh(const SolidObject &object, MPI_Comm comm)
 {
   TriangleMesh mesh;
@@ -56,6 +44,27 @@ TriangleMesh make_mesh(const SolidObject &object, MPI_Comm comm)
 }
 
 } // namespace
+
+MotionRegistry &solid_motions()
+{
+  static MotionRegistry registry("motion of solids");
+  return registry;
+}
+
+std::shared_ptr<const Motion> SolidObject::make_motion(const double time_step) const
+{
+  std::shared_ptr<const Motion> found;
+  std::string name_of_found;
+  for (const auto &[name, section] : motions)
+    if (std::shared_ptr<const Motion> motion = section->make(centre, time_step)) {
+      if (found)
+        throw std::invalid_argument("has two motions, '" + name_of_found + "' and '" + name +
+                                    "'. Leave the entries of one at their defaults.");
+      found = motion;
+      name_of_found = name;
+    }
+  return found ? found : std::make_shared<AtRest>(centre);
+}
 
 void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
 {
@@ -88,14 +97,11 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
     prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
     object.placement.declare(prm);
     prm.leave_subsection();
-    declare_function(prm, "translational velocity", object.velocity, object.velocity_constants,
-                     "Velocity of the centre of rotation (m/s)");
-    declare_function(prm, "angular velocity", object.angular_velocity,
-                     object.angular_velocity_constants,
-                     "Angular velocity about the centre of rotation (rad/s)");
     declare::vector(prm, "center of rotation", object.centre,
                     "Centre of rotation at the start, which moves with the solid (m).");
     prm.add_parameter("output solid object", object.output, "Whether the solid is drawn.");
+    for (auto &[name, motion] : object.motions)
+      motion->declare(prm);
     prm.leave_subsection();
   }
   prm.leave_subsection();
@@ -116,6 +122,8 @@ void SolidObjectParameters::check(const ParameterCheck &check) const
     check.require(object.simplex, path, "simplex", "is false.",
                   "Surfaces of solids are made of triangles: set it to true.");
     object.placement.check(check, path);
+    for (const auto &[name, motion] : object.motions)
+      motion->check(check, path_of(k));
   }
 }
 
@@ -140,13 +148,9 @@ std::vector<Solid> SolidObjectParameters::make(const int material, const double 
       continue;
     }
     try {
-      solid.motion = std::make_shared<ExpressionMotion>(
-          object.centre, object.velocity, object.velocity_constants, object.angular_velocity,
-          object.angular_velocity_constants, time_step);
+      solid.motion = object.make_motion(time_step);
     } catch (const std::exception &error) {
-      problems.add(describe(path_of(k), "") + ":",
-                   std::string(error.what()) + ", in the velocity of the solid.",
-                   "Write three expressions in x, y, z and t, separated by ';'.");
+      problems.add(describe(path_of(k), "") + ":", error.what(), "");
       continue;
     }
     solids.push_back(solid);

@@ -2,6 +2,7 @@
 #define eunoe_solids_solid_parameters_h
 
 #include <eunoe/core/parameter_section.h>
+#include <eunoe/solids/motion_section.h>
 #include <eunoe/solids/placement.h>
 #include <eunoe/solids/solid.h>
 #include <eunoe/solids/triangulated_surface.h>
@@ -39,10 +40,13 @@ struct SolidObject
   unsigned int refinement = 0; ///< of a generator of deal.II
   bool simplex = true;
   Placement placement;
-  std::string velocity = "0; 0; 0", angular_velocity = "0; 0; 0";
-  std::string velocity_constants, angular_velocity_constants;
   Vec3 centre;
   bool output = true;
+  std::map<std::string, std::unique_ptr<MotionSection>> motions = solid_motions().make_all();
+
+  /// The motion that the entries ask for, or rest. Throws a std::invalid_argument with sentences.
+  /// @param time_step with which velocities are integrated (s)
+  std::shared_ptr<const Motion> make_motion(double time_step) const;
 };
 
 struct SolidObjectParameters : public ParameterSection

@@ -1,5 +1,7 @@
+#include <eunoe/core/declare.h>
 #include <eunoe/core/expressions.h>
 #include <eunoe/solids/expression_motion.h>
+#include <eunoe/solids/motion_section.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -93,4 +95,57 @@ RigidState ExpressionMotion::at(const double time) const
   return state;
 }
 
+namespace {
+
+/// A velocity of the input: `subsection translational velocity` or `angular velocity`.
+struct VelocityEntries
+{
+  std::string expression = "0; 0; 0", constants;
+
+  void declare(dealii::ParameterHandler &prm, const std::string &name, const std::string &what)
+  {
+    prm.enter_subsection(name);
+    prm.add_parameter("Function expression", expression,
+                      what + ": three expressions in x, y, z (the centre of rotation) and t, "
+                             "separated by ';'.");
+    prm.add_parameter("Function constants", constants, "Constants of the expressions, 'a=1, b=2'.");
+    prm.leave_subsection();
+  }
+};
+
+class ExpressionSection : public MotionSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    velocity.declare(prm, "translational velocity", "Velocity of the centre of rotation (m/s)");
+    angular_velocity.declare(prm, "angular velocity",
+                             "Angular velocity about the centre of rotation (rad/s)");
+  }
+
+  std::unique_ptr<Motion> make(const Vec3 &centre, const double time_step) const override
+  {
+    std::unique_ptr<Motion> motion;
+    try {
+      motion = std::make_unique<ExpressionMotion>(centre, velocity.expression, velocity.constants,
+                                                  angular_velocity.expression,
+                                                  angular_velocity.constants, time_step);
+    } catch (const std::invalid_argument &error) {
+      throw std::invalid_argument(std::string(error.what()) +
+                                  ", in the velocity of the solid. Write three expressions in x, "
+                                  "y, z and t, separated by ';'.");
+    }
+    const bool moves = !is_zero(velocity.expression) || !is_zero(angular_velocity.expression);
+    return moves ? std::move(motion) : nullptr;
+  }
+
+private:
+  VelocityEntries velocity, angular_velocity;
+};
+
+const MotionRegistry::Registration registration(solid_motions(), "expressions", [] {
+  return std::make_unique<ExpressionSection>();
+});
+
+} // namespace
 } // namespace eunoe
