@@ -6,6 +6,8 @@
 
 #include <eunoe/contact/contact_model.h>
 
+#include <deal.II/base/parameter_handler.h>
+
 #include "tests.h"
 
 #include <array>
@@ -39,9 +41,11 @@ struct Response
 class Laws
 {
 public:
+  /// @param entries of `subsection model parameters`, as an input file has them
+  /// @param largest_radius of the particles (m)
   Laws(const std::vector<Material> &materials, int n_particle_types, const ContactModelNames &names,
-       const ContactLawOptions &options = {})
-      : model(Materials(materials, n_particle_types), names, options)
+       const std::string &entries = "", double largest_radius = 0.)
+      : model(Materials(materials, n_particle_types), names, sections_of(entries), largest_radius)
   {
   }
 
@@ -92,6 +96,15 @@ public:
   const ContactModel model;
 
 private:
+  static ContactLawSections sections_of(const std::string &entries)
+  {
+    ContactLawSections sections;
+    dealii::ParameterHandler prm;
+    sections.declare(prm);
+    prm.parse_input_from_string("subsection model parameters\n" + entries + "\nend\n");
+    return sections;
+  }
+
   static void set(double *x, double *y, double *z, unsigned int k, const Vec3 &v)
   {
     x[k] = v.x;
@@ -144,6 +157,14 @@ inline double relative_error(const std::vector<double> &values,
     b.push_back({references[k], 0., 0.});
   }
   return relative_error(a, b);
+}
+
+/// A line of an input file that gives an entry all digits of a number.
+inline std::string set_entry(const std::string &entry, double value)
+{
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return "set " + entry + " = " + text + "\n";
 }
 
 } // namespace test

@@ -5,26 +5,63 @@
 
 namespace eunoe {
 
+namespace {
+
+const char *const families[] = {"normal", "cohesion", "further", "tangential", "rolling"};
+
+} // namespace
+
 ContactLawRegistry &contact_laws(const std::string &family)
 {
   static RegistryFamilies<ContactLawRegistry> registries(
-      "contact law", {"normal", "cohesion", "further", "tangential", "rolling"});
+      "contact law", {std::begin(families), std::end(families)});
   return registries[family];
 }
 
+ContactModelRegistry &contact_models()
+{
+  static ContactModelRegistry registry("contact model");
+  return registry;
+}
+
+ContactLawSections::ContactLawSections()
+{
+  for (const std::string family : families)
+    sections[family] = contact_laws(family).make_all();
+}
+
+void ContactLawSections::declare(dealii::ParameterHandler &prm)
+{
+  for (auto &[family, laws] : sections)
+    for (auto &[name, section] : laws)
+      section->declare(prm);
+}
+
+void ContactLawSections::check(const ParameterCheck &check) const
+{
+  for (const auto &[family, laws] : sections)
+    for (const auto &[name, section] : laws)
+      section->check(check);
+}
+
 ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
-                           const ContactLawOptions &options)
+                           const ContactLawSections &sections, const double largest_radius)
     : materials(std::move(materials_))
 {
   const auto add = [&](const std::string &family, const std::string &name) {
-    if (auto law = contact_laws(family).make(name, materials, options))
+    const auto &known = sections.of_family(family);
+    const auto section = known.find(name);
+    if (section == known.end())
+      throw std::invalid_argument("there is no '" + name + "' among " +
+                                  contact_laws(family).names());
+    if (auto law = section->second->make(materials, largest_radius))
       laws.push_back(std::move(law));
   };
   add("normal", names.normal);
   for (const std::string &name : names.cohesion)
     add("cohesion", name);
-  for (const std::string &name : contact_laws("further").list())
-    add("further", name);
+  for (const auto &further : sections.of_family("further"))
+    add("further", further.first);
   add("tangential", names.tangential);
   if (names.rolling != "none")
     add("rolling", names.rolling);

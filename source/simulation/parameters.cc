@@ -76,8 +76,8 @@ std::vector<ParameterSection *> Parameters::sections()
   std::vector<ParameterSection *> all = {&control,        &mesh,
                                          &refinement,     &grid_motion,
                                          &boundaries,     &physics,
-                                         &insertion,      &integration,
-                                         &model,          &detection,
+                                         &insertion,      &contacts,
+                                         &integration,    &detection,
                                          &faults,         &contact_history,
                                          &load_balancing, &sparse_contacts,
                                          &floating_walls, &solids,
@@ -133,9 +133,7 @@ Parameters Parameters::of_run() const
 
 ContactModel Parameters::contact_model(const double largest_diameter) const
 {
-  ContactLawOptions options = model.options;
-  options.largest_radius = 0.5 * largest_diameter;
-  return {physics.materials(), model.laws(), options};
+  return contacts.model(physics.materials(), largest_diameter);
 }
 
 Parameters Parameters::read(const std::string &text, const std::string &file,

@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/state/material_property.h>
 #include <eunoe/state/new_particle.h>
 #include <eunoe/state/physical_properties.h>
 
@@ -46,17 +47,24 @@ std::string wall_section(std::size_t k)
   return "wall material " + std::to_string(k);
 }
 
-/// An entry of every material.
-struct Property
+/// A property that several laws read: a member of Material.
+struct SharedProperty
 {
-  const char *name;
-  double Material::*member;
-  double largest;
-  const char *documentation;
+  SharedProperty(const std::string &name, double Material::*member, double largest,
+                 const std::string &documentation)
+      : registration(material_entries(), name, [=] {
+          return MaterialEntry{MaterialEntry::Owner::particles_and_walls, 0., largest,
+                               documentation,
+                               [member](Material &m) -> double & { return m.*member; }};
+        })
+  {
+  }
+
+  const MaterialEntryRegistry::Registration registration;
 };
 
 constexpr double any = std::numeric_limits<double>::max();
-const Property properties[] = {
+const SharedProperty shared_properties[] = {
     {"young modulus", &Material::young_modulus, any, "Young's modulus (Pa)."},
     {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio, below 0.5."},
     {"restitution coefficient", &Material::restitution, 1.,
@@ -72,12 +80,21 @@ const Property properties[] = {
     {"hamaker constant", &Material::hamaker_constant, any,
      "Hamaker constant (J); a pair takes the arithmetic mean."}};
 
+/// The properties of a wall, by name.
+std::map<std::string, MaterialEntry> wall_properties()
+{
+  std::map<std::string, MaterialEntry> properties = material_entries().make_all();
+  for (auto p = properties.begin(); p != properties.end();)
+    p = p->second.owner == MaterialEntry::Owner::particles ? properties.erase(p) : std::next(p);
+  return properties;
+}
+
 /// The entries of a material; @p of is "particles" or "wall".
 void declare_material(dealii::ParameterHandler &prm, Material &m, const std::string &of)
 {
-  for (const Property &p : properties)
-    prm.add_parameter(p.name + (" " + of), m.*p.member, p.documentation,
-                      declare::Patterns::Double(0., p.largest));
+  for (const auto &[name, p] : of == "wall" ? wall_properties() : material_entries().make_all())
+    prm.add_parameter(name + " " + of, p.value(m), p.documentation,
+                      declare::Patterns::Double(p.smallest, p.largest));
 }
 
 /// The same entries of a material that takes those which it lacks from the common one of walls.
@@ -89,17 +106,14 @@ void declare_wall_material(dealii::ParameterHandler &prm, WallMaterial &material
       "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
       "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
       "that have one.");
-  for (const Property &p : properties) {
-    const std::string entry = p.name + std::string(" wall");
-    prm.declare_entry(entry, common, OwnOrCommon(declare::Patterns::Double(0., p.largest)),
-                      std::string(p.documentation) + " 'common': that of all other walls.");
-    prm.add_action(entry, [&material, &p](const std::string &value) {
-      auto &own = material.own;
-      own.erase(std::remove_if(own.begin(), own.end(),
-                               [&p](const auto &entry) { return entry.first == p.member; }),
-                own.end());
+  for (const auto &[name, p] : wall_properties()) {
+    const std::string entry = name + " wall";
+    prm.declare_entry(entry, common, OwnOrCommon(declare::Patterns::Double(p.smallest, p.largest)),
+                      p.documentation + " 'common': that of all other walls.");
+    prm.add_action(entry, [&material, name = name](const std::string &value) {
+      material.own.erase(name);
       if (value != common)
-        own.emplace_back(p.member, dealii::Utilities::string_to_double(value));
+        material.own[name] = dealii::Utilities::string_to_double(value);
     });
   }
 }
@@ -115,6 +129,12 @@ void check_material(const ParameterCheck &check, const ParameterCheck::Path &pat
 
 } // namespace
 
+MaterialEntryRegistry &material_entries()
+{
+  static MaterialEntryRegistry registry("property of materials");
+  return registry;
+}
+
 Materials PhysicalProperties::materials() const
 {
   std::vector<Material> all;
@@ -124,8 +144,8 @@ Materials PhysicalProperties::materials() const
   all.push_back(wall);
   for (const WallMaterial &material : wall_materials) {
     all.push_back(wall);
-    for (const auto &[member, value] : material.own)
-      all.back().*member = value;
+    for (const auto &[name, value] : material.own)
+      material_entries().make(name).value(all.back()) = value;
   }
   all.insert(all.end(), other_walls.begin(), other_walls.end());
   return Materials(all, n_types);
@@ -187,9 +207,6 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
     prm.declare_alias("number of particles", "number");
     declare::not_negative(prm, "density particles", type.density, "Density (kg/m3).");
     declare_material(prm, type.material, "particles");
-    prm.add_parameter("surface charge density particles", type.material.surface_charge,
-                      "Charge of a particle over its surface (C/m2), of either sign; see 'model "
-                      "parameters / electrostatic charge'.");
     prm.leave_subsection();
   }
   declare_material(prm, wall, "wall");

@@ -11,25 +11,22 @@ namespace {
 
 const double tension = 0.072;
 
-ContactLawOptions liquid(double angle, double share, double volume, double largest_radius = 0.)
+std::string liquid(double angle, double share, double volume)
 {
-  ContactLawOptions options;
-  options.surface_tension = tension;
-  options.contact_angle = angle;
-  options.bridge_share = share;
-  options.bridge_volume = volume;
-  options.largest_radius = largest_radius;
-  return options;
+  return "subsection capillary bridges\n" + set_entry("surface tension", tension) +
+         set_entry("contact angle", angle) + set_entry("volume share", share) +
+         set_entry("bridge volume", volume) + "end\n";
 }
 
 const ContactModelNames model = {"hertz", {}, "mindlin_limit_overlap", "none"};
 
 /// Two particle types of one material and a wall.
-Laws make(const ContactLawOptions &options, const ContactModelNames &names = model)
+Laws make(const std::string &entries, const ContactModelNames &names = model,
+          double largest_radius = 0.)
 {
   Material m;
   m.surface_energy = 1e-3;
-  return Laws({m, m, m}, 2, names, options);
+  return Laws({m, m, m}, 2, names, entries, largest_radius);
 }
 
 /// The attraction, with a bridge there already.
@@ -68,7 +65,7 @@ void check_curve(const std::string &name, double angle, double share, double vol
   check(name + ": ends at the rupture distance",
         attraction(laws, effective, (1. - 1e-12) * rupture, wall) > 0. &&
             attraction(laws, effective, (1. + 1e-12) * rupture, wall) == 0.);
-  check_relative(name + ": range", make(liquid(angle, share, volume, radius)).model.range(),
+  check_relative(name + ": range", make(liquid(angle, share, volume), model, radius).model.range(),
                  rupture, 1e-13);
 }
 
@@ -123,13 +120,13 @@ int main()
       (std::atan((5. * stretch * rupture + 1.05) / root) - std::atan(1.05 / root));
   check_relative("work of a cycle", work, closed, 1e-6);
 
-  Laws dmt = make({}, {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"});
+  Laws dmt = make("", {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"});
   Laws both = make(liquid(0., 1e-3, 0.), {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"});
   check_relative("together with DMT", attraction(both, 10e-6, 0., false),
                  attraction(dmt, 10e-6, 0., false) + forces[2], 1e-14);
   Laws jkr = make(liquid(0., 1e-3, 0.), {"jkr", {}, "mindlin_limit_overlap", "epsd"});
   check("together with JKR and EPSD", jkr.model.history_size() == 8);
-  check("none by default", dmt.model.history_size() == 3 && make({}).model.range() == 0.);
+  check("none by default", dmt.model.history_size() == 3 && make("").model.range() == 0.);
 
   Contact slides;
   slides.radius = 10e-6;

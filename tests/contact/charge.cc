@@ -8,6 +8,7 @@ using namespace test;
 namespace {
 
 const double permittivity = 8.8541878128e-12;
+const std::string surface_charge = "surface charge density"; ///< a property of one law alone
 
 struct Pair
 {
@@ -27,13 +28,10 @@ double repulsion(Laws &laws, const Pair &pair, double gap, int kind)
 void check_pair(const std::string &name, const Pair &pair)
 {
   Material first, second;
-  first.surface_charge = pair.charge1;
-  second.surface_charge = pair.charge2;
-  ContactLawOptions options;
-  options.charge_cut_off = 1.5;
-  options.largest_radius = 20e-6;
+  first.added[surface_charge] = pair.charge1;
+  second.added[surface_charge] = pair.charge2;
   Laws laws({first, second, Material()}, 2, {"hertz", {}, "mindlin_limit_overlap", "none"},
-            options);
+            "subsection electrostatic charge\n set cut-off share = 1.5\nend\n", 20e-6);
   const double range = 30e-6;
   check_relative(name + ": range", laws.model.range(), range, 1e-14);
   const double q1 = 4. * M_PI * pair.r1 * pair.r1 * pair.charge1;
@@ -65,10 +63,8 @@ int main()
   check_pair("of two signs", {10e-6, 20e-6, 1e-5, -3e-6});
 
   Material m;
-  ContactLawOptions options;
-  options.largest_radius = 20e-6;
   const ContactModelNames names = {"hertz", {}, "mindlin_limit_overlap", "none"};
-  check("none by default", Laws({m}, 1, names, options).model.range() == 0.);
-  m.surface_charge = -1e-6;
-  check_relative("default range", Laws({m}, 1, names, options).model.range(), 10e-6, 1e-14);
+  check("none by default", Laws({m}, 1, names, "", 20e-6).model.range() == 0.);
+  m.added[surface_charge] = -1e-6;
+  check_relative("default range", Laws({m}, 1, names, "", 20e-6).model.range(), 10e-6, 1e-14);
 }

@@ -38,9 +38,8 @@ void check_powder(const Powder &powder)
   check_relative(name + ": published plateau", plateau, powder.plateau, half_digit);
   for (const double threshold : {0.1, 0.01}) {
     const std::string at = name + " cut at " + (threshold > 0.05 ? "0.1" : "0.01") + ": ";
-    ContactLawOptions options;
-    options.dmt_cut_off = threshold;
-    Laws laws({m}, 1, {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"}, options);
+    Laws laws({m}, 1, {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"},
+              set_entry("dmt cut-off threshold", threshold));
     const double cut_off = plateau / std::sqrt(threshold);
     if (threshold > 0.05)
       check_relative(at + "published cut-off", laws.model.range(), powder.cut_off, half_digit);

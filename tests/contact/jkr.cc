@@ -42,9 +42,7 @@ Material material(double surface_energy)
 
 Laws make(const ContactModelNames &names, const Material &m, double largest_radius = 0.)
 {
-  ContactLawOptions options;
-  options.largest_radius = largest_radius;
-  return Laws({m}, 1, names, options);
+  return Laws({m}, 1, names, "", largest_radius);
 }
 
 /// Force on j without what the damper adds, repulsion positive.

@@ -22,9 +22,9 @@ Material material()
   return m;
 }
 
-Laws laws(const std::string &rolling, const ContactLawOptions &options = {})
+Laws laws(const std::string &rolling, const std::string &entries = "")
 {
-  return Laws({material()}, 1, {"hertz", {"dmt"}, "mindlin_limit_overlap", rolling}, options);
+  return Laws({material()}, 1, {"hertz", {"dmt"}, "mindlin_limit_overlap", rolling}, entries);
 }
 
 Contact contact(const Vec3 &roll)
@@ -89,10 +89,8 @@ void check_epsd(bool about_contact)
 {
   const std::string name =
       std::string("epsd, inertia about the ") + (about_contact ? "contact: " : "centres: ");
-  ContactLawOptions options;
-  options.epsd_f = 0.25;
-  options.epsd_inertia_about_contact = about_contact;
-  Laws epsd = laws("epsd", options);
+  Laws epsd = laws("epsd", std::string("set f coefficient = 0.25\nset epsd inertia = ") +
+                               (about_contact ? "contact point" : "centre"));
   const Vec3 roll = {0.6, -0.8, 0.};
   Contact c = contact(roll);
   const Response start = epsd.apply(c, 0.);

@@ -1,7 +1,7 @@
 """The three additions that CONTRIBUTING.md shows, from its text: they are compiled with the commands of
-this build, together with the edits that the page asks for, linked with the library, and run.
+this build, linked with the library, and run. Nothing else is compiled: each addition is one file.
 
-- the law: a sphere in a floor gets the velocity of Hertz's force less 2 pi g_e R in one step;
+- the law: a sphere in a floor gets the velocity of Hertz's force less a share of 2 pi g_e R in one step;
 - the observable: the centre of mass of two spheres of unlike mass, one of which flies;
 - the motion: places and velocities of a solid of an input text (vibration_example.cc).
 
@@ -20,7 +20,6 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LAW, MOTION, OBSERVABLE = "Adding a contact law", "Adding the motion of a solid", "Adding an observable"
 
 CASE = """
 subsection simulation control
@@ -59,6 +58,10 @@ end
 subsection model parameters
   set particle particle contact force method = BRADLEY
   set particle wall contact force method = BRADLEY
+  subsection rough adhesion
+    set asperity height = 3e-9
+    set least distance = 2e-9
+  end
 end
 subsection insertion info
   set insertion method = list
@@ -82,53 +85,23 @@ end
 
 
 class Page:
-    """The blocks of code of CONTRIBUTING.md, by the titles of its sections."""
+    """The files that CONTRIBUTING.md adds, each of which it shows as a whole behind its name."""
 
     def __init__(self) -> None:
         text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-        self.blocks: dict[str, list[str]] = {}
-        self.files: dict[str, str] = {}
-        for section in re.split(r"^## ", text, flags=re.M)[1:]:
-            title = section.split("\n", 1)[0]
-            self.blocks[title] = re.findall(r"^```cpp\n(.*?)^```$", section, re.M | re.S)
-            # A file as a whole comes right behind its name.
-            for name, content in re.findall(r"`([\w/]+\.(?:cc|h))`:\s+```cpp\n(.*?)^```$", section,
-                                            re.M | re.S):
-                if (ROOT / name).exists():
-                    raise AssertionError(f"CONTRIBUTING.md adds {name}, which exists")
-                self.files[name] = content
+        self.files = dict(re.findall(r"`([\w/]+\.cc)`:\s+```cpp\n(.*?)^```$", text, re.M | re.S))
+        for name in self.files:
+            assert not (ROOT / name).exists(), f"CONTRIBUTING.md adds {name}, which exists"
+        assert len(self.files) == text.count("```cpp\n") == 3, "three additions, each one file"
 
-
-def edited(name: str, *edits: tuple[str, str]) -> str:
-    """A file of the tree with pieces of it replaced, each of which must be there once."""
-    text = (ROOT / name).read_text(encoding="utf-8")
-    for old, new in edits:
-        assert text.count(old) == 1, f"{name} has no longer '{old}' once"
-        text = text.replace(old, new)
-    return text
+    def file_in(self, folder: str) -> str:
+        return next(name for name in self.files if name.startswith(folder))
 
 
 def write_tree(page: Page, tree: Path) -> None:
-    """The additions and the edited files, in their places under a folder of their own."""
-    files = dict(page.files)
-    model, wall = page.blocks[LAW][1:]
-    files["source/simulation/model_parameters.cc"] = edited(
-        "source/simulation/model_parameters.cc",
-        ("std::vector<NamedModel> models = {\n", "std::vector<NamedModel> models = {\n" + model),
-        ('                  "linear|nonlinear|DMT|JKR",\n', wall))
-    members, entries, use = page.blocks[MOTION][1:]
-    files["include/eunoe/solids/solid_parameters.h"] = edited(
-        "include/eunoe/solids/solid_parameters.h",
-        ("  bool output = true;\n", "  bool output = true;\n" + members))
-    files["source/solids/solid_objects.cc"] = edited(
-        "source/solids/solid_objects.cc",
-        ("#include <eunoe/solids/solid_parameters.h>\n",
-         "#include <eunoe/solids/solid_parameters.h>\n#include <eunoe/solids/vibration.h>\n"),
-        ('    prm.add_parameter("output solid object"',
-         entries + '    prm.add_parameter("output solid object"'),
-        ("    solids.push_back(solid);\n", use + "    solids.push_back(solid);\n"))
-    files["source/solids/vibration_example.cc"] = (
-        Path(__file__).with_name("vibration_example.cc").read_text(encoding="utf-8"))
+    """The additions in their places under a folder of their own, and what asks the motion."""
+    files = {**page.files, "source/solids/vibration_example.cc":
+             Path(__file__).with_name("vibration_example.cc").read_text(encoding="utf-8")}
     for name, content in files.items():
         path = tree / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -181,8 +154,8 @@ def check_case(program: Path, folder: Path) -> None:
     radius, overlap, step = 0.5e-3, 1e-6, 1e-9
     young = 1e7 / (2. * (1. - 0.3**2))
     mass = 4. / 3. * math.pi * 1000. * radius**3
-    # Work of adhesion of two equal bodies: twice their surface energy.
-    force = 4. / 3. * young * math.sqrt(radius) * overlap**1.5 - 2. * math.pi * 0.1 * radius
+    # Work of adhesion of two equal bodies: twice their surface energy. Asperities leave (2 nm / 5 nm)^2.
+    force = 4. / 3. * young * math.sqrt(radius) * overlap**1.5 - 0.16 * 2. * math.pi * 0.1 * radius
     with open(folder / "results" / "state.csv", encoding="utf-8") as file:
         state = [[float(cell) for cell in line.strip(";\n").split(";")] for line in list(file)[1:]]
     close("velocity of the sphere on the floor", state[0][5], force / mass * step, 1e-6)
@@ -203,13 +176,11 @@ def main() -> int:
     page = Page()
     write_tree(page, tree)
     build = Build(ninja, build_folder, tree)
-    law, observable = (name for name in page.files if name.endswith(".cc"))
-    objects = [build.compile(law, "source/contact/laws/dmt.cc"),
-               build.compile(observable, "source/observables/energies.cc"),
-               build.compile("source/simulation/model_parameters.cc", "source/simulation/model_parameters.cc")]
+    objects = [build.compile(page.file_in("source/contact/laws"), "source/contact/laws/dmt.cc"),
+               build.compile(page.file_in("source/observables"), "source/observables/energies.cc")]
     check_case(build.link("eunoe-particles-with-additions", objects, True), folder)
-    objects = [build.compile(f"source/solids/{name}.cc", "source/solids/solid_objects.cc")
-               for name in ("solid_objects", "vibration_example")]
+    objects = [build.compile(name, "source/solids/motions/expression_motion.cc")
+               for name in (page.file_in("source/solids/motions"), "source/solids/vibration_example.cc")]
     subprocess.run([build.link("vibration-example", objects, False)], check=True)
     print("ok")
     return 0

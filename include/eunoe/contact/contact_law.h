@@ -2,6 +2,7 @@
 #define eunoe_contact_contact_law_h
 
 #include <eunoe/contact/pair_block.h>
+#include <eunoe/core/plugin_section.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/state/material.h>
 
@@ -10,28 +11,6 @@
 #include <vector>
 
 namespace eunoe {
-
-/// What the laws may need beside the materials; each law reads its own.
-struct ContactLawOptions
-{
-  /// Share of the pull-off force at which the long-range attraction is cut off (C_FPO).
-  double dmt_cut_off = 0.1;
-  /// Share of the viscous rolling torque left once the spring is fully mobilised (f).
-  double epsd_f = 0.;
-  /// Whether EPSD's effective inertia is taken about the contact point (7/5 m R^2, Ai et al. 2011)
-  /// or about the centres (2/5 m R^2).
-  bool epsd_inertia_about_contact = true;
-
-  double surface_tension = 0.; ///< of liquid bridges (N/m); 0: there are none
-  double contact_angle = 0.;   ///< of the liquid (degrees)
-  double bridge_share = 1e-3;  ///< volume of a bridge over that of a particle
-  double bridge_volume = 0.;   ///< the same for all bridges if positive (m3)
-  /// Gap at which the forces of charges end, over the largest radius.
-  double charge_cut_off = 0.5;
-
-  /// Of the particles (m); laws that act across gaps reach the farther, the larger they are.
-  double largest_radius = 0.;
-};
 
 /// One mechanism of a contact: reads the geometry of a block of pairs (and what earlier laws
 /// wrote) and adds its force or torque. A law is one file in source/contact/laws that registers
@@ -58,10 +37,14 @@ public:
   virtual void apply(PairBlock &block, unsigned int history, double dt) const = 0;
 };
 
+/// What the input says of a law, in entries that the law's own file declares. The law is made from
+/// the materials and the largest radius of the particles (m): laws that act across gaps may reach
+/// the farther, the larger particles are.
+using ContactLawSection = PluginSection<ContactLaw, const Materials &, double>;
+
 /// Laws by family ("normal", "cohesion", "further", "tangential", "rolling") and name. Those of the
-/// family "further" join every model; their makers return null where their coefficients are zero.
-using ContactLawRegistry =
-    Registry<std::unique_ptr<ContactLaw>, const Materials &, const ContactLawOptions &>;
+/// family "further" join every model; their sections make none where their coefficients are zero.
+using ContactLawRegistry = Registry<std::unique_ptr<ContactLawSection>>;
 ContactLawRegistry &contact_laws(const std::string &family);
 
 /// Copies one coefficient of each contact's row into @p lanes.

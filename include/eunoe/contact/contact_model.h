@@ -14,14 +14,46 @@ struct ContactModelNames
   std::string rolling = "constant"; ///< "none" for no resistance
 };
 
-/// The laws of a contact, composed at run time: normal, cohesion, further ones that the options and
-/// materials ask for, tangential, rolling.
+/// A model that the input names.
+struct NamedContactModel
+{
+  std::string wall_name; ///< of the same laws between particles and walls
+  ContactModelNames laws;
+};
+
+/// Models by the names of the input. A model is registered beside the law that distinguishes it.
+using ContactModelRegistry = Registry<NamedContactModel>;
+ContactModelRegistry &contact_models();
+
+/// What the input says of all laws.
+class ContactLawSections : public ParameterSection
+{
+public:
+  ContactLawSections();
+
+  void declare(dealii::ParameterHandler &prm) override;
+  void check(const ParameterCheck &check) const override;
+
+  const std::map<std::string, std::unique_ptr<ContactLawSection>> &of_family(
+      const std::string &family) const
+  {
+    return sections.at(family);
+  }
+
+private:
+  std::map<std::string, std::map<std::string, std::unique_ptr<ContactLawSection>>> sections;
+};
+
+/// The laws of a contact, composed at run time: normal, cohesion, further ones that the input and
+/// the materials ask for, tangential, rolling.
 /// Particle-particle and particle-solid contacts go through the same one.
 class ContactModel
 {
 public:
+  /// @param sections of the laws, with their coefficients
+  /// @param largest_radius of the particles (m)
   ContactModel(Materials materials, const ContactModelNames &names,
-               const ContactLawOptions &options = {});
+               const ContactLawSections &sections, double largest_radius);
 
   /// Number of doubles that a contact remembers.
   unsigned int history_size() const { return n_history; }

@@ -2,6 +2,7 @@
 #define eunoe_simulation_parameters_h
 
 #include <eunoe/checkpoint/restart_parameters.h>
+#include <eunoe/contact/contact_parameters.h>
 #include <eunoe/domain/domain.h>
 #include <eunoe/engine/contact_history.h>
 #include <eunoe/engine/integrator.h>
@@ -12,7 +13,6 @@
 #include <eunoe/engine/sparse_contacts.h>
 #include <eunoe/simulation/control_parameters.h>
 #include <eunoe/simulation/insertion.h>
-#include <eunoe/simulation/model_parameters.h>
 #include <eunoe/simulation/observable.h>
 #include <eunoe/simulation/process.h>
 #include <eunoe/solids/solid_parameters.h>
@@ -72,8 +72,8 @@ public:
   BoundaryParameters boundaries;
   PhysicalProperties physics;
   InsertionParameters insertion;
+  ContactParameters contacts;
   IntegratorParameters integration;
-  ModelParameters model;
   ContactDetectionParameters detection;
   FaultParameters faults;
   ContactHistoryParameters contact_history;

@@ -1,6 +1,8 @@
 #ifndef eunoe_state_material_h
 #define eunoe_state_material_h
 
+#include <map>
+#include <string>
 #include <vector>
 
 namespace eunoe {
@@ -16,7 +18,8 @@ struct Material
   double rolling_viscous_damping = 0.1;
   double surface_energy = 0.;
   double hamaker_constant = 4e-19;
-  double surface_charge = 0.; ///< of particles (C/m2)
+  /// Those that single laws read, by name, as far as they are given; see MaterialProperty.
+  std::map<std::string, double> added = {};
 };
 
 /// Effective constants of a pair of materials (doc/physics.md, "Effective constants").

@@ -6,8 +6,8 @@
 #include <eunoe/state/material.h>
 #include <eunoe/state/size_distribution.h>
 
+#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace eunoe {
@@ -24,9 +24,8 @@ struct ParticleType
 /// `wall material i` of the input: what distinguishes some walls and solids from the common ones.
 struct WallMaterial
 {
-  std::string surfaces; ///< their names, separated by commas
-  /// Properties that differ, by their member of Material.
-  std::vector<std::pair<double Material::*, double>> own;
+  std::string surfaces;              ///< their names, separated by commas
+  std::map<std::string, double> own; ///< properties that differ, by name
 };
 
 /// `subsection lagrangian physical properties`.

@@ -1,8 +1,18 @@
 #include <eunoe/contact/contact_law.h>
+#include <eunoe/core/declare.h>
 #include <eunoe/core/simd.h>
 
 namespace eunoe {
 namespace {
+
+/// The liquid of all bridges.
+struct Liquid
+{
+  double surface_tension = 0.; ///< (N/m); 0: there are no bridges
+  double contact_angle = 0.;   ///< (degrees)
+  double volume_share = 1e-3;  ///< volume of a bridge over that of a particle
+  double bridge_volume = 0.;   ///< the same for all bridges if positive (m3)
+};
 
 /// Attraction by a pendular liquid bridge (Willett, Adams, Johnson, Seville 2000), which forms
 /// where two bodies touch and holds until it is drawn out to its rupture distance (Lian, Thornton,
@@ -11,8 +21,8 @@ namespace {
 class Capillary : public ContactLaw
 {
 public:
-  Capillary(const Materials &materials, const ContactLawOptions &options)
-      : table(make_table(materials, options)), largest_radius(options.largest_radius)
+  Capillary(const Materials &materials, const Liquid &liquid, const double largest_radius)
+      : table(make_table(materials, liquid)), largest_radius(largest_radius)
   {
   }
 
@@ -44,19 +54,18 @@ private:
     double radii;        ///< radius of two equal particles, or of one at a wall, over the effective
   };
 
-  static std::vector<Row> make_table(const Materials &materials, const ContactLawOptions &options)
+  static std::vector<Row> make_table(const Materials &materials, const Liquid &liquid)
   {
-    const double angle = options.contact_angle * M_PI / 180.;
-    const bool given = options.bridge_volume > 0.;
+    const double angle = liquid.contact_angle * M_PI / 180.;
+    const bool given = liquid.bridge_volume > 0.;
     std::vector<Row> table(materials.size() * materials.size());
     for (int a = 0; a < materials.size(); ++a)
       for (int b = 0; b < materials.size(); ++b) {
         Row &row = table[materials.kind(a, b)];
-        row.pull = 4. * M_PI * options.surface_tension * std::cos(angle);
+        row.pull = 4. * M_PI * liquid.surface_tension * std::cos(angle);
         row.radii = materials.is_wall(a) || materials.is_wall(b) ? 1. : 2.;
-        row.length = given ? std::cbrt(options.bridge_volume) : 0.;
-        row.length_share =
-            given ? 0. : std::cbrt(4. / 3. * M_PI * options.bridge_share) * row.radii;
+        row.length = given ? std::cbrt(liquid.bridge_volume) : 0.;
+        row.length_share = given ? 0. : std::cbrt(4. / 3. * M_PI * liquid.volume_share) * row.radii;
         row.stretch = 1. + 0.5 * angle;
       }
     return table;
@@ -84,12 +93,61 @@ private:
   const double largest_radius;
 };
 
-const ContactLawRegistry::Registration registration(
-    contact_laws("further"), "capillary",
-    [](const Materials &materials, const ContactLawOptions &options) {
-      return options.surface_tension > 0. ? std::make_unique<Capillary>(materials, options)
-                                          : nullptr;
-    });
+/// `subsection model parameters / capillary bridges`.
+class CapillarySection : public ContactLawSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection(path[0]);
+    prm.enter_subsection(path[1]);
+    declare::not_negative(prm, "surface tension", liquid.surface_tension,
+                          "Surface tension of the liquid that forms a bridge where two bodies "
+                          "touch and holds it until they are too far apart (N/m); 0: no bridges.");
+    declare::not_negative(prm, "contact angle", liquid.contact_angle,
+                          "Angle at which the liquid meets the bodies (degrees).");
+    declare::not_negative(prm, "volume share", liquid.volume_share,
+                          "Volume of a bridge over that of a particle.");
+    declare::not_negative(prm, "bridge volume", liquid.bridge_volume,
+                          "Volume of every bridge (m3); 0: 'volume share' rules.");
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  void check(const ParameterCheck &check) const override
+  {
+    check.require(liquid.contact_angle < 90., path, "contact angle",
+                  "is " + format(liquid.contact_angle) + " degrees.",
+                  "Give an angle below 90: a liquid that does not wet draws nothing together.");
+    check.require(liquid.surface_tension == 0. || liquid.bridge_volume > 0. ||
+                      liquid.volume_share > 0.,
+                  path, "volume share", "is 0 while there is a surface tension.",
+                  "Give a share, or a 'bridge volume'.");
+    check.require(liquid.volume_share <= largest_share, path, "volume share",
+                  "is " + format(liquid.volume_share) + ".",
+                  "Give at most " + format(largest_share) +
+                      ": more liquid forms no single bridges.");
+  }
+
+  std::unique_ptr<ContactLaw> make(const Materials &materials,
+                                   const double largest_radius) const override
+  {
+    if (liquid.surface_tension == 0.)
+      return nullptr;
+    return std::make_unique<Capillary>(materials, liquid, largest_radius);
+  }
+
+private:
+  /// Above it, bridges of neighbours meet.
+  static constexpr double largest_share = 0.1;
+
+  const ParameterCheck::Path path = {"model parameters", "capillary bridges"};
+  Liquid liquid;
+};
+
+const ContactLawRegistry::Registration registration(contact_laws("further"), "capillary", [] {
+  return std::make_unique<CapillarySection>();
+});
 
 } // namespace
 } // namespace eunoe

@@ -1,19 +1,27 @@
 #include <eunoe/contact/contact_law.h>
+#include <eunoe/core/declare.h>
 #include <eunoe/core/simd.h>
+#include <eunoe/state/material_property.h>
 
 namespace eunoe {
 namespace {
+
+const MaterialProperty surface_charge(
+    "surface charge density", MaterialProperty::Owner::particles, 0., {},
+    "Charge of a particle over its surface (C/m2), of either sign; see 'model "
+    "parameters / electrostatic charge'.");
 
 /// Coulomb's force between near particles whose charges sit in their centres, less what it is at
 /// the cut-off, so that it ends there without a jump. Walls and solids are not charged.
 class Charge : public ContactLaw
 {
 public:
-  Charge(const Materials &materials, const ContactLawOptions &options)
+  /// @param cut_off gap at which the force ends (m)
+  Charge(const Materials &materials, const double cut_off)
       : table(materials.table([](const Material &a, const Material &b) {
-          return Row{4. * M_PI * a.surface_charge * b.surface_charge / vacuum_permittivity};
+          return Row{4. * M_PI * surface_charge(a) * surface_charge(b) / vacuum_permittivity};
         })),
-        cut_off(options.charge_cut_off * options.largest_radius)
+        cut_off(cut_off)
   {
   }
 
@@ -58,18 +66,42 @@ private:
 bool any_is_charged(const Materials &materials)
 {
   for (int m = 0; m < materials.size(); ++m)
-    if (materials[m].surface_charge != 0.)
+    if (surface_charge(materials[m]) != 0.)
       return true;
   return false;
 }
 
-const ContactLawRegistry::Registration registration(
-    contact_laws("further"), "charge",
-    [](const Materials &materials, const ContactLawOptions &options) {
-      return any_is_charged(materials) && options.charge_cut_off > 0.
-                 ? std::make_unique<Charge>(materials, options)
-                 : nullptr;
-    });
+/// `subsection model parameters / electrostatic charge`.
+class ChargeSection : public ContactLawSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("model parameters");
+    prm.enter_subsection("electrostatic charge");
+    declare::not_negative(prm, "cut-off share", cut_off_share,
+                          "Gap at which the force between two charged particles has fallen to "
+                          "zero, over the largest radius. The larger, the longer the lists of "
+                          "pairs.");
+    prm.leave_subsection();
+    prm.leave_subsection();
+  }
+
+  std::unique_ptr<ContactLaw> make(const Materials &materials,
+                                   const double largest_radius) const override
+  {
+    if (cut_off_share == 0. || !any_is_charged(materials))
+      return nullptr;
+    return std::make_unique<Charge>(materials, cut_off_share * largest_radius);
+  }
+
+private:
+  double cut_off_share = 0.5;
+};
+
+const ContactLawRegistry::Registration registration(contact_laws("further"), "charge", [] {
+  return std::make_unique<ChargeSection>();
+});
 
 } // namespace
 } // namespace eunoe

@@ -25,9 +25,8 @@ struct ConstantRolling
 };
 
 const ContactLawRegistry::Registration registration(
-    contact_laws("rolling"), "constant", [](const Materials &materials, const ContactLawOptions &) {
-      return std::make_unique<RollingFriction<ConstantRolling>>(materials);
-    });
+    contact_laws("rolling"), "constant",
+    ContactLawSection::without_entries<RollingFriction<ConstantRolling>>);
 
 } // namespace
 } // namespace eunoe

@@ -1,4 +1,5 @@
-#include <eunoe/contact/contact_law.h>
+#include <eunoe/contact/contact_model.h>
+#include <eunoe/core/declare.h>
 #include <eunoe/core/simd.h>
 
 namespace eunoe {
@@ -10,12 +11,13 @@ namespace {
 class Dmt : public ContactLaw
 {
 public:
-  Dmt(const Materials &materials, const ContactLawOptions &options)
+  /// @param cut_off_share of the pull-off force at which the attraction is cut off (C_FPO)
+  Dmt(const Materials &materials, const double cut_off_share)
       : table(materials.table([&](const Material &a, const Material &b) {
           const double pull_off = 2. * M_PI * effective_surface_energy(a, b);
           const double van_der_waals = effective_hamaker_constant(a, b) / 6.;
           const double plateau = pull_off > 0. ? std::sqrt(van_der_waals / pull_off) : 0.;
-          return Row{pull_off, van_der_waals, plateau, plateau / std::sqrt(options.dmt_cut_off)};
+          return Row{pull_off, van_der_waals, plateau, plateau / std::sqrt(cut_off_share)};
         }))
   {
   }
@@ -58,12 +60,33 @@ private:
   const std::vector<Row> table;
 };
 
+class DmtSection : public ContactLawSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("model parameters");
+    prm.add_parameter("dmt cut-off threshold", cut_off_share,
+                      "Share of the pull-off force below which the long-range attraction is "
+                      "dropped.",
+                      declare::Patterns::Double(1e-6, 1.));
+    prm.leave_subsection();
+  }
+
+  std::unique_ptr<ContactLaw> make(const Materials &materials, double) const override
+  {
+    return std::make_unique<Dmt>(materials, cut_off_share);
+  }
+
+private:
+  double cut_off_share = 0.1;
+};
+
 const ContactLawRegistry::Registration registration(contact_laws("cohesion"), "dmt",
-                                                    [](const Materials &materials,
-                                                       const ContactLawOptions &options) {
-                                                      return std::make_unique<Dmt>(materials,
-                                                                                   options);
-                                                    });
+                                                    [] { return std::make_unique<DmtSection>(); });
+const ContactModelRegistry::Registration model(contact_models(), "DMT", [] {
+  return NamedContactModel{"DMT", {"hertz", {"dmt"}, "mindlin_limit_overlap"}};
+});
 
 } // namespace
 } // namespace eunoe

@@ -1,5 +1,6 @@
 #include <eunoe/contact/contact_law.h>
 #include <eunoe/contact/turn_with_plane.h>
+#include <eunoe/core/declare.h>
 #include <eunoe/core/simd.h>
 
 namespace eunoe {
@@ -12,12 +13,14 @@ namespace {
 class EpsdRolling : public ContactLaw
 {
 public:
-  EpsdRolling(const Materials &materials, const ContactLawOptions &options)
+  /// @param f share of the viscous torque left once the spring is fully mobilised
+  /// @param inertia_factor on the effective inertia about the centres, 2/5 m R^2
+  EpsdRolling(const Materials &materials, const double f, const double inertia_factor)
       : table(materials.table([](const Material &a, const Material &b) {
           return Row{harmonic_mean(a.rolling_friction, b.rolling_friction),
                      harmonic_mean(a.rolling_viscous_damping, b.rolling_viscous_damping)};
         })),
-        f(options.epsd_f), inertia_factor(options.epsd_inertia_about_contact ? 3.5 : 1.)
+        f(f), inertia_factor(inertia_factor)
   {
   }
 
@@ -78,12 +81,34 @@ private:
   const double f, inertia_factor;
 };
 
+class EpsdSection : public ContactLawSection
+{
+public:
+  void declare(dealii::ParameterHandler &prm) override
+  {
+    prm.enter_subsection("model parameters");
+    prm.add_parameter("f coefficient", f,
+                      "EPSD: share of the viscous torque left once the spring is fully mobilised.",
+                      declare::Patterns::Double(0., 1.));
+    declare::choice(prm, "epsd inertia", inertia, "contact point|centre",
+                    "EPSD: point about which the moments of inertia in the damping are taken. Ai "
+                    "et al. (2011) use the contact point.");
+    prm.leave_subsection();
+  }
+
+  std::unique_ptr<ContactLaw> make(const Materials &materials, double) const override
+  {
+    // About the contact point 7/5 m R^2 instead of 2/5 m R^2.
+    return std::make_unique<EpsdRolling>(materials, f, inertia == "contact point" ? 3.5 : 1.);
+  }
+
+private:
+  double f = 0.;
+  std::string inertia = "contact point";
+};
+
 const ContactLawRegistry::Registration registration(contact_laws("rolling"), "epsd",
-                                                    [](const Materials &materials,
-                                                       const ContactLawOptions &options) {
-                                                      return std::make_unique<EpsdRolling>(
-                                                          materials, options);
-                                                    });
+                                                    [] { return std::make_unique<EpsdSection>(); });
 
 } // namespace
 } // namespace eunoe

@@ -9,7 +9,7 @@ namespace {
 class Hertz : public ContactLaw
 {
 public:
-  explicit Hertz(const Materials &materials)
+  Hertz(const Materials &materials, double)
       : table(materials.table([](const Material &a, const Material &b) {
           return Row{effective_young_modulus(a, b),
                      damping_factor(harmonic_mean(a.restitution, b.restitution))};
@@ -49,10 +49,7 @@ private:
 };
 
 const ContactLawRegistry::Registration registration(contact_laws("normal"), "hertz",
-                                                    [](const Materials &materials,
-                                                       const ContactLawOptions &) {
-                                                      return std::make_unique<Hertz>(materials);
-                                                    });
+                                                    ContactLawSection::without_entries<Hertz>);
 
 } // namespace
 } // namespace eunoe

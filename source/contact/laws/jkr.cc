@@ -1,4 +1,4 @@
-#include <eunoe/contact/contact_law.h>
+#include <eunoe/contact/contact_model.h>
 #include <eunoe/core/simd.h>
 
 #include <cstdint>
@@ -47,13 +47,13 @@ EUNOE_ALWAYS_INLINE double neck_root(const double g)
 class Jkr : public ContactLaw
 {
 public:
-  Jkr(const Materials &materials, const ContactLawOptions &options)
+  Jkr(const Materials &materials, const double largest_radius)
       : table(materials.table([](const Material &a, const Material &b) {
           const double young = effective_young_modulus(a, b), work = effective_surface_energy(a, b);
           return Row{young, damping_factor(harmonic_mean(a.restitution, b.restitution)),
                      M_PI * work, std::cbrt(M_PI * work / (8. * young))};
         })),
-        largest_radius(options.largest_radius)
+        largest_radius(largest_radius)
   {
   }
 
@@ -127,12 +127,16 @@ private:
   const double largest_radius;
 };
 
+NamedContactModel jkr_model()
+{
+  return {"JKR", {"jkr", {}, "mindlin_limit_overlap"}};
+}
+
 const ContactLawRegistry::Registration registration(contact_laws("normal"), "jkr",
-                                                    [](const Materials &materials,
-                                                       const ContactLawOptions &options) {
-                                                      return std::make_unique<Jkr>(materials,
-                                                                                   options);
-                                                    });
+                                                    ContactLawSection::without_entries<Jkr>);
+const ContactModelRegistry::Registration model(contact_models(), "JKR", jkr_model);
+const ContactModelRegistry::Registration model_as_in_lethe(contact_models(), "hertz_JKR",
+                                                           jkr_model);
 
 } // namespace
 } // namespace eunoe

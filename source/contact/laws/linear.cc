@@ -1,4 +1,4 @@
-#include <eunoe/contact/contact_law.h>
+#include <eunoe/contact/contact_model.h>
 #include <eunoe/core/simd.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 class Linear : public ContactLaw
 {
 public:
-  explicit Linear(const Materials &materials)
+  Linear(const Materials &materials, double)
       : table(materials.table([](const Material &a, const Material &b) {
           return Row{effective_young_modulus(a, b),
                      damping_factor(harmonic_mean(a.restitution, b.restitution)) /
@@ -58,10 +58,10 @@ private:
 };
 
 const ContactLawRegistry::Registration registration(contact_laws("normal"), "linear",
-                                                    [](const Materials &materials,
-                                                       const ContactLawOptions &) {
-                                                      return std::make_unique<Linear>(materials);
-                                                    });
+                                                    ContactLawSection::without_entries<Linear>);
+const ContactModelRegistry::Registration model(contact_models(), "linear", [] {
+  return NamedContactModel{"linear", {"linear", {}, "linear_limit_overlap"}};
+});
 
 } // namespace
 } // namespace eunoe

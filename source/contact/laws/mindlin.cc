@@ -1,4 +1,4 @@
-#include <eunoe/contact/contact_law.h>
+#include <eunoe/contact/contact_model.h>
 #include <eunoe/contact/turn_with_plane.h>
 #include <eunoe/core/simd.h>
 
@@ -99,12 +99,29 @@ private:
   const std::vector<Row> table;
 };
 
+/// The laws differ by their names alone, not by entries.
+/// @param damping on the factor of Tsuji's damping
 template <Spring spring, bool limit_overlap>
 auto maker(const double damping)
 {
-  return [damping](const Materials &materials, const ContactLawOptions &) {
-    return std::make_unique<Mindlin<spring, limit_overlap>>(materials, damping);
+  struct Section : public ContactLawSection
+  {
+    explicit Section(const double damping) : damping(damping) {}
+
+    std::unique_ptr<ContactLaw> make(const Materials &materials, double) const override
+    {
+      return std::make_unique<Mindlin<spring, limit_overlap>>(materials, damping);
+    }
+
+    const double damping;
   };
+  return [damping] { return std::make_unique<Section>(damping); };
+}
+
+/// Hertz's normal force with one of the laws.
+auto model(const std::string &tangential)
+{
+  return [tangential] { return NamedContactModel{"nonlinear", {"hertz", {}, tangential}}; };
 }
 
 const ContactLawRegistry::Registration overlap(contact_laws("tangential"), "mindlin_limit_overlap",
@@ -115,6 +132,14 @@ const ContactLawRegistry::Registration undamped(contact_laws("tangential"), "min
                                                 maker<Spring::mindlin, false>(0.));
 const ContactLawRegistry::Registration linear(contact_laws("tangential"), "linear_limit_overlap",
                                               maker<Spring::linear, true>(std::sqrt(6. / 5.)));
+
+const ContactModelRegistry::Registration hertz(contact_models(), "hertz",
+                                               model("mindlin_undamped"));
+const ContactModelRegistry::Registration limit_overlap(contact_models(),
+                                                       "hertz_mindlin_limit_overlap",
+                                                       model("mindlin_limit_overlap"));
+const ContactModelRegistry::Registration limit_force(contact_models(), "hertz_mindlin_limit_force",
+                                                     model("mindlin_limit_force"));
 
 } // namespace
 } // namespace eunoe

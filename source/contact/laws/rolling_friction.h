@@ -11,7 +11,7 @@ template <class Model>
 class RollingFriction : public ContactLaw
 {
 public:
-  explicit RollingFriction(const Materials &materials)
+  RollingFriction(const Materials &materials, double)
       : table(materials.table([](const Material &a, const Material &b) {
           return Row{harmonic_mean(a.rolling_friction, b.rolling_friction)};
         }))

@@ -23,9 +23,8 @@ struct ViscousRolling
 };
 
 const ContactLawRegistry::Registration registration(
-    contact_laws("rolling"), "viscous", [](const Materials &materials, const ContactLawOptions &) {
-      return std::make_unique<RollingFriction<ViscousRolling>>(materials);
-    });
+    contact_laws("rolling"), "viscous",
+    ContactLawSection::without_entries<RollingFriction<ViscousRolling>>);
 
 } // namespace
 } // namespace eunoe
