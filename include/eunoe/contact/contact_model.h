@@ -34,14 +34,14 @@ public:
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
 
-  const std::map<std::string, std::unique_ptr<ContactLawSection>> &of_family(
+  const std::map<std::string, std::shared_ptr<ContactLawSection>> &of_family(
       const std::string &family) const
   {
     return sections.at(family);
   }
 
 private:
-  std::map<std::string, std::map<std::string, std::unique_ptr<ContactLawSection>>> sections;
+  std::map<std::string, std::map<std::string, std::shared_ptr<ContactLawSection>>> sections;
 };
 
 /// The laws of a contact, composed at run time: normal, cohesion, further ones that the input and

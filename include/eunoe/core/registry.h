@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +13,20 @@ namespace eunoe {
 /// Ends the program with a sentence about its own code, where plug-ins contradict each other. Most
 /// register before `main`, where nobody could catch an exception.
 [[noreturn]] void end_for_registration(const std::string &sentence);
+
+/// What several may own: `std::unique_ptr` turned into `std::shared_ptr`.
+///@{
+template <typename Product>
+struct Shared
+{
+  using type = Product;
+};
+template <typename Pointee>
+struct Shared<std::unique_ptr<Pointee>>
+{
+  using type = std::shared_ptr<Pointee>;
+};
+///@}
 
 /// Plug-ins of one kind by name. A plug-in's file holds one static `Registration`. A name that is
 /// given twice ends the program when it starts.
@@ -44,10 +59,11 @@ public:
     return maker->second(std::forward<Arguments>(arguments)...);
   }
 
-  /// One of each, by name.
-  std::map<std::string, Product> make_all() const
+  /// One of each, by name. Copies of the map share what is made, which is not changed once the
+  /// input is read.
+  std::map<std::string, typename Shared<Product>::type> make_all() const
   {
-    std::map<std::string, Product> all;
+    std::map<std::string, typename Shared<Product>::type> all;
     for (const auto &[name, maker] : makers)
       all[name] = maker();
     return all;

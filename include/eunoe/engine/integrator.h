@@ -51,7 +51,7 @@ public:
 
 private:
   std::string method = "velocity_verlet";
-  std::map<std::string, std::unique_ptr<IntegratorSection>> sections;
+  std::map<std::string, std::shared_ptr<IntegratorSection>> sections;
 };
 
 } // namespace eunoe

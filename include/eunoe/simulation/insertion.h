@@ -121,7 +121,7 @@ struct InsertionParameters : public ParameterSection, public InsertionSettings
   static constexpr const char *section = "insertion info";
 
   std::string method = "volume";
-  std::map<std::string, std::unique_ptr<InsertionSection>> methods = insertion_methods().make_all();
+  std::map<std::string, std::shared_ptr<InsertionSection>> methods = insertion_methods().make_all();
 
   const InsertionSection &chosen() const { return *methods.at(method); }
 

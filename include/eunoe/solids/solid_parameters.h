@@ -42,7 +42,7 @@ struct SolidObject
   Placement placement;
   Vec3 centre;
   bool output = true;
-  std::map<std::string, std::unique_ptr<MotionSection>> motions = solid_motions().make_all();
+  std::map<std::string, std::shared_ptr<MotionSection>> motions = solid_motions().make_all();
 
   /// The motion that the entries ask for, or rest. Throws a std::invalid_argument with sentences.
   /// @param time_step with which velocities are integrated (s)
