@@ -1,3 +1,3 @@
 # What all tests in Python import; ctest reads this file before it runs them. By hand:
 # PYTHONPATH=contrib:tests tests/.../test.py ...
-set(ENV{PYTHONPATH} "${CMAKE_CURRENT_LIST_DIR}/../contrib:${CMAKE_CURRENT_LIST_DIR}:$ENV{PYTHONPATH}")
+set(ENV{PYTHONPATH} "${CMAKE_CURRENT_LIST_DIR}/../contrib:${CMAKE_CURRENT_LIST_DIR}")
