@@ -157,23 +157,23 @@ void SpreadingParameters::check(const ParameterCheck &check) const
     check.require(value > 0., {section}, entry, "is " + format(value) + ".",
                   "Give a positive value.");
   };
-  not_negative(w1, "feedstock platform length W1");
-  not_negative(w2, "transfer plate length W2");
-  not_negative(w3, "measuring plate length W3");
-  not_negative(w4, "exit plate length W4");
-  not_negative(length_factor, "length factor");
-  not_negative(depth, "depth");
-  not_negative(gap, "gap");
-  not_negative(layer_thickness, "layer thickness delta_l");
-  not_negative(velocity, "spreading velocity v_s");
-  not_negative(stroke, "feedstock stroke delta_f");
-  not_negative(first_stroke, "first feedstock stroke");
-  not_negative(plate_velocity, "measuring plate velocity");
-  not_negative(platform_velocity, "feedstock platform velocity");
-  not_negative(settled_speed, "settled speed");
-  not_negative(settling_time, "settling time");
-  not_negative(spreader == "half round" ? spreader_radius : spreader_thickness,
-               spreader == "half round" ? "spreader radius R_s" : "spreader thickness");
+  positive(w1, "feedstock platform length W1");
+  positive(w2, "transfer plate length W2");
+  positive(w3, "measuring plate length W3");
+  positive(w4, "exit plate length W4");
+  positive(length_factor, "length factor");
+  positive(depth, "depth");
+  positive(gap, "gap");
+  positive(layer_thickness, "layer thickness delta_l");
+  positive(velocity, "spreading velocity v_s");
+  positive(stroke, "feedstock stroke delta_f");
+  positive(first_stroke, "first feedstock stroke");
+  positive(plate_velocity, "measuring plate velocity");
+  positive(platform_velocity, "feedstock platform velocity");
+  positive(settled_speed, "settled speed");
+  positive(settling_time, "settling time");
+  positive(spreader == "half round" ? spreader_radius : spreader_thickness,
+           spreader == "half round" ? "spreader radius R_s" : "spreader thickness");
   check.require(n_layers > 0, {section}, "number of layers", "is 0.",
                 "Give at least 1 layer, 21 for the paper's case.");
   check.require(clearance > 0., {section}, "spreader clearance delta_s",
