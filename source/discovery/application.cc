@@ -6,7 +6,7 @@
 #include <eunoe/discovery/application.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/results.h>
-#include <eunoe/discovery/twin.h>
+#include <eunoe/discovery/synthetic_data.h>
 #include <eunoe/simulation/command_line.h>
 
 #include <boost/algorithm/string.hpp>
@@ -25,10 +25,10 @@ const ProgramText program = {
     "read and check the study, say what would run (experiments, effects, runs, core-hours) and "
     "what is doubtful, run nothing"};
 
-struct Wishes
+struct ExtraArguments
 {
   bool list_observables = false, list_effects = false;
-  std::string twin;
+  std::string truth_file;
 };
 
 void list_observables(Log &log)
@@ -67,32 +67,33 @@ void refuse_if_any(const Problems &problems)
     throw UserError(problems);
 }
 
-/// The laboratory of a study, its base models run once and compared with the data's cells.
-std::unique_ptr<DemLaboratory> open_laboratory(const StudyInput &study, MPI_Comm comm, Log &log)
+/// Makes the simulator of a study: runs its base models once, and checks that they give all data
+/// points of the measured data.
+std::unique_ptr<DemSimulator> open_simulator(const StudyInput &study, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
-  auto laboratory = std::make_unique<DemLaboratory>(study.experiments, study.factors,
-                                                    p.cache_folder(), p.ranks_per_run, comm, log);
+  auto simulator = std::make_unique<DemSimulator>(study.experiments, study.factors,
+                                                  p.cache_folder(), p.ranks_per_run, comm, log);
   // A seed that the stages use as well.
-  laboratory->explore(100000 * p.options.seed + 1);
-  std::map<std::string, std::vector<Cell>> cells;
+  simulator->find_data_points(100000 * p.options.seed + 1);
+  std::map<std::string, std::vector<DataPoint>> points;
   for (const Experiment &experiment : study.experiments)
-    cells[experiment.name()] = laboratory->cells(experiment.name());
+    points[experiment.name()] = simulator->data_points(experiment.name());
   Problems problems;
-  check_cells(study.data, cells, p.measured_data, problems);
+  check_data_points(study.data, points, p.measured_data, problems);
   refuse_if_any(problems);
-  std::vector<Cell> required;
+  std::vector<DataPoint> required;
   for (const auto *list : {&study.data.fit, &study.data.held_out})
-    for (const MeasuredCell &row : *list)
-      required.push_back(row.cell);
-  laboratory->require(required);
-  return laboratory;
+    for (const MeasuredPoint &row : *list)
+      required.push_back(row.point);
+  simulator->require(required);
+  return simulator;
 }
 
-/// Refuses a study whose folders could not be written to, before hours of runs find that.
-void refuse_folders(const StudyParameters &p, const bool makes_twin, MPI_Comm comm)
+/// Refuses a study whose folders cannot be written to, before it spends hours on runs.
+void refuse_folders(const StudyParameters &p, const bool makes_data, MPI_Comm comm)
 {
-  if (makes_twin)
+  if (makes_data)
     return;
   Problems problems;
   int rank;
@@ -110,14 +111,15 @@ void refuse_folders(const StudyParameters &p, const bool makes_twin, MPI_Comm co
   refuse_if_any(problems);
 }
 
-/// Experiments that could be made but were not measured.
+/// Experiments that can be simulated but were not measured.
 std::vector<std::string> further_experiments(const StudyInput &study)
 {
   std::vector<std::string> names;
   for (const Experiment &experiment : study.experiments)
     if (!experiment.is_held_out() &&
-        std::none_of(study.data.fit.begin(), study.data.fit.end(),
-                     [&](const MeasuredCell &m) { return m.cell.experiment == experiment.name(); }))
+        std::none_of(study.data.fit.begin(), study.data.fit.end(), [&](const MeasuredPoint &m) {
+          return m.point.experiment == experiment.name();
+        }))
       names.push_back(experiment.name());
   return names;
 }
@@ -138,20 +140,20 @@ int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
   StudyFolder folder(p.output_path, comm);
-  std::unique_ptr<DemLaboratory> laboratory;
+  std::unique_ptr<DemSimulator> simulator;
   try {
     if (folder.open(study.identity()))
       log.line("Going on with the study in " + p.output_path);
     folder.write("used.prm", p.as_input_file());
     stop_request::listen();
-    laboratory = open_laboratory(study, comm, log);
+    simulator = open_simulator(study, comm, log);
     StudyOptions options = p.options;
     options.further_experiments = further_experiments(study);
     const Discovery discovery =
-        discover(options, study.data, study.plain_factors(), *laboratory, folder, log);
-    // Nuisances stay as they are: it is this model that was validated.
+        discover(options, study.data, study.plain_factors(), *simulator, folder, log);
+    // Nuisances stay at their null values, as in the model that was validated.
     write_models(study, discovery.model_after, folder);
-    write_answer(study, discovery, *laboratory, folder);
+    write_answer(study, discovery, *simulator, folder);
     write_page(study, comm, log);
     print_answer(discovery, folder, log);
     return exit_code(discovery.verdict);
@@ -163,23 +165,23 @@ int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
 
 /// Prints what can be told without reading a whole study.
 /// @return whether it was asked for
-bool tell(const CommandLine &line, const Wishes &wishes, const std::string &file, MPI_Comm comm,
-          Log &log)
+bool tell(const CommandLine &line, const ExtraArguments &arguments, const std::string &file,
+          MPI_Comm comm, Log &log)
 {
   Problems problems;
   if (line.describe_parameters)
     log.line(StudyParameters::description());
-  else if (wishes.list_observables)
+  else if (arguments.list_observables)
     list_observables(log);
-  else if (wishes.list_effects && file.empty()) {
+  else if (arguments.list_effects && file.empty()) {
     const std::vector<Effect> effects = read_effects({"standard"}, comm, problems);
     refuse_if_any(problems);
     list_effects(effects, log);
   } else if (line.print_parameters) {
-    const bool with_twin = !wishes.twin.empty() || file.empty();
+    const bool with_synthetic_data = !arguments.truth_file.empty() || file.empty();
     const std::string text = file.empty() ? "" : read_file(file, comm);
     const StudyParameters parameters =
-        StudyParameters::read(text, file, line.overrides, with_twin, problems,
+        StudyParameters::read(text, file, line.overrides, with_synthetic_data, problems,
                               [comm](const std::string &path) { return read_file(path, comm); });
     if (!file.empty())
       refuse_if_any(problems);
@@ -189,30 +191,30 @@ bool tell(const CommandLine &line, const Wishes &wishes, const std::string &file
   return true;
 }
 
-int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
+int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
 {
-  const bool makes_twin = !wishes.twin.empty();
-  const std::string file = makes_twin ? wishes.twin : line.file;
-  const bool only_lists = wishes.list_observables || wishes.list_effects || line.print_parameters ||
-                          line.describe_parameters;
-  if (const auto code = answer(line, program, !only_lists && !makes_twin, comm))
+  const bool makes_data = !arguments.truth_file.empty();
+  const std::string file = makes_data ? arguments.truth_file : line.file;
+  const bool only_lists = arguments.list_observables || arguments.list_effects ||
+                          line.print_parameters || line.describe_parameters;
+  if (const auto code = answer(line, program, !only_lists && !makes_data, comm))
     return *code;
   Log log(comm, line.quiet);
   StudyInput study;
   Problems problems;
   try {
-    if (tell(line, wishes, file, comm, log))
+    if (tell(line, arguments, file, comm, log))
       return exit_success;
-    study = read_study(file, line.overrides, makes_twin, comm, problems);
+    study = read_study(file, line.overrides, makes_data, comm, problems);
     refuse_if_any(problems);
-    if (wishes.list_effects) {
+    if (arguments.list_effects) {
       list_effects(study.factors, log);
       return exit_success;
     }
-    if (!makes_twin)
+    if (!makes_data)
       read_data(study, comm, problems);
     refuse_if_any(problems);
-    refuse_folders(study.parameters, makes_twin, comm);
+    refuse_folders(study.parameters, makes_data, comm);
     const std::size_t n_warnings = print_doubts(study, problems, log);
     if (line.check) {
       print_check(study, n_warnings, log);
@@ -221,11 +223,11 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
   } catch (const UserError &error) {
     throw RefusedInput(error);
   }
-  if (!makes_twin)
+  if (!makes_data)
     return make_study(study, comm, log);
   try {
     stop_request::listen();
-    make_twin(study.parameters, study.factors, comm, log);
+    make_synthetic_data(study.parameters, study.factors, comm, log);
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Give the same command again to go on.");
     return exit_stopped;
@@ -238,17 +240,17 @@ int run(const CommandLine &line, const Wishes &wishes, MPI_Comm comm)
 int run_discovery(int argc, char **argv, MPI_Comm comm)
 {
   return guarded(comm, [&] {
-    Wishes wishes;
+    ExtraArguments arguments;
     const CommandLine line = parse_command_line(
         argc, argv, program,
         {{"make-twin",
           "instead of a study, make measured data of the hidden truth in this file, which is a "
           "study with a subsection 'twin'",
-          nullptr, &wishes.twin},
-         {"list-observables", "list what processes measure, and exit", &wishes.list_observables},
+          nullptr, &arguments.truth_file},
+         {"list-observables", "list what processes measure, and exit", &arguments.list_observables},
          {"list-effects", "list the effects of the catalogue, or of the study, and exit",
-          &wishes.list_effects}});
-    return run(line, wishes, comm);
+          &arguments.list_effects}});
+    return run(line, arguments, comm);
   });
 }
 

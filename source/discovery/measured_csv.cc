@@ -149,11 +149,11 @@ private:
     const auto at = [&words](const std::string &column) -> const std::string & {
       return words[std::find(columns.begin(), columns.end(), column) - columns.begin()];
     };
-    MeasuredCell row;
-    row.cell.experiment = at("experiment");
-    row.cell.observable = at("observable");
+    MeasuredPoint row;
+    row.point.experiment = at("experiment");
+    row.point.observable = at("observable");
     int repeats = 0;
-    bool ok = read_count(at("index"), "index", 0, row.cell.index);
+    bool ok = read_count(at("index"), "index", 0, row.point.index);
     ok &= read_number(at("value"), "value", row.value);
     if (read_number(at("std"), "std", row.standard_deviation) && row.standard_deviation <= 0.)
       complain("the std is " + at("std") + ".",
@@ -165,7 +165,7 @@ private:
       return;
     check_observable(*experiment, at("observable"));
     check_use(*experiment, at("use"));
-    const auto [earlier, is_new] = lines.emplace(row.cell, number);
+    const auto [earlier, is_new] = lines.emplace(row.point, number);
     if (!is_new)
       complain("the cell was given in line " + std::to_string(earlier->second) + " already.",
                "Remove one of the rows.");
@@ -188,7 +188,7 @@ private:
   const std::vector<Experiment> &experiments;
   Problems &problems;
   MeasuredData data;
-  std::map<Cell, unsigned int> lines;
+  std::map<DataPoint, unsigned int> lines;
   unsigned int number = 0;
 };
 
@@ -207,30 +207,31 @@ std::string write_measured(const MeasuredData &data)
     text += "# " + key + ": " + value + "\n";
   text += heading + "\n";
   for (const auto &[use, list] : {std::pair("fit", &data.fit), {"held-out", &data.held_out}})
-    for (const MeasuredCell &row : *list) {
+    for (const MeasuredPoint &row : *list) {
       char numbers[96];
-      std::snprintf(numbers, sizeof numbers, ",%d,%.17g,%.17g,%u,", row.cell.index, row.value,
+      std::snprintf(numbers, sizeof numbers, ",%d,%.17g,%.17g,%u,", row.point.index, row.value,
                     row.standard_deviation, row.repeats);
-      text += row.cell.experiment + "," + row.cell.observable + numbers + use + "\n";
+      text += row.point.experiment + "," + row.point.observable + numbers + use + "\n";
     }
   return text;
 }
 
-void check_cells(const MeasuredData &data, const std::map<std::string, std::vector<Cell>> &cells,
-                 const std::string &file, Problems &problems)
+void check_data_points(const MeasuredData &data,
+                       const std::map<std::string, std::vector<DataPoint>> &points,
+                       const std::string &file, Problems &problems)
 {
   for (const auto *list : {&data.fit, &data.held_out})
-    for (const MeasuredCell &row : *list) {
-      const std::vector<Cell> &known = cells.at(row.cell.experiment);
-      if (std::find(known.begin(), known.end(), row.cell) != known.end())
+    for (const MeasuredPoint &row : *list) {
+      const std::vector<DataPoint> &known = points.at(row.point.experiment);
+      if (std::find(known.begin(), known.end(), row.point) != known.end())
         continue;
       std::string indices;
-      for (const Cell &cell : known)
-        if (cell.observable == row.cell.observable)
-          indices += (indices.empty() ? "" : ", ") + std::to_string(cell.index);
+      for (const DataPoint &point : known)
+        if (point.observable == row.point.observable)
+          indices += (indices.empty() ? "" : ", ") + std::to_string(point.index);
       problems.add(file + ":",
-                   "index " + std::to_string(row.cell.index) + " of '" + row.cell.observable +
-                       "' is not measured by experiment '" + row.cell.experiment + "'.",
+                   "index " + std::to_string(row.point.index) + " of '" + row.point.observable +
+                       "' is not measured by experiment '" + row.point.experiment + "'.",
                    indices.empty() ? "The base model does not give this observable at all."
                                    : "The base model gives the indices " + indices + ".");
     }

@@ -66,7 +66,7 @@ void write_models(const StudyInput &study, const Amplitudes &after, const StudyF
 }
 
 void write_answer(const StudyInput &study, const Discovery &discovery,
-                  const DemLaboratory &laboratory, const StudyFolder &folder)
+                  const DemSimulator &simulator, const StudyFolder &folder)
 {
   nlohmann::ordered_json answer = discovery.content;
   auto &origin = answer["provenance"];
@@ -102,17 +102,17 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                              {"index", o.index_meaning},
                              {"text", o.text}});
   // The order of the values in the runs that the stages list.
-  auto &cells = answer["cells"];
+  auto &points = answer["cells"];
   for (const Experiment &experiment : study.experiments)
-    for (const Cell &cell : laboratory.cells(experiment.name()))
-      cells[experiment.name()].push_back({cell.observable, cell.index});
+    for (const DataPoint &point : simulator.data_points(experiment.name()))
+      points[experiment.name()].push_back({point.observable, point.index});
   double core_seconds = 0.;
-  for (const auto &run : laboratory.ledger())
+  for (const auto &run : simulator.ledger())
     core_seconds += run.at("core_seconds").get<double>();
-  answer["simulations"] = {{"made_now", laboratory.n_runs()},
-                           {"from_cache", laboratory.n_cached()},
+  answer["simulations"] = {{"made_now", simulator.n_runs()},
+                           {"from_cache", simulator.n_cached()},
                            {"core_hours", core_seconds / 3600.}};
-  answer["ledger"] = laboratory.ledger();
+  answer["ledger"] = simulator.ledger();
   folder.write("discovery.json", answer.dump(1) + "\n");
 }
 
@@ -157,30 +157,30 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
   const auto n_factors = static_cast<double>(study.factors.size());
   double runs = 0., core_hours = 0.;
   for (const Experiment &experiment : study.experiments) {
-    const auto cells = [&](const std::vector<MeasuredCell> &list) {
-      return std::count_if(list.begin(), list.end(), [&](const MeasuredCell &m) {
-        return m.cell.experiment == experiment.name();
+    const auto count_points = [&](const std::vector<MeasuredPoint> &list) {
+      return std::count_if(list.begin(), list.end(), [&](const MeasuredPoint &m) {
+        return m.point.experiment == experiment.name();
       });
     };
-    const auto n_cells = cells(study.data.fit) + cells(study.data.held_out);
+    const auto n_points = count_points(study.data.fit) + count_points(study.data.held_out);
     const double leaders = std::min<double>(options.n_leaders, n_effects);
     const double n_nuisances = n_factors - n_effects;
-    // A second look, and held-out data that speak against the answer, ask for more.
-    const double looks = options.second_look ? 2.5 : 1., judgements = 3.;
+    // A second look, and a second validation, need more runs.
+    const double looks = options.second_look ? 2.5 : 1., validations = 3.;
     const double of_base = options.null_runs + 2. * options.screen_runs * n_effects +
                            2. * options.nuisance_runs * n_nuisances;
     const double of_leaders = options.confirm_rounds * options.confirm_runs * leaders +
                               options.fit_runs * options.max_effects;
     const double n =
         experiment.is_held_out()
-            ? judgements * (2. * options.validate_runs + options.nuisance_runs * n_nuisances)
-        : n_cells == 0 ? 0.
-                       : looks * of_base + of_leaders;
+            ? validations * (2. * options.validate_runs + options.nuisance_runs * n_nuisances)
+        : n_points == 0 ? 0.
+                        : looks * of_base + of_leaders;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
-             (experiment.is_held_out() ? ", held out" : "") +
-             "): " + format_count(static_cast<double>(n_cells), "measured cell", "measured cells") +
+             (experiment.is_held_out() ? ", held out" : "") + "): " +
+             format_count(static_cast<double>(n_points), "measured cell", "measured cells") +
              "; at most about " + format_count(n, "run", "runs") + " of " +
              format_count(estimate.particles, "particle", "particles") + " and " +
              format_count(estimate.steps, "step", "steps") + ", " +

@@ -69,7 +69,7 @@ bool StudyFolder::open(const std::map<std::string, std::string> &identity)
 std::optional<nlohmann::ordered_json> StudyFolder::load(const std::string &stage)
 {
   auto table = read_json(file("stages/" + stage + ".json"), comm);
-  // The laboratory's cache remembers runs, with the engine that made them.
+  // The simulator's cache remembers runs, with the engine that made them.
   if (table && table->contains("runs"))
     table->at("runs") = nlohmann::ordered_json::array();
   return table;

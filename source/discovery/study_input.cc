@@ -28,7 +28,7 @@ std::map<std::string, std::string> StudyInput::identity() const
   std::map<std::string, std::string> parts;
   parts["engine"] = engine_digest();
   parts["measured data"] = data_text;
-  // Where things are kept and how ranks are used decides nothing.
+  // Paths and the use of ranks do not change results.
   static const std::set<std::string> places = {"output path",   "cache path", "ranks per run",
                                                "measured data", "write page", "effect folders",
                                                "case file"};
@@ -73,12 +73,12 @@ std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Co
 }
 
 StudyInput read_study(const std::string &file, const std::vector<std::string> &overrides,
-                      const bool with_twin, MPI_Comm comm, Problems &problems)
+                      const bool with_synthetic_data, MPI_Comm comm, Problems &problems)
 {
   StudyInput study;
   const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
-  study.parameters =
-      StudyParameters::read(read_file(file, comm), file, overrides, with_twin, problems, load);
+  study.parameters = StudyParameters::read(read_file(file, comm), file, overrides,
+                                           with_synthetic_data, problems, load);
   const StudyParameters &p = study.parameters;
   if (!problems.empty())
     return study;

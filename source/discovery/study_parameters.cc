@@ -103,28 +103,28 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                     "for comparison only.");
 }
 
-void declare_twin(dealii::ParameterHandler &prm, TwinParameters &twin)
+void declare_synthetic_data(dealii::ParameterHandler &prm, SyntheticDataParameters &synthetic)
 {
   prm.enter_subsection("twin");
-  declare_list(prm, "effects", twin.effects, ',',
+  declare_list(prm, "effects", synthetic.effects, ',',
                "The truth: 'name: amplitude, ...'; empty: nothing is missing.");
-  declare_list(prm, "overrides", twin.overrides, ';',
+  declare_list(prm, "overrides", synthetic.overrides, ';',
                "Entries in which the truth's simulations differ from the model's without being "
                "effects, such as the depth: 'subsection/entry = value; ...'.");
-  declare_list(prm, "observables", twin.observables, ',',
+  declare_list(prm, "observables", synthetic.observables, ',',
                "Observables that are measured: 'all', or names.");
-  prm.add_parameter("time step factor", twin.time_step_factor,
+  prm.add_parameter("time step factor", synthetic.time_step_factor,
                     "Time step of the truth, in terms of the model's.",
                     declare::Patterns::Double(0.05, 2.));
-  prm.add_parameter("jitter nuisances", twin.jitter_nuisances,
+  prm.add_parameter("jitter nuisances", synthetic.jitter_nuisances,
                     "Whether the truth's nuisances are drawn from their distributions.");
-  declare::not_negative(prm, "noise", twin.noise,
+  declare::not_negative(prm, "noise", synthetic.noise,
                         "Standard deviation of the measurement, relative to the observable's root "
                         "mean square over its cells.");
-  declare::count(prm, "repeats", twin.repeats, "Number of repeated measurements.", 2);
-  declare::count(prm, "seed", twin.seed, "Seed of the truth: powder, packing, noise, nuisances.",
-                 0);
-  prm.add_parameter("sealed file", twin.sealed_file, "File that keeps the truth.");
+  declare::count(prm, "repeats", synthetic.repeats, "Number of repeated measurements.", 2);
+  declare::count(prm, "seed", synthetic.seed,
+                 "Seed of the truth: powder, packing, noise, nuisances.", 0);
+  prm.add_parameter("sealed file", synthetic.sealed_file, "File that keeps the truth.");
   prm.leave_subsection();
 }
 
@@ -155,7 +155,8 @@ std::string beside(const std::string &name, const std::string &input_file)
 
 /// Makes names of files relative to the folder in which the program was started, as their entries
 /// give them relative to the input file in which they are written.
-void resolve_files(std::vector<InputEntry> &entries, const std::string &file, const bool with_twin)
+void resolve_files(std::vector<InputEntry> &entries, const std::string &file,
+                   const bool with_synthetic_data)
 {
   // Defaults first, so that what is written overrides them.
   InputEntry data, sealed;
@@ -164,9 +165,9 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file, co
   data.value = StudyParameters().measured_data;
   sealed.path = {"twin"};
   sealed.name = "sealed file";
-  sealed.value = TwinParameters().sealed_file;
+  sealed.value = SyntheticDataParameters().sealed_file;
   data.where = sealed.where = file + ":0";
-  if (with_twin)
+  if (with_synthetic_data)
     entries.insert(entries.begin(), sealed);
   entries.insert(entries.begin(), data);
   for (InputEntry &entry : entries) {
@@ -186,7 +187,7 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file, co
 
 } // namespace
 
-void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twin)
+void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_synthetic_data)
 {
   prm.enter_subsection(section);
   prm.add_parameter("measured data", measured_data, "Table of what was measured.");
@@ -226,8 +227,8 @@ void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_twi
     prm.leave_subsection();
   }
   prm.leave_subsection();
-  if (with_twin)
-    declare_twin(prm, twin);
+  if (with_synthetic_data)
+    declare_synthetic_data(prm, synthetic);
 }
 
 std::string StudyParameters::description()
@@ -282,17 +283,17 @@ void StudyParameters::check(const ParameterCheck &check) const
 
 StudyParameters StudyParameters::read(const std::string &text, const std::string &file,
                                       const std::vector<std::string> &overrides,
-                                      const bool with_twin, Problems &problems,
+                                      const bool with_synthetic_data, Problems &problems,
                                       const FileLoader &load)
 {
   std::vector<InputEntry> entries =
       parse_input_and_overrides(text, file, overrides, problems, load);
-  resolve_files(entries, file, with_twin);
+  resolve_files(entries, file, with_synthetic_data);
   StudyParameters study;
   study.experiments.resize(repeated_sections()[0].count(entries));
   study.nuisances.resize(repeated_sections()[1].count(entries));
   dealii::ParameterHandler prm;
-  study.declare(prm, with_twin);
+  study.declare(prm, with_synthetic_data);
   study.complete_input = set_entries(prm, entries, repeated_sections(), problems);
   if (problems.empty())
     study.check(ParameterCheck(entries, file, problems));

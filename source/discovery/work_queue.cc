@@ -1,5 +1,5 @@
 #include <eunoe/core/gather.h>
-#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/simulator.h>
 #include <eunoe/discovery/work_queue.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 constexpr int tag_ask = 1, tag_answer = 2;
 constexpr int none_left = -1;
 
-/// What a group says when it asks for a task.
+/// Message of a group that asks for a task.
 struct Question
 {
   int has_finished, leaves;

@@ -2,7 +2,7 @@
 // disk and found again; runs that fail; seeds; null values; a stop in the middle.
 
 #include <eunoe/core/files.h>
-#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/study_input.h>
 
 #include "../on_one_rank.h"
@@ -27,10 +27,10 @@ Numbers numbers(const std::vector<RunResult> &results)
   return rows;
 }
 
-void check_runs(const std::string &name, const Laboratory &laboratory, const std::uint64_t made)
+void check_runs(const std::string &name, const Simulator &simulator, const std::uint64_t made)
 {
-  check(name, laboratory.n_runs() == made,
-        std::to_string(laboratory.n_runs()) + " runs instead of " + std::to_string(made));
+  check(name, simulator.n_runs() == made,
+        std::to_string(simulator.n_runs()) + " runs instead of " + std::to_string(made));
 }
 
 } // namespace
@@ -65,22 +65,22 @@ int main(int argc, char **argv)
                                             {"box", {{"growth", 20.}}, 1}};
   std::vector<RunResult> first;
   {
-    DemLaboratory laboratory(experiments, effects, cache, 1, comm, log);
-    laboratory.explore(1);
-    print("cells: " + std::to_string(laboratory.cells("box").size()));
-    first = laboratory.run(requests);
+    DemSimulator simulator(experiments, effects, cache, 1, comm, log);
+    simulator.find_data_points(1);
+    print("cells: " + std::to_string(simulator.data_points("box").size()));
+    first = simulator.run(requests);
     const std::vector<bool> succeed = {true, true, true, false, true, true, false};
     bool as_expected = true;
     for (std::size_t k = 0; k < first.size(); ++k)
       as_expected = as_expected && first[k].has_value() == succeed[k] &&
-                    (!first[k] || first[k]->size() == laboratory.cells("box").size());
+                    (!first[k] || first[k]->size() == simulator.data_points("box").size());
     check("those that break off have no result, all others one number a cell", as_expected);
-    const auto value = [&laboratory](const std::string &observable) {
-      const auto &cells = laboratory.cells("box");
-      const auto found = std::find_if(cells.begin(), cells.end(), [&](const Cell &cell) {
-        return cell.observable == observable;
+    const auto value = [&simulator](const std::string &observable) {
+      const auto &points = simulator.data_points("box");
+      const auto found = std::find_if(points.begin(), points.end(), [&](const DataPoint &point) {
+        return point.observable == observable;
       });
-      return [column = found - cells.begin()](const std::vector<double> &row) {
+      return [column = found - points.begin()](const std::vector<double> &row) {
         return row[static_cast<std::size_t>(column)];
       };
     };
@@ -93,45 +93,45 @@ int main(int argc, char **argv)
       if (ranks == MPI_COMM_WORLD)
         return numbers(first);
       Log own_log(ranks, true);
-      DemLaboratory alone(experiments, effects, cache_alone, 1, ranks, own_log);
-      alone.explore(1);
+      DemSimulator alone(experiments, effects, cache_alone, 1, ranks, own_log);
+      alone.find_data_points(1);
       return numbers(alone.run(requests));
     });
     check("a null value changes no bit", *first[0] == *first[5]);
     check("other seeds, other packings", *first[0] != *first[4]);
     // Two base models, and of the requests all but the first and its like.
-    check_runs("equal runs are made once", laboratory, 7);
-    laboratory.run(requests);
-    check_runs("and not again", laboratory, 7);
-    check("the ledger names them", laboratory.ledger().size() == 8);
-    for (const auto &run : laboratory.ledger())
+    check_runs("equal runs are made once", simulator, 7);
+    simulator.run(requests);
+    check_runs("and not again", simulator, 7);
+    check("the ledger names them", simulator.ledger().size() == 8);
+    for (const auto &run : simulator.ledger())
       if (run.contains("failure"))
         print(run.at("failure").get<std::string>().substr(0, 60));
   }
   {
-    DemLaboratory laboratory(experiments, effects, cache, 2, comm, log);
-    laboratory.explore(1);
-    check("kept results are the same", laboratory.run(requests) == first);
-    check_runs("nothing is made again", laboratory, 0);
-    check("all came from the cache", laboratory.n_cached() == 8);
+    DemSimulator simulator(experiments, effects, cache, 2, comm, log);
+    simulator.find_data_points(1);
+    check("kept results are the same", simulator.run(requests) == first);
+    check_runs("nothing is made again", simulator, 0);
+    check("all came from the cache", simulator.n_cached() == 8);
     if (is_first_rank()) {
       std::size_t n = 0;
       for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
         n += entry.is_regular_file() ? 1 : 0;
       print(std::to_string(n) + " files");
       // Damage is not taken for a result.
-      write_file(cache + "/" + laboratory.ledger()[0].at("key").get<std::string>().substr(0, 2) +
-                     "/" + laboratory.ledger()[0].at("key").get<std::string>() + ".json",
+      write_file(cache + "/" + simulator.ledger()[0].at("key").get<std::string>().substr(0, 2) +
+                     "/" + simulator.ledger()[0].at("key").get<std::string>() + ".json",
                  "{\"key\": 1");
     }
     MPI_Barrier(comm);
   }
   {
-    DemLaboratory laboratory(experiments, effects, cache, 2, comm, log);
-    laboratory.explore(1);
-    check_runs("what is damaged is made again", laboratory, 1);
-    check("with the same result", laboratory.run(requests) == first);
-    laboratory.require({{"box", "drift", 0}});
-    check("a required cell that is there", laboratory.run({requests[0]})[0].has_value());
+    DemSimulator simulator(experiments, effects, cache, 2, comm, log);
+    simulator.find_data_points(1);
+    check_runs("what is damaged is made again", simulator, 1);
+    check("with the same result", simulator.run(requests) == first);
+    simulator.require({{"box", "drift", 0}});
+    check("a required cell that is there", simulator.run({requests[0]})[0].has_value());
   }
 }

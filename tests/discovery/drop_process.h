@@ -78,9 +78,9 @@ public:
   void start(Simulation &simulation) override
   {
     const auto place = [this](const std::size_t k, const ParticleId id) {
-      const auto along = [&](const std::size_t cell, const std::uint32_t d) {
+      const auto along = [&](const std::size_t point, const std::uint32_t d) {
         return 2e-3 *
-               (static_cast<double>(cell) + 0.3 * uniform(section.seed, Draw::offset, id, d));
+               (static_cast<double>(point) + 0.3 * uniform(section.seed, Draw::offset, id, d));
       };
       return Vec3{-5e-3 + along(k % 4, 0), 1e-3 + along(k / 16, 1), -5e-3 + along(k / 4 % 4, 2)};
     };

@@ -10,47 +10,47 @@ namespace {
 
 using namespace test;
 
-constexpr Eigen::Index n_cells = 10;
+constexpr Eigen::Index n_points = 10;
 constexpr unsigned int n_repeats = 4;
 
 /// What of a model is not known exactly, and how far it is off.
 struct Setting
 {
-  double shift = 0.;      ///< of the data in every cell, in units of one run's chaos
-  double doubt = 0.;      ///< standard deviation of a nuisance that changes all cells alike
-  double instrument = 0.; ///< variance of the measurement's noise beside a run's
-  bool has_other = false; ///< whether another model was run, too
+  double shift = 0.;       ///< of the data in every data point, in units of one run's scatter
+  double uncertainty = 0.; ///< standard deviation of a nuisance that changes all data points alike
+  double instrument = 0.;  ///< variance of the measurement's noise beside a run's
+  bool has_other = false;  ///< whether another model was run, too
 };
 
-/// Held-out data of a model, from runs whose cells are correlated.
+/// Held-out data of a model, from runs whose data points are correlated.
 double p_of(const Setting &setting, std::uint32_t seed)
 {
   RandomStream random(seed, 11);
-  Eigen::MatrixXd chaos(n_cells, n_cells);
-  for (Eigen::Index i = 0; i < n_cells; ++i)
-    for (Eigen::Index j = 0; j < n_cells; ++j)
+  Eigen::MatrixXd chaos(n_points, n_points);
+  for (Eigen::Index i = 0; i < n_points; ++i)
+    for (Eigen::Index j = 0; j < n_points; ++j)
       chaos(i, j) = std::pow(0.5, std::abs(static_cast<double>(i - j)));
   const Eigen::MatrixXd half = Eigen::LLT<Eigen::MatrixXd>(chaos).matrixL();
   const auto runs = [&](Eigen::Index n) -> Eigen::MatrixXd {
-    return random.normals(n, n_cells) * half.transpose();
+    return random.normals(n, n_points) * half.transpose();
   };
   HeldOut held_out;
-  for (int c = 0; c < n_cells; ++c)
-    held_out.cells.push_back({{"e", "profile", c}, 0., 1., n_repeats});
+  for (int c = 0; c < n_points; ++c)
+    held_out.points.push_back({{"e", "profile", c}, 0., 1., n_repeats});
   const Eigen::MatrixXd measured =
-      runs(n_repeats) + std::sqrt(setting.instrument) * random.normals(n_repeats, n_cells);
+      runs(n_repeats) + std::sqrt(setting.instrument) * random.normals(n_repeats, n_points);
   held_out.data = measured.colwise().mean().transpose().array() + setting.shift +
-                  setting.doubt * random.normal();
+                  setting.uncertainty * random.normal();
   held_out.deviation =
       (centred(measured).colwise().squaredNorm().transpose() / (n_repeats - 1.)).cwiseSqrt();
-  held_out.repeats = Eigen::VectorXd::Constant(n_cells, n_repeats);
+  held_out.repeats = Eigen::VectorXd::Constant(n_points, n_repeats);
   held_out.before = runs(8);
   if (setting.has_other)
     held_out.after = runs(8).array() + 5.;
   Prediction prediction;
   prediction.runs = held_out.before;
   prediction.mean = prediction.runs.colwise().mean().transpose();
-  prediction.doubt = Eigen::MatrixXd::Constant(n_cells, 1, setting.doubt);
+  prediction.uncertainty = Eigen::MatrixXd::Constant(n_points, 1, setting.uncertainty);
   prediction.leverage = 1. / 8.;
   return p_of_held_out(held_out, prediction, seed);
 }

@@ -1,7 +1,7 @@
 // The queue of tasks: each is done once, on one group, whatever the ranks; a stop reaches all.
 
 #include <eunoe/core/files.h>
-#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/simulator.h>
 #include <eunoe/discovery/work_queue.h>
 
 #include "../tests.h"

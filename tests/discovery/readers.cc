@@ -132,10 +132,11 @@ void measurements()
         problems.empty() && again.header == data.header && again.fit.size() == 1 &&
             again.held_out.size() == 1 && again.fit[0].value == data.fit[0].value &&
             again.fit[0].standard_deviation == data.fit[0].standard_deviation &&
-            again.fit[0].repeats == 3 && again.held_out[0].cell == data.held_out[0].cell &&
+            again.fit[0].repeats == 3 && again.held_out[0].point == data.held_out[0].point &&
             again.held_out[0].value == data.held_out[0].value);
-  check_cells(data, {{"box", {{"box", "height", 1}, {"box", "height", 2}}}, {"other_box", {}}},
-              "measured.csv", problems);
+  check_data_points(data,
+                    {{"box", {{"box", "height", 1}, {"box", "height", 2}}}, {"other_box", {}}},
+                    "measured.csv", problems);
   print_problems("cells that the model does not give", problems);
 }
 

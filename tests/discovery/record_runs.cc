@@ -8,7 +8,7 @@
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/core/version.h>
-#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/study_input.h>
 
 #include <deal.II/base/mpi.h>
@@ -66,10 +66,10 @@ void write_row(std::FILE *file, const RunRequest &request, const RunResult &resu
   std::fprintf(file, "\n");
 }
 
-void write_table(const std::string &path, const StudyInput &study, DemLaboratory &laboratory,
+void write_table(const std::string &path, const StudyInput &study, DemSimulator &simulator,
                  const std::vector<RunRequest> &requests)
 {
-  const std::vector<RunResult> results = laboratory.run(requests);
+  const std::vector<RunResult> results = simulator.run(requests);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     return;
   const std::string unfinished = path + ".unfinished";
@@ -91,8 +91,8 @@ void write_table(const std::string &path, const StudyInput &study, DemLaboratory
                  f.prior_deviation);
   for (const Experiment &experiment : study.experiments) {
     std::fprintf(file, "cells %s %d", experiment.name().c_str(), experiment.is_held_out() ? 1 : 0);
-    for (const Cell &cell : laboratory.cells(experiment.name()))
-      std::fprintf(file, " %s:%d", cell.observable.c_str(), cell.index);
+    for (const DataPoint &point : simulator.data_points(experiment.name()))
+      std::fprintf(file, " %s:%d", point.observable.c_str(), point.index);
     std::fprintf(file, "\n");
   }
   for (std::size_t k = 0; k < requests.size(); ++k)
@@ -110,9 +110,9 @@ void record(const std::string &study_file, const std::string &table, const unsig
   if (!problems.empty())
     throw UserError(problems);
   Log log(MPI_COMM_WORLD, false);
-  DemLaboratory laboratory(study.experiments, study.factors, study.parameters.cache_folder(), 1,
-                           MPI_COMM_WORLD, log);
-  laboratory.explore(1);
+  DemSimulator simulator(study.experiments, study.factors, study.parameters.cache_folder(), 1,
+                         MPI_COMM_WORLD, log);
+  simulator.find_data_points(1);
   const std::vector<Amplitudes> others = wanted_amplitudes(study.plain_factors());
   std::vector<RunRequest> requests;
   const auto add = [&](const Amplitudes &amplitudes, std::uint32_t seed) {
@@ -124,7 +124,7 @@ void record(const std::string &study_file, const std::string &table, const unsig
       add({}, 1 + round * base_sets + k);
     for (const Amplitudes &amplitudes : others)
       add(amplitudes, 1 + round);
-    write_table(table, study, laboratory, requests);
+    write_table(table, study, simulator, requests);
     log.line("Recorded " + std::to_string(round + 1) + " of " + std::to_string(rounds) +
              " rounds.");
   }

@@ -1,24 +1,24 @@
 #ifndef eunoe_tests_discovery_recorded_h
 #define eunoe_tests_discovery_recorded_h
 
-// A laboratory that draws from recorded simulations. Measured are, at the recorded amplitudes,
-// means and the growth of chaos, and the chaos of the base model. What is truth here are these
+// A simulator that draws from recorded simulations. Measured are, at the recorded amplitudes,
+// means and the growth of scatter, and the scatter of the base model. What is truth here are these
 // means less the share of their changes that noise explains (James and Stein), with linear
 // interpolation between amplitudes, and along the last piece beyond them; nuisances, which move
-// little, change cells in proportion. Effects add. A run's chaos is a recorded deviation of the
-// base model from its mean, mixed with independent noise of each cell by Ledoit and Wolf's share,
-// so that its covariance is their estimate.
+// little, change data points in proportion. Effects add. A run's scatter is a recorded deviation of
+// the base model from its mean, mixed with independent noise of each data point by Ledoit and
+// Wolf's share, so that its covariance is their estimate.
 
 #include <eunoe/discovery/statistics/covariance.h>
 
-#include "known_laboratory.h"
+#include "known_simulator.h"
 #include "recorded_table.h"
 
 #include <set>
 
 namespace test {
 
-/// What is kept from the laboratory, as data are made of it: seeds of the base model, or one
+/// What is kept from the simulator, as data are made of it: seeds of the base model, or one
 /// amplitude of a factor.
 struct LeftOut
 {
@@ -27,16 +27,16 @@ struct LeftOut
   double amplitude = 0.;
 };
 
-class RecordedLaboratory : public KnownLaboratory
+class RecordedSimulator : public KnownSimulator
 {
 public:
-  /// @param seed of the chaos
-  RecordedLaboratory(const RecordedTable &table, std::uint32_t seed, LeftOut left_out = {})
+  /// @param seed of the scatter
+  RecordedSimulator(const RecordedTable &table, std::uint32_t seed, LeftOut left_out = {})
       : seed(seed), left_out(std::move(left_out))
   {
-    all_cells = table.cells;
+    all_points = table.points;
     all_factors = table.factors;
-    for (const auto &[experiment, cells] : table.cells) {
+    for (const auto &[experiment, points] : table.points) {
       make_chaos(table, experiment);
       for (const Factor &factor : table.factors)
         make_pieces(table, experiment, factor);
@@ -60,7 +60,7 @@ public:
     double noise = 0.;
     for (const std::string &e : experiments) {
       const Piece piece = at(e, name, amplitude);
-      noise += piece.variance * static_cast<double>(all_cells.at(e).size());
+      noise += piece.variance * static_cast<double>(all_points.at(e).size());
     }
     const double strong = strength({{name, amplitude}}, experiments);
     return strong > 0. ? noise / (strong * strong) : 1.;
@@ -74,8 +74,8 @@ private:
     double own_share = 0.;
   };
 
-  /// An amplitude of a factor: change of the mean from the base model, how much larger the chaos
-  /// is, and the variance of the change in units of one run's chaos.
+  /// An amplitude of a factor: change of the mean from the base model, how much larger the scatter
+  /// is, and the variance of the change in units of one run's scatter.
   struct Piece
   {
     double amplitude = 0.;

@@ -1,8 +1,8 @@
 #ifndef eunoe_tests_discovery_recorded_cases_h
 #define eunoe_tests_discovery_recorded_cases_h
 
-// Studies on a laboratory of recorded simulations: of truths at any amplitude, and of data that are
-// recorded simulations themselves, which the laboratory then lacks.
+// Studies on a simulator of recorded simulations: of truths at any amplitude, and of data that are
+// recorded simulations themselves, which the simulator then lacks.
 
 #include "recorded.h"
 #include "suite.h"
@@ -15,31 +15,31 @@ struct RecordedStudy
   Discovery discovery;
 };
 
-/// A truth of any strength; its data are drawn like the laboratory's runs, with other seeds.
+/// A truth of any strength; its data are drawn like the simulator's runs, with other seeds.
 inline RecordedStudy interpolated_study(const RecordedTable &table, const StudyKind &kind,
                                         std::uint32_t seed, const StudyOptions &options)
 {
   RandomStream random(seed, 98);
-  RecordedLaboratory laboratory(table, seed);
-  SuiteCase one = draw_case(laboratory, kind, table.fit, seed, random);
+  RecordedSimulator simulator(table, seed);
+  SuiteCase one = draw_case(simulator, kind, table.fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  find_resolution(laboratory, table.fit, repeats, one);
-  const MeasuredData data = laboratory.measure(table.fit, table.held_out, one.truth, repeats,
-                                               0.4 * random.uniform(), seed);
-  return {one, study_of(one, laboratory, data, options)};
+  find_resolution(simulator, table.fit, repeats, one);
+  const MeasuredData data = simulator.measure(table.fit, table.held_out, one.truth, repeats,
+                                              0.4 * random.uniform(), seed);
+  return {one, study_of(one, simulator, data, options)};
 }
 
 /// Means and deviations of recorded runs of one experiment as data.
-inline std::vector<MeasuredCell> as_data(const RecordedTable &table, const std::string &experiment,
-                                         const std::string &factor, double amplitude,
-                                         const std::set<std::uint32_t> &seeds)
+inline std::vector<MeasuredPoint> as_data(const RecordedTable &table, const std::string &experiment,
+                                          const std::string &factor, double amplitude,
+                                          const std::set<std::uint32_t> &seeds)
 {
   std::vector<const RecordedTable::Run *> runs;
   for (const RecordedTable::Run *run : table.of(experiment, factor))
     if (run->amplitude == amplitude && (seeds.empty() || seeds.count(run->seed) > 0))
       runs.push_back(run);
-  std::vector<MeasuredCell> data;
-  for (std::size_t c = 0; c < table.cells.at(experiment).size(); ++c) {
+  std::vector<MeasuredPoint> data;
+  for (std::size_t c = 0; c < table.points.at(experiment).size(); ++c) {
     const auto k = static_cast<Eigen::Index>(c);
     const auto n = static_cast<double>(runs.size());
     double mean = 0., square = 0.;
@@ -47,40 +47,40 @@ inline std::vector<MeasuredCell> as_data(const RecordedTable &table, const std::
       mean += run->values(k) / n;
     for (const auto *run : runs)
       square += std::pow(run->values(k) - mean, 2);
-    data.push_back({table.cells.at(experiment)[c], mean, std::sqrt(square / (n - 1.)),
+    data.push_back({table.points.at(experiment)[c], mean, std::sqrt(square / (n - 1.)),
                     static_cast<unsigned int>(runs.size())});
   }
   return data;
 }
 
 /// A study whose data are simulations: runs of the base model with some seeds, or of one factor at
-/// one amplitude, which the laboratory interpolates from the others.
+/// one amplitude, which the simulator interpolates from the others.
 inline RecordedStudy simulated_study(const RecordedTable &table, const LeftOut &left_out,
                                      std::uint32_t seed, const StudyOptions &options)
 {
-  RecordedLaboratory laboratory(table, seed, left_out);
+  RecordedSimulator simulator(table, seed, left_out);
   SuiteCase one;
   one.seed = seed;
   one.kind = left_out.factor.empty() ? "none" : "single";
   const std::string factor = left_out.factor.empty() ? "base" : left_out.factor;
   if (!left_out.factor.empty()) {
     // How strong it is, with all of its runs known.
-    const double strength = RecordedLaboratory(table, seed)
-                                .strength({{left_out.factor, left_out.amplitude}}, table.fit);
-    const bool below = left_out.amplitude < laboratory.factor(left_out.factor).null_value;
+    const double strength =
+        RecordedSimulator(table, seed).strength({{left_out.factor, left_out.amplitude}}, table.fit);
+    const bool below = left_out.amplitude < simulator.factor(left_out.factor).null_value;
     one.strengths[left_out.factor] = below ? -strength : strength;
     one.truth[left_out.factor] = left_out.amplitude;
   }
   MeasuredData data;
   for (const std::string &e : table.fit)
-    for (const MeasuredCell &cell :
+    for (const MeasuredPoint &point :
          as_data(table, e, factor, left_out.amplitude, left_out.base_seeds))
-      data.fit.push_back(cell);
+      data.fit.push_back(point);
   for (const std::string &e : table.held_out)
-    for (const MeasuredCell &cell :
+    for (const MeasuredPoint &point :
          as_data(table, e, factor, left_out.amplitude, left_out.base_seeds))
-      data.held_out.push_back(cell);
-  return {one, study_of(one, laboratory, data, options)};
+      data.held_out.push_back(point);
+  return {one, study_of(one, simulator, data, options)};
 }
 
 /// All data that the table has for simulated studies: groups of four runs of the base model, and

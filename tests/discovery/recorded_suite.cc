@@ -18,13 +18,13 @@ using namespace test;
 
 void describe(const RecordedTable &table)
 {
-  const RecordedLaboratory laboratory(table, 1);
-  for (const auto &[experiment, cells] : table.cells) {
+  const RecordedSimulator simulator(table, 1);
+  for (const auto &[experiment, points] : table.points) {
     const SeedCorrelation seeds(table, experiment);
     std::printf("%s: %zu cells, %zu runs of the base model, correlation of equal seeds %.3f "
                 "(by chance %.3f)\n",
-                experiment.c_str(), cells.size(), table.of(experiment, "base").size(), seeds.mean(),
-                seeds.scatter());
+                experiment.c_str(), points.size(), table.of(experiment, "base").size(),
+                seeds.mean(), seeds.scatter());
   }
   std::printf("%zu runs, %u failed\n", table.runs.size(), table.n_failed);
   for (const Factor &factor : table.factors) {
@@ -34,9 +34,9 @@ void describe(const RecordedTable &table)
     for (const auto &[amplitude, count] : amplitudes)
       std::printf("%s %g (%d runs): strength %.1f, share of noise %.3f, held out %.1f\n",
                   factor.name.c_str(), amplitude, count,
-                  laboratory.strength({{factor.name, amplitude}}, table.fit),
-                  laboratory.share_of_noise(factor.name, amplitude, table.fit),
-                  laboratory.strength({{factor.name, amplitude}}, table.held_out));
+                  simulator.strength({{factor.name, amplitude}}, table.fit),
+                  simulator.share_of_noise(factor.name, amplitude, table.fit),
+                  simulator.strength({{factor.name, amplitude}}, table.held_out));
   }
 }
 

@@ -3,7 +3,7 @@
 
 // The table that record_runs.cc writes: simulations of a study's experiments.
 
-#include <eunoe/discovery/cell.h>
+#include <eunoe/discovery/data_point.h>
 #include <eunoe/discovery/factor.h>
 
 #include <Eigen/Dense>
@@ -33,7 +33,7 @@ struct RecordedTable
 
   std::vector<Factor> factors;
   std::vector<std::string> fit, held_out; ///< experiments
-  std::map<std::string, std::vector<Cell>> cells;
+  std::map<std::string, std::vector<DataPoint>> points;
   std::vector<Run> runs;
   unsigned int n_failed = 0;
 
@@ -87,10 +87,10 @@ private:
     int is_held_out = 0;
     words >> experiment >> is_held_out;
     (is_held_out != 0 ? held_out : fit).push_back(experiment);
-    for (std::string cell; words >> cell;) {
-      const std::size_t colon = cell.rfind(':');
-      cells[experiment].push_back(
-          {experiment, cell.substr(0, colon), std::stoi(cell.substr(colon + 1))});
+    for (std::string point; words >> point;) {
+      const std::size_t colon = point.rfind(':');
+      points[experiment].push_back(
+          {experiment, point.substr(0, colon), std::stoi(point.substr(colon + 1))});
     }
   }
 
@@ -99,7 +99,7 @@ private:
     Run run;
     run.experiment = experiment;
     words >> run.factor >> run.amplitude >> run.seed;
-    run.values.resize(static_cast<Eigen::Index>(cells.at(experiment).size()));
+    run.values.resize(static_cast<Eigen::Index>(points.at(experiment).size()));
     for (double &value : run.values) {
       // The stream does not read "nan".
       std::string word;
@@ -112,13 +112,13 @@ private:
     runs.push_back(run);
   }
 
-  /// Leaves out cells that a run lacks, or that do not vary in runs of the base model.
+  /// Leaves out data points that a run lacks, or that do not vary in runs of the base model.
   void keep_complete_cells()
   {
-    for (auto &[experiment, list] : cells) {
+    for (auto &[experiment, list] : points) {
       const std::vector<const Run *> base = of(experiment, "base");
       std::vector<Eigen::Index> kept;
-      std::vector<Cell> left;
+      std::vector<DataPoint> left;
       for (std::size_t c = 0; c < list.size(); ++c) {
         const auto k = static_cast<Eigen::Index>(c);
         bool complete = true, varies = false;

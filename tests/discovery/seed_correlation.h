@@ -31,7 +31,7 @@ public:
   }
 
   /// Mean over all changed models of the correlation with the base model's runs of the same seeds,
-  /// over seeds and cells.
+  /// over seeds and data points.
   double mean() const
   {
     return mean_with([](std::uint32_t seed) { return seed; });
@@ -61,7 +61,7 @@ public:
   }
 
 private:
-  using Runs = std::map<std::uint32_t, Eigen::VectorXd>; ///< values of cells by seed
+  using Runs = std::map<std::uint32_t, Eigen::VectorXd>; ///< values of data points by seed
 
   template <typename SeedOfBase>
   double mean_with(const SeedOfBase &seed_of_base) const

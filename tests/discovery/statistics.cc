@@ -2,9 +2,9 @@
 
 #include <eunoe/discovery/statistics/covariance.h>
 #include <eunoe/discovery/statistics/data_noise.h>
+#include <eunoe/discovery/statistics/emulator.h>
 #include <eunoe/discovery/statistics/misfit.h>
 #include <eunoe/discovery/statistics/modes.h>
-#include <eunoe/discovery/statistics/response.h>
 
 #include "synthetic.h"
 
@@ -66,17 +66,18 @@ void covariances()
 
 void misfits()
 {
-  const Eigen::MatrixXd chaos = chain(8, 0.6), other = 0.3 * chain(8, 0.1);
-  const Misfit misfit(chaos, other);
+  const Eigen::MatrixXd replicate_covariance = chain(8, 0.6), other = 0.3 * chain(8, 0.1);
+  const Misfit misfit(replicate_covariance, other);
   RandomStream random(5, 1);
   const Eigen::VectorXd d = random.normals(8, 1);
   const double h = 0.2;
-  const Eigen::MatrixXd sum = other + h * chaos;
+  const Eigen::MatrixXd sum = other + h * replicate_covariance;
   check("Mahalanobis distance",
         std::abs(misfit.distance(misfit.coordinates(d), h) - d.dot(sum.inverse() * d)) < 1e-9);
-  check("log determinant", std::abs(misfit.log_determinant(h) - misfit.log_determinant(0.5) -
-                                    std::log(sum.determinant()) +
-                                    std::log((other + 0.5 * chaos).determinant())) < 1e-9);
+  check("log determinant",
+        std::abs(misfit.log_determinant(h) - misfit.log_determinant(0.5) -
+                 std::log(sum.determinant()) +
+                 std::log((other + 0.5 * replicate_covariance).determinant())) < 1e-9);
   // With many degrees of freedom the deviance is Gauss's.
   check("deviance", std::abs(misfit.deviance(12., 1.5) - 13.5) < 1e-5);
 }
@@ -86,31 +87,31 @@ Slopes same_slopes(const double square)
   return {Eigen::VectorXd::Constant(1, square), Eigen::VectorXd::Constant(1, square)};
 }
 
-void responses()
+void emulators()
 {
   // A straight response with exact values, at 0, 1 and 2, and replicates.
   const Eigen::VectorXd origin = Eigen::VectorXd::Constant(3, 5.);
   const Eigen::VectorXd slope = Eigen::VectorXd::LinSpaced(3, 1., 3.);
-  std::vector<Response::Run> runs;
+  std::vector<Emulator::Run> runs;
   for (const auto &[u, count] : {std::pair<double, int>(0., 10), {1., 4}, {2., 4}})
     for (int k = 0; k < count; ++k)
       runs.push_back({Eigen::VectorXd::Constant(1, u), origin + u * slope, 1.});
-  const Response response(runs, same_slopes(1e12));
+  const Emulator emulator(runs, same_slopes(1e12));
   const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 1.3);
-  check("origin", (response.origin() - origin).norm() < 1e-6);
-  check("change", (response.change(at) - 1.3 * slope).norm() < 1e-6);
+  check("origin", (emulator.origin() - origin).norm() < 1e-6);
+  check("change", (emulator.change(at) - 1.3 * slope).norm() < 1e-6);
   // Three levels and three terms: each level stands for itself.
   check("leverage of replicates",
-        std::abs(response.leverage(Eigen::VectorXd::Ones(1)) - 0.25) < 1e-6 &&
-            std::abs(response.leverage(Eigen::VectorXd::Zero(1)) - 0.1) < 1e-6);
-  check("range of amplitudes", response.upper(0) == 3. && response.lower(0) == 0.);
+        std::abs(emulator.leverage(Eigen::VectorXd::Ones(1)) - 0.25) < 1e-6 &&
+            std::abs(emulator.leverage(Eigen::VectorXd::Zero(1)) - 0.1) < 1e-6);
+  check("range of amplitudes", emulator.upper(0) == 3. && emulator.lower(0) == 0.);
 }
 
 /// Runs at 0 and at some amplitudes, whose values grow less and less.
 constexpr double power = 0.75;
-std::vector<Response::Run> saturating(const std::vector<double> &amplitudes)
+std::vector<Emulator::Run> saturating(const std::vector<double> &amplitudes)
 {
-  std::vector<Response::Run> runs;
+  std::vector<Emulator::Run> runs;
   const auto add = [&](double u, int count) {
     for (int k = 0; k < count; ++k)
       runs.push_back({Eigen::VectorXd::Constant(1, u),
@@ -127,7 +128,7 @@ void bent_responses()
   // Of the mean slope between 0 and 1.
   const Slopes slope = same_slopes(100. * 100.);
   const Eigen::VectorXd small = Eigen::VectorXd::Constant(1, 0.04);
-  const Response far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
+  const Emulator far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
   const double truth = 100. * std::pow(0.04, power);
   const double miss = std::abs(far.change(small)(0) - truth);
   check("what bends before the first amplitude is missed", miss > 2.);
@@ -143,7 +144,7 @@ void bent_responses()
 void steep_responses()
 {
   const auto value = [](double u) { return 45. * std::pow(u, 0.45); };
-  std::vector<Response::Run> runs;
+  std::vector<Emulator::Run> runs;
   for (const auto &[u, count] :
        {std::pair<double, int>(0., 30), {0.22, 8}, {0.25, 16}, {0.3, 8}, {1., 2}, {2., 2}})
     for (int k = 0; k < count; ++k) {
@@ -154,45 +155,47 @@ void steep_responses()
   const auto mean_square = [&](double u) {
     return Eigen::VectorXd::Constant(1, std::pow(value(u) / u, 2) / 10.);
   };
-  const Response response(runs, {mean_square(1.5), mean_square(0.22)});
+  const Emulator emulator(runs, {mean_square(1.5), mean_square(0.22)});
   for (const double u : {0.22, 0.25, 0.3, 1., 2.}) {
-    const double miss = response.change(Eigen::VectorXd::Constant(1, u))(0) - value(u);
+    const double miss = emulator.change(Eigen::VectorXd::Constant(1, u))(0) - value(u);
     check("follows the runs that are there", std::abs(miss) < 0.5, std::to_string(miss));
   }
   check("what bends is not seen before them",
-        response.unseen_bends(Eigen::VectorXd::Constant(1, 0.2))(0) > 0. &&
-            response.unseen_bends(Eigen::VectorXd::Constant(1, 0.22))(0) == 0.);
+        emulator.unseen_bends(Eigen::VectorXd::Constant(1, 0.2))(0) > 0. &&
+            emulator.unseen_bends(Eigen::VectorXd::Constant(1, 0.22))(0) == 0.);
 }
 
 void modes_and_noise()
 {
-  std::vector<Cell> cells;
+  std::vector<DataPoint> points;
   for (int k = 0; k < 20; ++k)
-    cells.push_back({"e", "profile", 19 - k});
-  cells.push_back({"e", "angle", 0});
-  const Modes modes(cells, Eigen::VectorXd::Constant(21, 2.));
+    points.push_back({"e", "profile", 19 - k});
+  points.push_back({"e", "angle", 0});
+  const Modes modes(points, Eigen::VectorXd::Constant(21, 2.));
   check("number of modes", modes.n_modes() == Modes::most_modes + 1);
   check("orthonormal", (modes.basis() * modes.basis().transpose() -
                         Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes()))
                                .cwiseAbs()
                                .maxCoeff() < 1e-12);
 
-  // The instrument adds as much variance as the chaos has.
-  const Eigen::MatrixXd chaos = Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes());
+  // The instrument adds as much variance as the scatter has.
+  const Eigen::MatrixXd replicate_covariance =
+      Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes());
   const DataNoise noise = estimate_data_noise(
-      modes, chaos, Eigen::VectorXd::Ones(21),
+      modes, replicate_covariance, Eigen::VectorXd::Ones(21),
       {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)});
-  check("noise of the instrument", std::abs(noise.cell_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
+  check("noise of the instrument", std::abs(noise.point_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
                                        std::abs(noise.modes(0, 0) - 2. / 40.) < 0.05 * 2. / 40.);
 
   // An angle that hardly varies in runs says nothing of the profile's noise.
   Eigen::VectorXd deviation = Eigen::VectorXd::Ones(21);
   deviation(20) = 100.;
-  const DataNoise uneven = estimate_data_noise(modes, chaos, Eigen::VectorXd::Ones(21),
-                                               {deviation, Eigen::VectorXd::Constant(21, 5.)});
+  const DataNoise uneven =
+      estimate_data_noise(modes, replicate_covariance, Eigen::VectorXd::Ones(21),
+                          {deviation, Eigen::VectorXd::Constant(21, 5.)});
   check("one observable without chaos",
-        std::abs(uneven.cell_variance(0) - 1. / 5.) < 0.05 / 5. &&
-            std::abs(uneven.cell_variance(20) - 1e4 / 5.) < 0.05 * 1e4 / 5.);
+        std::abs(uneven.point_variance(0) - 1. / 5.) < 0.05 / 5. &&
+            std::abs(uneven.point_variance(20) - 1e4 / 5.) < 0.05 * 1e4 / 5.);
 }
 
 } // namespace
@@ -202,7 +205,7 @@ int main()
   quantiles();
   covariances();
   misfits();
-  responses();
+  emulators();
   bent_responses();
   steep_responses();
   modes_and_noise();

@@ -1,4 +1,4 @@
-// Whole studies on synthetic laboratories, whose truth is known: each verdict where it is due.
+// Whole studies on synthetic simulators, whose truth is known: each verdict where it is due.
 
 #include <eunoe/core/problems.h>
 
@@ -22,19 +22,19 @@ Nature nature(std::uint32_t seed)
   return result;
 }
 
-Discovery study(SyntheticLaboratory &laboratory, const MeasuredData &data,
+Discovery study(SyntheticSimulator &simulator, const MeasuredData &data,
                 const std::vector<Factor> &factors, StageStore &store,
                 const StudyOptions &options = {})
 {
   Log log(MPI_COMM_SELF, true);
-  return discover(options, data, factors, laboratory, store, log);
+  return discover(options, data, factors, simulator, store, log);
 }
 
-Discovery study(SyntheticLaboratory &laboratory, const MeasuredData &data,
+Discovery study(SyntheticSimulator &simulator, const MeasuredData &data,
                 const StudyOptions &options = {})
 {
   TransientStore store;
-  return study(laboratory, data, laboratory.factors(), store, options);
+  return study(simulator, data, simulator.factors(), store, options);
 }
 
 void false_alarms()
@@ -42,8 +42,8 @@ void false_alarms()
   int alarms = 0;
   const int n = 40;
   for (std::uint32_t seed = 1; seed <= n; ++seed) {
-    SyntheticLaboratory laboratory(nature(1000 + seed));
-    const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 4, 0.2, seed));
+    SyntheticSimulator simulator(nature(1000 + seed));
+    const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, seed));
     alarms += d.verdict != Verdict::none && d.verdict != Verdict::underpowered;
   }
   // More than 5 of 40 at a true rate of 5 % would be a chance of 1.4 %.
@@ -55,11 +55,10 @@ void named_with_amplitude()
   int right = 0, covered = 0, withdrawn = 0;
   const int n = 12;
   for (std::uint32_t seed = 1; seed <= n; ++seed) {
-    SyntheticLaboratory laboratory(nature(2000 + seed));
+    SyntheticSimulator simulator(nature(2000 + seed));
     const std::string name(1, static_cast<char>('a' + seed % 6));
-    const double a = laboratory.amplitude_of(name, 8., both);
-    const Discovery d =
-        study(laboratory, laboratory.measure(both, thick, {{name, a}}, 4, 0.2, seed));
+    const double a = simulator.amplitude_of(name, 8., both);
+    const Discovery d = study(simulator, simulator.measure(both, thick, {{name, a}}, 4, 0.2, seed));
     withdrawn += d.verdict == Verdict::off_catalogue;
     if (d.model_after.size() != 1 || d.model_after.count(name) == 0)
       continue;
@@ -74,8 +73,9 @@ void named_with_amplitude()
 
 void steep_from_the_first_bit()
 {
-  // Little of each effect does nearly all of it, and only a third of the cells feel it, as with the
-  // angle of repose and rolling resistance. The truth lies far before the screening's amplitudes.
+  // Little of each effect does nearly all of it, and only a third of the data points feel it, as
+  // with the angle of repose and rolling resistance. The truth lies far before the screening's
+  // amplitudes.
   int named = 0, covered = 0;
   double deviation = 0.;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -83,13 +83,12 @@ void steep_from_the_first_bit()
     steep.power = 0.45;
     steep.bend = 0.;
     steep.strength_of_scale = 40.;
-    SyntheticLaboratory laboratory(steep);
-    for (const Factor &factor : laboratory.factors())
-      laboratory.hide(factor.name, "spreading");
+    SyntheticSimulator simulator(steep);
+    for (const Factor &factor : simulator.factors())
+      simulator.hide(factor.name, "spreading");
     const std::string name(1, static_cast<char>('a' + seed % 3));
-    const double a = laboratory.amplitude_of(name, 16., both);
-    const Discovery d =
-        study(laboratory, laboratory.measure(both, thick, {{name, a}}, 5, 0.2, seed));
+    const double a = simulator.amplitude_of(name, 16., both);
+    const Discovery d = study(simulator, simulator.measure(both, thick, {{name, a}}, 5, 0.2, seed));
     if (d.model_after.size() != 1 || d.model_after.count(name) == 0)
       continue;
     ++named;
@@ -115,14 +114,13 @@ void rivals_get_their_chance()
     steep.power = 0.45;
     steep.bend = 0.;
     steep.strength_of_scale = 20.;
-    SyntheticLaboratory laboratory(steep);
-    laboratory.make_alike("d", "b", 0.15, {"heap"});
-    const double a = laboratory.amplitude_of("b", 14., {"heap"});
-    if (a > 0.3 * laboratory.factor("b").upper)
+    SyntheticSimulator simulator(steep);
+    simulator.make_alike("d", "b", 0.15, {"heap"});
+    const double a = simulator.amplitude_of("b", 14., {"heap"});
+    if (a > 0.3 * simulator.factor("b").upper)
       continue;
     ++n;
-    const Discovery d =
-        study(laboratory, laboratory.measure({"heap"}, {}, {{"b", a}}, 5, 0.2, seed));
+    const Discovery d = study(simulator, simulator.measure({"heap"}, {}, {{"b", a}}, 5, 0.2, seed));
     wrong += d.verdict == Verdict::named && d.model_after.count("b") == 0;
     const auto &stages = d.content["stages"];
     std::map<std::string, double> alone, leverage, probability, confidence;
@@ -155,10 +153,10 @@ void rivals_get_their_chance()
 
 void two_effects()
 {
-  SyntheticLaboratory laboratory(nature(31));
-  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 9., both)},
-                            {"e", laboratory.amplitude_of("e", 9., both)}};
-  const Discovery d = study(laboratory, laboratory.measure(both, {}, truth, 5, 0.2, 5));
+  SyntheticSimulator simulator(nature(31));
+  const Amplitudes truth = {{"b", simulator.amplitude_of("b", 9., both)},
+                            {"e", simulator.amplitude_of("e", 9., both)}};
+  const Discovery d = study(simulator, simulator.measure(both, {}, truth, 5, 0.2, 5));
   check("two effects are named",
         d.model_after.size() == 2 && d.model_after.count("b") == 1 && d.model_after.count("e") == 1,
         d.content["verdict"].get<std::string>() + ": " + d.content["amplitudes"].dump());
@@ -172,11 +170,11 @@ void not_in_the_catalogue()
 {
   Nature unlike = nature(41);
   unlike.alike = 0.3;
-  SyntheticLaboratory laboratory(unlike);
-  const Amplitudes truth = {{"c", laboratory.amplitude_of("c", 12., both)}};
+  SyntheticSimulator simulator(unlike);
+  const Amplitudes truth = {{"c", simulator.amplitude_of("c", 12., both)}};
   TransientStore store;
-  const Discovery d = study(laboratory, laboratory.measure(both, thick, truth, 4, 0.2, 3),
-                            laboratory.factors_without("c"), store);
+  const Discovery d = study(simulator, simulator.measure(both, thick, truth, 4, 0.2, 3),
+                            simulator.factors_without("c"), store);
   check("off catalogue", d.verdict == Verdict::off_catalogue,
         d.content["verdict"].get<std::string>());
   check("what it resembles is told", !d.content["remainder"]["resembles"].empty());
@@ -185,13 +183,13 @@ void not_in_the_catalogue()
 
 void tie_and_how_to_break_it()
 {
-  SyntheticLaboratory laboratory(nature(51));
-  laboratory.make_alike("b", "c", 0., {"heap"});
-  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 8., {"heap"})}};
+  SyntheticSimulator simulator(nature(51));
+  simulator.make_alike("b", "c", 0., {"heap"});
+  const Amplitudes truth = {{"b", simulator.amplitude_of("b", 8., {"heap"})}};
   StudyOptions options;
   options.further_experiments = {"spreading"};
   const Discovery heap =
-      study(laboratory, laboratory.measure({"heap"}, {}, truth, 4, 0.2, 2), options);
+      study(simulator, simulator.measure({"heap"}, {}, truth, 4, 0.2, 2), options);
   check("a tie from the heap alone", heap.verdict == Verdict::tie,
         heap.content["verdict"].get<std::string>());
   std::set<std::string> names;
@@ -201,7 +199,7 @@ void tie_and_how_to_break_it()
   const auto &best = heap.content["measurements that would break the tie"][0];
   check("the spreading would break it",
         best["experiment"] == "spreading" && best["separation"].get<double>() > 2., best.dump());
-  const Discovery more = study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, 2));
+  const Discovery more = study(simulator, simulator.measure(both, {}, truth, 4, 0.2, 2));
   check("and does", more.verdict == Verdict::named && more.model_after.count("b") == 1,
         more.content["verdict"].get<std::string>());
 }
@@ -209,11 +207,11 @@ void tie_and_how_to_break_it()
 void tie_that_held_out_data_break()
 {
   // In the heap the two are one; the thick layers, where they differ, are held out.
-  SyntheticLaboratory laboratory(nature(51));
-  laboratory.make_alike("b", "c", 0., {"heap"});
-  const Amplitudes truth = {{"b", laboratory.amplitude_of("b", 12., {"heap"})}};
+  SyntheticSimulator simulator(nature(51));
+  simulator.make_alike("b", "c", 0., {"heap"});
+  const Amplitudes truth = {{"b", simulator.amplitude_of("b", 12., {"heap"})}};
   const Discovery d =
-      study(laboratory, laboratory.measure({"heap"}, {"spreading"}, truth, 4, 0.2, 2));
+      study(simulator, simulator.measure({"heap"}, {"spreading"}, truth, 4, 0.2, 2));
   const auto &members = d.content["gaps"]["held-out"]["members of the tie"];
   check("members of a tie are judged by held-out data", members.size() >= 2, members.dump());
   check("that which they refute goes", d.verdict == Verdict::named && d.model_after.count("b") == 1,
@@ -226,9 +224,9 @@ void second_look()
 {
   unsigned int twice = 0, sure = 0, base_runs = 0;
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
-    SyntheticLaboratory laboratory(nature(3000 + seed));
-    const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 3., both)}};
-    const Discovery d = study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, seed));
+    SyntheticSimulator simulator(nature(3000 + seed));
+    const Amplitudes truth = {{"a", simulator.amplitude_of("a", 3., both)}};
+    const Discovery d = study(simulator, simulator.measure(both, {}, truth, 4, 0.2, seed));
     const auto &screen = d.content["stages"]["screen"];
     const auto &looks = screen["looks"];
     if (looks.size() == 2) {
@@ -241,10 +239,10 @@ void second_look()
   check("studies in doubt look twice", twice >= 2 && twice < 10, std::to_string(twice) + " of 10");
   check("with more runs", base_runs == 75, std::to_string(base_runs));
   check("the others do not", twice + sure == 10);
-  SyntheticLaboratory laboratory(nature(3001));
+  SyntheticSimulator simulator(nature(3001));
   StudyOptions options;
   options.second_look = false;
-  const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 4, 0.2, 1), options);
+  const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1), options);
   const auto &looks = d.content["stages"]["screen"]["looks"];
   check("only one look if it is switched off",
         looks.size() == 1 && looks[0]["share of the level"] == 1.);
@@ -256,8 +254,8 @@ void too_weak_to_see()
   weak.strength_of_scale = 0.02;
   weak.n_nuisances = 0;
   weak.changed_chaos = 0.;
-  SyntheticLaboratory laboratory(weak);
-  const Discovery d = study(laboratory, laboratory.measure(both, {}, {}, 3, 0.2, 2));
+  SyntheticSimulator simulator(weak);
+  const Discovery d = study(simulator, simulator.measure(both, {}, {}, 3, 0.2, 2));
   check("underpowered", d.verdict == Verdict::underpowered, d.content["verdict"].dump());
 }
 
@@ -265,11 +263,11 @@ void withdrawn()
 {
   // On the held-out condition the truth is as the base model: the effect is another one in
   // disguise.
-  SyntheticLaboratory laboratory(nature(72));
-  const Amplitudes truth = {{"c", laboratory.amplitude_of("c", 9., both)}};
-  MeasuredData data = laboratory.measure(both, {}, truth, 4, 0.2, 1);
-  data.held_out = laboratory.measure(both, thick, {}, 4, 0.2, 1).held_out;
-  const Discovery d = study(laboratory, data);
+  SyntheticSimulator simulator(nature(72));
+  const Amplitudes truth = {{"c", simulator.amplitude_of("c", 9., both)}};
+  MeasuredData data = simulator.measure(both, {}, truth, 4, 0.2, 1);
+  data.held_out = simulator.measure(both, thick, {}, 4, 0.2, 1).held_out;
+  const Discovery d = study(simulator, data);
   check("a name that does not hold is withdrawn",
         d.verdict == Verdict::off_catalogue && d.model_after.empty(), d.content["gaps"].dump());
 }
@@ -278,34 +276,34 @@ void goes_on()
 {
   Nature frail = nature(81);
   frail.failures = 0.15;
-  SyntheticLaboratory laboratory(frail);
-  const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 8., both)}};
-  const MeasuredData data = laboratory.measure(both, thick, truth, 4, 0.2, 1);
+  SyntheticSimulator simulator(frail);
+  const Amplitudes truth = {{"a", simulator.amplitude_of("a", 8., both)}};
+  const MeasuredData data = simulator.measure(both, thick, truth, 4, 0.2, 1);
   TransientStore store;
-  const Discovery first = study(laboratory, data, laboratory.factors(), store);
+  const Discovery first = study(simulator, data, simulator.factors(), store);
   check("named although runs fail",
         first.model_after.count("a") == 1 && first.content["runs"]["failed"].get<int>() > 10);
-  const std::uint64_t runs = laboratory.n_runs();
-  const Discovery again = study(laboratory, data, laboratory.factors(), store);
-  check("a second start makes no run", laboratory.n_runs() == runs);
+  const std::uint64_t runs = simulator.n_runs();
+  const Discovery again = study(simulator, data, simulator.factors(), store);
+  check("a second start makes no run", simulator.n_runs() == runs);
   check("and gives the same", again.content.dump() == first.content.dump());
   StudyOptions other;
   other.seed = 2;
-  study(laboratory, data, laboratory.factors(), store, other);
-  check("another study does not use its tables", laboratory.n_runs() > runs);
+  study(simulator, data, simulator.factors(), store, other);
+  check("another study does not use its tables", simulator.n_runs() > runs);
 }
 
 void budget()
 {
-  SyntheticLaboratory laboratory(nature(91));
-  const Amplitudes truth = {{"a", laboratory.amplitude_of("a", 8., both)}};
+  SyntheticSimulator simulator(nature(91));
+  const Amplitudes truth = {{"a", simulator.amplitude_of("a", 8., both)}};
   StudyOptions options;
   options.budget = 180;
-  const Discovery d = study(laboratory, laboratory.measure(both, thick, truth, 4, 0.2, 1), options);
-  check("within the budget", d.n_runs <= 180 && laboratory.n_runs() <= 180);
+  const Discovery d = study(simulator, simulator.measure(both, thick, truth, 4, 0.2, 1), options);
+  check("within the budget", d.n_runs <= 180 && simulator.n_runs() <= 180);
   try {
     options.budget = 10;
-    study(laboratory, laboratory.measure(both, {}, truth, 4, 0.2, 1), options);
+    study(simulator, simulator.measure(both, {}, truth, 4, 0.2, 1), options);
     check("too small a budget is refused", false);
   } catch (const UserError &) {
     check("too small a budget is refused", true);

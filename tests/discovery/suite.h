@@ -1,10 +1,10 @@
 #ifndef eunoe_tests_discovery_suite_h
 #define eunoe_tests_discovery_suite_h
 
-// Blind suites on laboratories that cost nothing: hidden truths, their data, a study of each, and
+// Blind suites on simulators that cost nothing: hidden truths, their data, a study of each, and
 // what it answered, one line of JSON a study. contrib/tools score makes the tables.
 
-#include "known_laboratory.h"
+#include "known_simulator.h"
 
 #include <cmath>
 #include <cstdio>
@@ -87,7 +87,7 @@ struct SuiteOptions
 
 /// Draws which effects are missing and how much of each; their amplitudes have the kind's strength.
 /// Nuisances are drawn from their distributions.
-inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &kind,
+inline SuiteCase draw_case(const KnownSimulator &simulator, const StudyKind &kind,
                            const std::vector<std::string> &fit, std::uint32_t seed,
                            RandomStream &random)
 {
@@ -95,14 +95,14 @@ inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &k
   one.kind = kind.kind;
   one.seed = seed;
   std::vector<std::string> effects;
-  for (const Factor &f : laboratory.factors())
+  for (const Factor &f : simulator.factors())
     if (f.kind == Factor::Kind::effect)
       effects.push_back(f.name);
   for (unsigned int tries = 0; one.strengths.size() < kind.n_truths && tries < 100; ++tries) {
-    const Factor &f = laboratory.factor(effects[random.index(effects.size())]);
+    const Factor &f = simulator.factor(effects[random.index(effects.size())]);
     const bool below =
         f.sign == Factor::Sign::below || (f.sign == Factor::Sign::both && random.uniform() < 0.5);
-    const double amplitude = laboratory.amplitude_of(f.name, kind.strength, fit, below ? -1. : 1.);
+    const double amplitude = simulator.amplitude_of(f.name, kind.strength, fit, below ? -1. : 1.);
     if (one.strengths.count(f.name) > 0 || amplitude < f.lower || amplitude > f.upper)
       continue; // too weak in its range
     one.strengths[f.name] = below ? -kind.strength : kind.strength;
@@ -110,17 +110,17 @@ inline SuiteCase draw_case(const KnownLaboratory &laboratory, const StudyKind &k
   }
   if (kind.kind == "deleted" && !one.strengths.empty())
     one.excluded = {one.strengths.begin()->first};
-  for (const Factor &f : laboratory.factors())
+  for (const Factor &f : simulator.factors())
     if (f.kind == Factor::Kind::nuisance)
       one.truth[f.name] = f.null_value + f.prior_deviation * random.normal();
   return one;
 }
 
-/// How clear a drawn truth is from the base model and from its rivals.
-inline void find_resolution(const KnownLaboratory &laboratory, const std::vector<std::string> &fit,
+/// How clear a drawn truth is from the base model and from competing effects.
+inline void find_resolution(const KnownSimulator &simulator, const std::vector<std::string> &fit,
                             unsigned int repeats, SuiteCase &one)
 {
-  const Resolution resolution(laboratory, fit, repeats);
+  const Resolution resolution(simulator, fit, repeats);
   one.clearness = resolution.clearness(one.truth);
   one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
 }
@@ -185,15 +185,14 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 }
 
 /// The study of a case; its seed is that of the case, so that no two share a run.
-inline Discovery study_of(const SuiteCase &one, KnownLaboratory &laboratory,
-                          const MeasuredData &data, const StudyOptions &options)
+inline Discovery study_of(const SuiteCase &one, KnownSimulator &simulator, const MeasuredData &data,
+                          const StudyOptions &options)
 {
   Log log(MPI_COMM_SELF, true);
   TransientStore store;
-  const std::vector<Factor> factors = one.excluded.empty()
-                                          ? laboratory.factors()
-                                          : laboratory.factors_without(one.excluded.front());
-  return discover(options, data, factors, laboratory, store, log);
+  const std::vector<Factor> factors =
+      one.excluded.empty() ? simulator.factors() : simulator.factors_without(one.excluded.front());
+  return discover(options, data, factors, simulator, store, log);
 }
 
 } // namespace test

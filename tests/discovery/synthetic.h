@@ -1,12 +1,12 @@
 #ifndef eunoe_tests_discovery_synthetic_h
 #define eunoe_tests_discovery_synthetic_h
 
-// A laboratory whose models are known in closed form: several observables with chaos that is
+// A simulator whose models are known in closed form: several observables with scatter that is
 // correlated within and between them, effects whose fingerprints resemble each other and bend with
 // amplitude, runs that fail. It costs nothing, so that a discovery can be made hundreds of times.
 
 #include "../tests.h"
-#include "known_laboratory.h"
+#include "known_simulator.h"
 
 namespace test {
 
@@ -16,10 +16,10 @@ struct ObservableShape
   int size;
 };
 
-/// What a synthetic laboratory is like.
+/// Properties of a synthetic simulator.
 struct Nature
 {
-  std::uint32_t seed = 1; ///< of fingerprints and chaos
+  std::uint32_t seed = 1; ///< of fingerprints and scatter
   unsigned int n_effects = 12;
   double power = 1.;  ///< of the amplitude, with which changes by effects that only add grow
   double bend = 0.3;  ///< second-order change over the first-order one at one scale
@@ -27,9 +27,9 @@ struct Nature
   double strength_of_scale = 5.; ///< strength at an amplitude of one scale
   double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
   double failures = 0.02;        ///< share of runs that fail
-  double skewness = 0.15;        ///< of the chaos
-  double changed_chaos = 0.15;   ///< how much an effect at one scale makes chaos grow
-  double swing = 0.5;            ///< of all observables together, in units of their own chaos
+  double skewness = 0.15;        ///< of the scatter
+  double changed_chaos = 0.15;   ///< how much an effect at one scale makes scatter grow
+  double swing = 0.5;            ///< of all observables together, in units of their own scatter
   unsigned int n_nuisances = 2;
   double nuisance_strength = 1.; ///< of one prior deviation
   std::vector<ObservableShape> observables = {{"spreading", "layer density", 6},
@@ -44,16 +44,16 @@ struct Nature
                                               {"shear", "stress", 4}};
 };
 
-class SyntheticLaboratory : public KnownLaboratory
+class SyntheticSimulator : public KnownSimulator
 {
 public:
-  explicit SyntheticLaboratory(const Nature &of) : nature(of)
+  explicit SyntheticSimulator(const Nature &of) : nature(of)
   {
     for (const ObservableShape &shape : nature.observables) {
-      if (all_cells.count(shape.experiment) == 0)
+      if (all_points.count(shape.experiment) == 0)
         names.push_back(shape.experiment);
       for (int i = 0; i < shape.size; ++i)
-        all_cells[shape.experiment].push_back({shape.experiment, shape.name, i});
+        all_points[shape.experiment].push_back({shape.experiment, shape.name, i});
     }
     for (const std::string &name : names)
       make_chaos(name);
@@ -125,7 +125,7 @@ private:
   /// Smooth along each observable.
   Eigen::VectorXd smooth_pattern(const std::string &experiment, RandomStream &random) const
   {
-    Eigen::VectorXd result(static_cast<Eigen::Index>(all_cells.at(experiment).size()));
+    Eigen::VectorXd result(static_cast<Eigen::Index>(all_points.at(experiment).size()));
     Eigen::Index place = 0;
     for (const ObservableShape &shape : nature.observables) {
       if (shape.experiment != experiment)
@@ -143,12 +143,13 @@ private:
   void make_chaos(const std::string &experiment)
   {
     RandomStream random(nature.seed, hash(experiment));
-    const auto &list = all_cells.at(experiment);
+    const auto &list = all_points.at(experiment);
     const auto n = static_cast<Eigen::Index>(list.size());
     Eigen::MatrixXd correlation(n, n);
     for (Eigen::Index i = 0; i < n; ++i)
       for (Eigen::Index j = 0; j < n; ++j) {
-        const Cell &a = list[static_cast<std::size_t>(i)], &b = list[static_cast<std::size_t>(j)];
+        const DataPoint &a = list[static_cast<std::size_t>(i)],
+                        &b = list[static_cast<std::size_t>(j)];
         correlation(i, j) = i == j                         ? 1.
                             : a.observable == b.observable ? std::pow(0.7, std::abs(i - j))
                                                            : 0.;
@@ -205,7 +206,7 @@ private:
                   (f.name[0] % 2 == 0 ? 1. : -0.3);
     }
     RandomStream common(seed, hash(experiment)), own(seed, hash(experiment) ^ hash(text + "|"));
-    const auto n = static_cast<Eigen::Index>(all_cells.at(experiment).size());
+    const auto n = static_cast<Eigen::Index>(all_points.at(experiment).size());
     Eigen::VectorXd z(n);
     for (Eigen::Index i = 0; i < n; ++i) {
       z(i) = std::sqrt(nature.seed_correlation) * common.normal() +

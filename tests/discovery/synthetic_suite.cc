@@ -1,10 +1,10 @@
-// A blind suite on synthetic laboratories: many studies in which the truth is hidden, a line of
+// A blind suite on synthetic simulators: many studies in which the truth is hidden, a line of
 // JSON each. It takes minutes to hours and is no part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
 // Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
 // (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER;
-// no-nuisances, no-bend, even-chaos, no-swing (simpler laboratories); steep (little of an effect
+// no-nuisances, no-bend, even-chaos, no-swing (simpler simulators); steep (little of an effect
 // does most of it, as with cohesion and rolling resistance in a heap: truths lie far before the
 // amplitudes that are screened).
 
@@ -47,22 +47,22 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
   nature.seed = seed;
   nature.strength_of_scale *= 0.6 + 0.8 * random.uniform();
   nature.seed_correlation = 0.6 * random.uniform();
-  SyntheticLaboratory laboratory(nature);
+  SyntheticSimulator simulator(nature);
   if (kind.kind == "confounded") {
     const std::size_t at = random.index(nature.n_effects);
     const auto name = [&](std::size_t k) {
       return std::string(1, static_cast<char>('a' + k % nature.n_effects));
     };
     for (std::size_t k = at; k < at + nature.n_effects; k += 2)
-      laboratory.make_alike(name(k), name(k + 1), 0.1, fit);
+      simulator.make_alike(name(k), name(k + 1), 0.1, fit);
   }
-  SuiteCase one = draw_case(laboratory, kind, fit, seed, random);
+  SuiteCase one = draw_case(simulator, kind, fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  find_resolution(laboratory, fit, repeats, one);
+  find_resolution(simulator, fit, repeats, one);
   const MeasuredData data =
-      laboratory.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
+      simulator.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
   options.further_experiments = {"shear"};
-  print_outcome(one, study_of(one, laboratory, data, options));
+  print_outcome(one, study_of(one, simulator, data, options));
 }
 
 } // namespace

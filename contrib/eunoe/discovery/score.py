@@ -5,7 +5,7 @@ Usage: contrib/tools score folder [--label NAME ...]
 
 Of a folder that suite.py has made it opens the sealed truths and compares them with the studies'
 answers, and writes scores_<label>.md and scores_<label>.csv (one row a case) into it. The suites on
-synthetic laboratories and on recorded simulations (tests/discovery) print truths and answers as lines
+synthetic simulators and on recorded simulations (tests/discovery) print truths and answers as lines
 of JSON instead; their scores go beside that file.
 """
 

@@ -8,7 +8,7 @@
 
 namespace eunoe::discovery {
 
-/// An effect of the catalogue: what it is, and how it is put into a case.
+/// An effect of the catalogue: its factor, and the patch that puts it into a case.
 struct Effect
 {
   Factor factor;

@@ -2,7 +2,7 @@
 #define eunoe_discovery_experiment_h
 
 #include <eunoe/discovery/catalogue.h>
-#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/simulator.h>
 #include <eunoe/discovery/study_parameters.h>
 #include <eunoe/simulation/parameters.h>
 
@@ -24,16 +24,17 @@ public:
   const std::string &process_name() const { return process; }
   const RunEstimate &estimate() const { return cost; }
   const std::vector<ObservableDescription> &observables() const { return described; }
-  /// What is doubtful about the base case and does not forbid the study.
+  /// Warnings about the base case, which do not forbid the study.
   const std::vector<Problem> &doubts() const { return doubtful; }
 
   /// Overrides of the case file that put factors at amplitudes: the experiment's own, then
   /// nuisances, then effects, each in the order of names. A factor at its null value, or one that
-  /// does not concern the process, leaves no trace. Throws a UserError if a patch does not fit.
+  /// does not concern the process, leaves the case unchanged. Throws a UserError if a patch does
+  /// not fit.
   std::vector<std::string> overrides(const std::vector<Effect> &factors,
                                      const Amplitudes &amplitudes) const;
 
-  /// Overrides that turn all seeds and make a run silent, to be put behind those of the model.
+  /// Overrides that change all seeds and make a run silent, to be put behind those of the model.
   std::vector<std::string> run_overrides(std::uint32_t seed) const;
 
   /// The parameters of a case with these overrides.
@@ -52,7 +53,7 @@ private:
   EntryValues base;                         ///< all entries of the base case
 };
 
-/// The factor that a nuisance of the study is.
+/// Makes the factor for a nuisance of the study.
 Effect make_nuisance(const NuisanceParameters &parameters);
 
 } // namespace eunoe::discovery

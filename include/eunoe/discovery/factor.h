@@ -6,8 +6,8 @@
 
 namespace eunoe::discovery {
 
-/// Something about the model that can be turned up: an effect of the catalogue, or a nuisance, a
-/// parameter of the base model that is known only so well.
+/// A factor of the design: an effect of the catalogue, or a nuisance, that is a parameter of the
+/// base model that is known only with an uncertainty.
 struct Factor
 {
   enum class Kind
@@ -26,7 +26,7 @@ struct Factor
   std::string name; ///< of the file in prm/effects, or of the nuisance in the study
   Kind kind = Kind::effect;
   double null_value = 0.; ///< amplitude at which the effect is not there (the parameter's unit)
-  double scale = 1.;      ///< amplitude that changes results clearly, less than half of the range
+  double scale = 1.;      ///< amplitude that changes results clearly; less than half of the range
   double lower = 0., upper = 1.; ///< range of amplitudes that make sense
   Sign sign = Sign::above;
   double prior_deviation = 0.; ///< a nuisance's standard deviation about its null value

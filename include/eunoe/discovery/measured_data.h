@@ -1,7 +1,7 @@
 #ifndef eunoe_discovery_measured_data_h
 #define eunoe_discovery_measured_data_h
 
-#include <eunoe/discovery/cell.h>
+#include <eunoe/discovery/data_point.h>
 
 #include <map>
 #include <string>
@@ -9,21 +9,21 @@
 
 namespace eunoe::discovery {
 
-/// What is known of one cell by measurement. SI units.
-struct MeasuredCell
+/// What was measured at one data point. SI units.
+struct MeasuredPoint
 {
-  Cell cell;
+  DataPoint point;
   double value = 0.;              ///< mean of the repeats
   double standard_deviation = 0.; ///< of a single repeat, instrument and process together
   unsigned int repeats = 1;
 };
 
-/// A table of measurements. What is held out is a condition of its own (another layer thickness,
-/// velocity or length: an experiment), and no stage before the validation reads it.
+/// A table of measurements. Held-out data belong to experiments of their own (another layer
+/// thickness, velocity or length), and no stage before the validation reads them.
 struct MeasuredData
 {
-  std::vector<MeasuredCell> fit, held_out;
-  std::map<std::string, std::string> header; ///< what the file says of itself
+  std::vector<MeasuredPoint> fit, held_out;
+  std::map<std::string, std::string> header; ///< lines "# key: value" of the file
 };
 
 } // namespace eunoe::discovery

@@ -16,8 +16,8 @@ struct Patch
 {
   std::vector<InputEntry> entries; ///< with patterns as values
 
-  /// Applies the patch to what a case says, and notes its entries as overrides. Throws a UserError
-  /// that names the entry.
+  /// Applies the patch to the values of a case, and adds its entries to the overrides. Throws a
+  /// UserError that names the entry.
   void apply(double amplitude, EntryValues &values, std::vector<std::string> &overrides) const;
 };
 

@@ -11,11 +11,11 @@
 
 namespace eunoe::discovery {
 
-/// What a simulation gave.
+/// The result of a simulation.
 struct RunRecord
 {
   std::vector<Measurement> measurements;
-  std::string failure; ///< why it broke off; empty if it did not
+  std::string failure; ///< reason of a failure; empty without one
   double core_seconds = 0.;
 };
 
@@ -23,8 +23,8 @@ nlohmann::ordered_json to_json(const RunRecord &record);
 /// Throws a nlohmann::json::exception if that is no record.
 RunRecord record_from(const nlohmann::ordered_json &json);
 
-/// A folder of finished simulations, one file each, by a key that stands for all that decides the
-/// result. Several studies may share it, also at the same time.
+/// A folder of finished simulations, one file each. The key of a simulation is a hash of all that
+/// decides its result. Several studies may share the folder, also at the same time.
 class RunCache
 {
 public:
@@ -33,13 +33,13 @@ public:
   /// Creates the folder. Throws a UserError on every rank if that fails; collective.
   void open();
 
-  /// Those of the keys that are there, the same on every rank; collective. A file that is not
-  /// understood counts as missing.
+  /// The simulations among these keys that the folder has, the same on every rank; collective. A
+  /// file that cannot be read counts as missing.
   std::map<std::string, RunRecord> load(const std::set<std::string> &keys) const;
 
-  /// Adds a simulation at once, complete or not at all. To be called by one rank; throws a
+  /// Writes a file for a simulation, complete or not at all. To be called by one rank; throws a
   /// UserError there.
-  /// @param about what people want to know of the run
+  /// @param about description of the run, for people
   void store(const std::string &key, const RunRecord &record,
              const nlohmann::ordered_json &about) const;
 

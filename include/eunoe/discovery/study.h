@@ -3,8 +3,8 @@
 
 #include <eunoe/core/log.h>
 #include <eunoe/discovery/factor.h>
-#include <eunoe/discovery/laboratory.h>
 #include <eunoe/discovery/measured_data.h>
+#include <eunoe/discovery/simulator.h>
 
 #include <nlohmann/json.hpp>
 
@@ -14,51 +14,51 @@
 
 namespace eunoe::discovery {
 
-/// How a study is made. A *set of runs* is one run of every experiment that is measured.
+/// Options of a study. A *replicate* is one run of every experiment that is measured.
 struct StudyOptions
 {
   double level = 0.05;         ///< probability of a false alarm that is accepted
-  unsigned int null_runs = 30; ///< sets of runs of the base model, at least 8
-  /// Sets on either side of each nuisance. What stays unknown of its change looks like an effect
-  /// that resembles it: with 4 instead of 8, three times as many false alarms.
+  unsigned int null_runs = 30; ///< replicates of the base model, at least 8
+  /// Replicates on either side of each nuisance. The error of its estimated change looks like an
+  /// effect that resembles it: 4 replicates instead of 8 give three times as many false alarms.
   unsigned int nuisance_runs = 10;
-  unsigned int screen_runs = 2; ///< sets at each of an effect's two amplitudes
-  /// Whether a study that is in doubt if anything is missing makes two and a half times as many
-  /// runs of the above, and looks again; not if the budget has no room for that.
+  unsigned int screen_runs = 2; ///< replicates at each of an effect's two amplitudes
+  /// Whether a study that cannot decide if anything is missing runs two and a half times as many
+  /// of the above and tests again. It does not if the budget has no room for that.
   bool second_look = true;
-  unsigned int confirm_runs = 8; ///< further sets for each leader, in each round
+  unsigned int confirm_runs = 8; ///< further replicates for each leading effect, in each round
   unsigned int confirm_rounds = 3;
-  unsigned int n_leaders = 4;     ///< most effects that a round confirms
-  unsigned int fit_runs = 8;      ///< sets at the fitted amplitudes
+  unsigned int n_leaders = 4;     ///< largest number of effects that a round confirms
+  unsigned int fit_runs = 8;      ///< replicates at the fitted amplitudes
   unsigned int validate_runs = 8; ///< runs of each held-out experiment, before and after each
-  std::uint64_t budget = 0;       ///< most runs (of one experiment each) in all; 0: no limit
-  unsigned int max_effects = 3;   ///< that one verdict may name together
+  std::uint64_t budget = 0;       ///< largest number of runs (of one experiment each); 0: no limit
+  unsigned int max_effects = 3;   ///< largest number of effects that one verdict names
   std::uint32_t seed = 1;         ///< of the study; its runs use seeds from 100000 * seed + 1 on
 
   /// Experiments that could be made but are not in the data: where a tie may be broken.
   std::vector<std::string> further_experiments;
 
-  /// Relative deviation of a value that the base model is forgiven (period, time step, ...).
+  /// Relative error of the base model's values (period, time step, ...) that is forgiven.
   double model_tolerance = 0.;
 
-  /// What ablations switch off: fingerprints by paired seeds where that pays, the stage confirm,
-  /// and thresholds that know that the covariance is estimated.
+  /// For ablation studies: whether fingerprints use paired seeds where that reduces their noise,
+  /// whether there is a stage confirm, and whether thresholds account for estimated covariances.
   bool common_random_numbers = true, confirm = true, bootstrap = true;
 };
 
-/// Where stages leave their tables, so that a killed study goes on where it was. A table that was
-/// left by a study of other data, factors or options is not used.
+/// Keeps the tables of the stages, so that a killed study continues where it was. A table of a
+/// study with other data, factors or options is not used.
 class StageStore
 {
 public:
   virtual ~StageStore() = default;
 
-  /// What a stage has left, if it did.
+  /// The table of a stage, if there is one.
   virtual std::optional<nlohmann::ordered_json> load(const std::string &stage) = 0;
   virtual void save(const std::string &stage, const nlohmann::ordered_json &table) = 0;
 };
 
-/// Remembers stages in memory only.
+/// Keeps the tables in memory only.
 class TransientStore : public StageStore
 {
 public:
@@ -81,8 +81,8 @@ enum class Verdict
   none,          ///< nothing is missing, as far as could be seen
   named,         ///< effects that are missing, each by its name
   tie,           ///< something is missing, one of several effects that look alike
-  off_catalogue, ///< something is missing that is none of the effects
-  underpowered   ///< nothing was seen, and most effects could not have been
+  off_catalogue, ///< something is missing, and no effect of the catalogue explains it
+  underpowered   ///< nothing was detected, and most effects could not have been
 };
 
 /// "none", "named", "tie", "off catalogue", "underpowered".
@@ -99,18 +99,18 @@ struct Discovery
   Amplitudes nuisances;     ///< best values of the nuisances together with these effects
   std::uint64_t n_runs = 0; ///< simulations that were asked for, however many came from a cache
 
-  /// What doc/discovery_json.md describes.
+  /// The content of discovery.json; doc/discovery_json.md describes it.
   nlohmann::ordered_json content;
 };
 
 /// Runs all stages: null, detect, screen, confirm, fit, iterate, validate. Collective: every rank
-/// does the same arithmetic on the results that Laboratory::run gives to all.
+/// does the same arithmetic on the results that Simulator::run gives to all.
 /// @param factors effects of the catalogue and nuisances of the base model
 /// @param store called alike on every rank; `load` must give all the same, `save` may write on one
-/// @throws UserError if data, factors and laboratory do not fit together, or the budget is less
-///   than null and screen need; Interrupted if the laboratory was
+/// @throws UserError if data, factors and simulator do not fit together, or the budget is less
+///   than null and screen need; Interrupted if the simulator was interrupted
 Discovery discover(const StudyOptions &options, const MeasuredData &data,
-                   const std::vector<Factor> &factors, Laboratory &laboratory, StageStore &store,
+                   const std::vector<Factor> &factors, Simulator &simulator, StageStore &store,
                    Log &log);
 
 } // namespace eunoe::discovery

@@ -7,8 +7,8 @@
 
 namespace eunoe::discovery {
 
-/// The folder of a study's results, which also keeps what its stages have found, so that a study
-/// that was killed goes on.
+/// The folder of a study's results. It also keeps the tables of the stages, so that a study that
+/// was killed continues.
 class StudyFolder : public StageStore
 {
 public:
@@ -16,7 +16,7 @@ public:
 
   /// Creates the folder, or makes sure that it holds the same study. Throws a UserError on every
   /// rank, which says what differs; collective.
-  /// @param identity what decides the study: what it is called, and a text that stands for it
+  /// @param identity all that decides the study: names, and for each a text whose hash is kept
   /// @return whether the folder held the study before
   bool open(const std::map<std::string, std::string> &identity);
 
@@ -36,8 +36,8 @@ private:
   MPI_Comm comm;
 };
 
-/// A list of objects as a table with commas; members that are no numbers, words or truth values
-/// are left out. Empty if it is no such list.
+/// A list of objects as a table with commas; members other than numbers, words and truth values
+/// are left out. Empty for any other value.
 std::string as_csv(const nlohmann::ordered_json &list);
 
 } // namespace eunoe::discovery

@@ -20,14 +20,14 @@ struct StudyInput
   std::vector<Factor> plain_factors() const;
   std::size_t n_effects() const;
 
-  /// What decides the study, by names for people.
+  /// All that decides the study's results, by name.
   std::map<std::string, std::string> identity() const;
 };
 
 /// Reads a study, its cases and its effects; collective. What is wrong goes to @p problems.
-/// @param with_twin whether `subsection twin` may be there
+/// @param with_synthetic_data whether `subsection twin` may be there
 StudyInput read_study(const std::string &file, const std::vector<std::string> &overrides,
-                      bool with_twin, MPI_Comm comm, Problems &problems);
+                      bool with_synthetic_data, MPI_Comm comm, Problems &problems);
 
 /// Reads its measured data.
 void read_data(StudyInput &study, MPI_Comm comm, Problems &problems);

@@ -14,7 +14,7 @@ struct ExperimentParameters
   bool held_out = false;
 };
 
-/// `subsection nuisance k`: a number of the base model that is known only so well.
+/// `subsection nuisance k`: a parameter of the base model that is known only with an uncertainty.
 struct NuisanceParameters
 {
   std::string name;
@@ -23,12 +23,12 @@ struct NuisanceParameters
   double standard_deviation = 0.;            ///< of the amplitude, whose mean is zero
 };
 
-/// `subsection twin`: a truth for tests, from which data are made instead of measured.
-struct TwinParameters
+/// `subsection twin`: the truth of a twin experiment, from which synthetic data are made.
+struct SyntheticDataParameters
 {
   std::vector<std::string> effects; ///< "name: amplitude"
   std::vector<std::string> overrides;
-  std::vector<std::string> observables = {"all"}; ///< that are measured
+  std::vector<std::string> observables = {"all"}; ///< in the table of data
   std::string sealed_file = "truth.sealed.json";
   unsigned int seed = 1001, repeats = 4;
   double noise = 0.01, time_step_factor = 0.8;
@@ -42,9 +42,9 @@ public:
   /// Reads a study file, then the overrides; all that is wrong goes to @p problems. Files that it
   /// names are meant relative to the file in which their entry stands, those of overrides relative
   /// to the folder in which the program was started.
-  /// @param with_twin whether `subsection twin` may be there
+  /// @param with_synthetic_data whether `subsection twin` may be there
   static StudyParameters read(const std::string &text, const std::string &file,
-                              const std::vector<std::string> &overrides, bool with_twin,
+                              const std::vector<std::string> &overrides, bool with_synthetic_data,
                               Problems &problems, const FileLoader &load = {});
 
   /// A complete, documented study file with the same content.
@@ -67,10 +67,10 @@ public:
   bool write_page = true;
   std::vector<ExperimentParameters> experiments;
   std::vector<NuisanceParameters> nuisances;
-  TwinParameters twin;
+  SyntheticDataParameters synthetic;
 
 private:
-  void declare(dealii::ParameterHandler &prm, bool with_twin);
+  void declare(dealii::ParameterHandler &prm, bool with_synthetic_data);
   void check(const ParameterCheck &check) const;
 
   std::string complete_input;

@@ -7,8 +7,8 @@
 
 namespace eunoe::discovery {
 
-/// Shares out tasks to groups of ranks: whoever is free takes the next one. Rank 0 hands them out
-/// beside its own work, so no rank is lost to that.
+/// Shares out tasks to groups of ranks: a group that is free takes the next task. Rank 0 hands them
+/// out beside its own work, so no rank is lost to that.
 class WorkQueue
 {
 public:
@@ -22,7 +22,7 @@ public:
   /// The ranks that work together with this one.
   MPI_Comm group() const { return group_comm; }
   bool is_alone() const { return group_size == 1; }
-  /// Whether this rank speaks for its group.
+  /// Whether this rank is the first of its group.
   bool is_leader() const { return group_rank == 0; }
   int n_groups() const { return groups; }
 

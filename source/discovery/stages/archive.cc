@@ -11,17 +11,17 @@ std::vector<RunResult> Archive::get(const std::vector<RunRequest> &requests)
   for (const RunRequest &request : requests) {
     if (!results.emplace(key(request), std::nullopt).second)
       continue;
-    fresh.push_back(key(request));
-    const auto found = stock.find(key(request));
-    if (found != stock.end())
+    unsaved.push_back(key(request));
+    const auto found = restored.find(key(request));
+    if (found != restored.end())
       results[key(request)] = found->second;
     else
       missing.push_back(request);
   }
   if (!missing.empty()) {
-    const std::vector<RunResult> made = lab.run(missing);
+    const std::vector<RunResult> made = source.run(missing);
     for (std::size_t k = 0; k < missing.size(); ++k)
-      if (made[k] && made[k]->size() == lab.cells(missing[k].experiment).size())
+      if (made[k] && made[k]->size() == source.data_points(missing[k].experiment).size())
         results[key(missing[k])] = made[k];
   }
   std::vector<RunResult> answer;
@@ -44,10 +44,10 @@ std::uint64_t Archive::remaining() const
   return used < limit ? limit - used : 0;
 }
 
-nlohmann::ordered_json Archive::take_new()
+nlohmann::ordered_json Archive::take_unsaved()
 {
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
-  for (const Key &entry : fresh) {
+  for (const Key &entry : unsaved) {
     nlohmann::ordered_json amplitudes = nlohmann::ordered_json::object();
     for (const auto &[name, value] : std::get<1>(entry))
       amplitudes[name] = value;
@@ -58,11 +58,11 @@ nlohmann::ordered_json Archive::take_new()
     row["values"] = result ? nlohmann::ordered_json(*result) : nlohmann::ordered_json(nullptr);
     runs.push_back(row);
   }
-  fresh.clear();
+  unsaved.clear();
   return runs;
 }
 
-void Archive::absorb(const nlohmann::ordered_json &runs)
+void Archive::restore(const nlohmann::ordered_json &runs)
 {
   for (const auto &row : runs) {
     RunRequest request;
@@ -73,12 +73,12 @@ void Archive::absorb(const nlohmann::ordered_json &runs)
     RunResult result;
     if (!row.at("values").is_null()) {
       result.emplace();
-      // JSON knows no number that is none.
+      // JSON has no NaN; it is null there.
       for (const auto &value : row.at("values"))
         result->push_back(value.is_null() ? std::numeric_limits<double>::quiet_NaN()
                                           : value.get<double>());
     }
-    stock[key(request)] = result;
+    restored[key(request)] = result;
   }
 }
 

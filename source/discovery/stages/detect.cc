@@ -6,50 +6,51 @@ namespace eunoe::discovery {
 
 namespace {
 
-Table flag_cells(const Workbench &bench, const Reference &reference)
+Table flag_points(const StudyState &study, const NullDistribution &null_distribution)
 {
-  Eigen::VectorXd mean = Eigen::VectorXd::Zero(bench.value.size());
-  for (const RunSet &run : bench.base())
-    mean += bench.measured(run.values) / static_cast<double>(bench.base().size());
-  const Eigen::VectorXd deviation = (bench.value - mean).cwiseQuotient(bench.modes.deviations());
-  const Eigen::VectorXd errors = cell_errors(bench);
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(study.value.size());
+  for (const Replicate &run : study.base())
+    mean += study.measured(run.values) / static_cast<double>(study.base().size());
+  const Eigen::VectorXd deviation = (study.value - mean).cwiseQuotient(study.modes.deviations());
+  const Eigen::VectorXd errors = standard_errors(study);
   Table rows = Table::array();
-  for (std::size_t c = 0; c < bench.cells.size(); ++c) {
+  for (std::size_t c = 0; c < study.data_points.size(); ++c) {
     const auto k = static_cast<Eigen::Index>(c);
-    const double z = deviation(k) / errors(k), p = reference.p_cell(z);
-    rows.push_back({{"experiment", bench.cells[c].experiment},
-                    {"observable", bench.cells[c].observable},
-                    {"index", bench.cells[c].index},
+    const double z = deviation(k) / errors(k), p = null_distribution.p_largest_deviation(z);
+    rows.push_back({{"experiment", study.data_points[c].experiment},
+                    {"observable", study.data_points[c].observable},
+                    {"index", study.data_points[c].index},
                     {"deviation", z},
                     {"p", p},
-                    {"flagged", p <= bench.options.level}});
+                    {"flagged", p <= study.options.level}});
   }
   return rows;
 }
 
 } // namespace
 
-void settle_base_reference(Workbench &bench, Findings &findings)
+void make_base_null_distribution(StudyState &study, Findings &findings)
 {
-  findings.base_reference = make_reference(bench, {});
-  bench.misfit.tail = findings.base_reference.tail;
+  findings.base_null_distribution = make_null_distribution(study, {});
+  study.misfit.tail = findings.base_null_distribution.tail;
 }
 
-Table stage_detect(Workbench &bench, Findings &findings)
+Table stage_detect(StudyState &study, Findings &findings)
 {
-  settle_base_reference(bench, findings);
-  findings.evidence = evidence_against_base(bench, {});
-  findings.p_global = findings.base_reference.p_joint(findings.evidence, false);
+  make_base_null_distribution(study, findings);
+  findings.statistics = test_statistics(study, {});
+  findings.p_global = findings.base_null_distribution.p_joint(findings.statistics, false);
 
   Table table = {
       {"p", findings.p_global},
-      {"distance", findings.evidence.distance},
-      {"p of distance", findings.base_reference.p_distance(findings.evidence.distance)},
-      {"largest deviation of a cell", findings.evidence.cell},
-      {"p of largest deviation", findings.base_reference.p_cell(findings.evidence.cell)},
-      {"degrees of freedom of the tail", findings.base_reference.tail.degrees_of_freedom},
-      {"inflation of distances", findings.base_reference.tail.inflation}};
-  table["cells"] = flag_cells(bench, findings.base_reference);
+      {"distance", findings.statistics.distance},
+      {"p of distance", findings.base_null_distribution.p_distance(findings.statistics.distance)},
+      {"largest deviation of a cell", findings.statistics.largest_deviation},
+      {"p of largest deviation",
+       findings.base_null_distribution.p_largest_deviation(findings.statistics.largest_deviation)},
+      {"degrees of freedom of the tail", findings.base_null_distribution.tail.degrees_of_freedom},
+      {"inflation of distances", findings.base_null_distribution.tail.inflation}};
+  table["cells"] = flag_points(study, findings.base_null_distribution);
   return table;
 }
 

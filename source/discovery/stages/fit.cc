@@ -9,27 +9,30 @@ namespace eunoe::discovery {
 
 double p_of_fit(const Findings &findings, const Fit &fit)
 {
-  const double modes = findings.reference.n_modes;
-  return findings.reference.p_distance(
+  const double modes = findings.null_distribution.n_modes;
+  return findings.null_distribution.p_distance(
       fit.distance, std::max(1., modes - static_cast<double>(fit.effects.size())) / modes);
 }
 
 namespace {
 
-/// A set among those that were compared; the likeliest where it is none of them, as triples are
-/// only compared about the best pairs, which more runs may have changed.
-const Scored &find_scored(const std::vector<Scored> &models, const EffectSet &set)
+/// Finds a set among those that were compared. If it is not there, the likeliest: triples are
+/// compared only if they contain one of the best pairs, and more runs may have changed these.
+const ScoredModel &find_scored(const std::vector<ScoredModel> &models, const EffectSet &set)
 {
-  const auto found = std::find_if(models.begin(), models.end(),
-                                  [&](const Scored &model) { return model.fit.effects == set; });
+  const auto found = std::find_if(models.begin(), models.end(), [&](const ScoredModel &model) {
+    return model.fit.effects == set;
+  });
   return found != models.end() ? *found : models.front();
 }
 
-/// Takes effects away whose removal the data do not resent, the least needed first.
-Scored prune(const Workbench &bench, const Findings &findings, const Scored &model, Table &steps)
+/// Backward elimination: removes effects one after the other, as long as the deviance rises by less
+/// than chance explains; the effect with the smallest rise first.
+ScoredModel eliminate_effects(const StudyState &study, const Findings &findings,
+                              const ScoredModel &model, Table &steps)
 {
-  const double limit = findings.reference.gain_limit(bench.options.level);
-  Scored result = model;
+  const double limit = findings.null_distribution.gain_limit(study.options.level);
+  ScoredModel result = model;
   while (result.fit.effects.size() > 1) {
     double least = limit;
     EffectSet best;
@@ -38,12 +41,12 @@ Scored prune(const Workbench &bench, const Findings &findings, const Scored &mod
       for (const std::size_t l : result.fit.effects)
         if (l != k)
           without.push_back(l);
-      const double loss = fit_model(bench, without).deviance - result.fit.deviance;
-      steps.push_back({{"without", bench.effects[k].name},
-                       {"of", name_of(bench, result.fit.effects)},
+      const double loss = fit_model(study, without).deviance - result.fit.deviance;
+      steps.push_back({{"without", study.effects[k].name},
+                       {"of", name_of(study, result.fit.effects)},
                        {"loss", loss},
                        {"loss needed", limit},
-                       {"p", findings.reference.p_gain(loss)}});
+                       {"p", findings.null_distribution.p_gain(loss)}});
       if (loss < least) {
         least = loss;
         best = without;
@@ -56,16 +59,17 @@ Scored prune(const Workbench &bench, const Findings &findings, const Scored &mod
   return result;
 }
 
-/// Adds an effect to a model that does not describe the data, if the best larger set that holds it
-/// describes them better by more than chance does. A model that is refuted is no alternative,
-/// however simple it is.
-Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &model, Table &steps)
+/// Forward selection: if the fit refutes the model, and the best larger set that contains it lowers
+/// the deviance by more than chance explains, takes that set. A refuted model is not preferred for
+/// being simple.
+ScoredModel add_effect(const StudyState &study, const Findings &findings, const ScoredModel &model,
+                       Table &steps)
 {
   const EffectSet &set = model.fit.effects;
-  if (set.empty() || set.size() >= bench.options.max_effects ||
-      p_of_fit(findings, model.fit) > bench.options.level)
+  if (set.empty() || set.size() >= study.options.max_effects ||
+      p_of_fit(findings, model.fit) > study.options.level)
     return model;
-  const auto holds = [&](const Scored &other) {
+  const auto holds = [&](const ScoredModel &other) {
     return other.fit.effects.size() == set.size() + 1 &&
            std::includes(other.fit.effects.begin(), other.fit.effects.end(), set.begin(),
                          set.end());
@@ -75,9 +79,9 @@ Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &m
   if (larger == models.end())
     return model;
   const double gain = model.fit.deviance - larger->fit.deviance;
-  const double limit = findings.reference.gain_limit(bench.options.level);
-  steps.push_back({{"added to", name_of(bench, set)},
-                   {"makes", name_of(bench, larger->fit.effects)},
+  const double limit = findings.null_distribution.gain_limit(study.options.level);
+  steps.push_back({{"added to", name_of(study, set)},
+                   {"makes", name_of(study, larger->fit.effects)},
                    {"gain", gain},
                    {"gain needed", limit},
                    {"p of the fit before", p_of_fit(findings, model.fit)},
@@ -85,55 +89,55 @@ Scored enlarge(const Workbench &bench, const Findings &findings, const Scored &m
   return gain > limit ? *larger : model;
 }
 
-/// Makes runs of the chosen set and its rivals, as far as some could be as likely as others were
-/// they known as well. Nothing else is fair: runs take from a set's doubt, and a set that got more
-/// of them looks likelier.
-/// @returns a row for each; none if all are known alike
-Table challenge(Workbench &bench, const Findings &findings)
+/// Runs more replicates of those competing sets of effects whose emulators rest on much fewer runs
+/// than the best known one. Otherwise the comparison is biased: each run lowers the variance of a
+/// set's prediction, so that sets with more runs look likelier.
+/// @returns a row for each; empty if all have similar leverage
+Table replicate_competitors(StudyState &study, const Findings &findings)
 {
   constexpr double within_reach = 0.02, much_less_known = 1.25;
   constexpr std::size_t most = 3;
   const EffectSet &chosen = findings.chosen.fit.effects;
-  std::vector<Scored> models = promising(bench, findings.posterior, findings.decision);
+  std::vector<ScoredModel> models = promising_models(study, findings.posterior, findings.decision);
   const double probability = find_scored(models, chosen).probability;
   models.erase(std::remove_if(models.begin(), models.end(),
-                              [&](const Scored &model) {
+                              [&](const ScoredModel &model) {
                                 return model.fit.effects.size() != chosen.size() ||
                                        model.probability < within_reach * probability;
                               }),
                models.end());
   double least = std::numeric_limits<double>::infinity();
-  for (const Scored &model : models)
+  for (const ScoredModel &model : models)
     least = std::min(least, model.fit.leverage);
   std::vector<Fit> less_known;
-  for (const Scored &model : models)
+  for (const ScoredModel &model : models)
     if (less_known.size() < most && model.fit.leverage > much_less_known * least)
       less_known.push_back(model.fit);
-  return verify(bench, less_known, bench.options.fit_runs);
+  return verify(study, less_known, study.options.fit_runs);
 }
 
 } // namespace
 
-Table stage_fit(Workbench &bench, Findings &findings)
+Table stage_fit(StudyState &study, Findings &findings)
 {
   Table passes = Table::array();
   Table steps = Table::array();
   constexpr unsigned int least_passes = 2, most_passes = 6;
   for (unsigned int pass = 0; pass < most_passes; ++pass) {
-    findings.chosen = prune(bench, findings, findings.posterior.best(), steps);
-    if (pass >= least_passes && is_verified(bench, findings.chosen.fit))
+    findings.chosen = eliminate_effects(study, findings, findings.posterior.best(), steps);
+    if (pass >= least_passes && is_verified(study, findings.chosen.fit))
       break;
     passes.push_back(
-        verify(bench, {findings.chosen.fit}, (bench.options.fit_runs + 1 - pass % 2) / 2).front());
-    settle_chaos(bench);
-    findings.posterior = compare_models(bench, findings.decision);
+        verify(study, {findings.chosen.fit}, (study.options.fit_runs + 1 - pass % 2) / 2).front());
+    estimate_replicate_covariance(study);
+    findings.posterior = compare_models(study, findings.decision);
   }
   return {{"passes", passes},
           {"deletions tried", steps},
-          {"models", describe_models(bench, findings.posterior.models)}};
+          {"models", describe_models(study, findings.posterior.models)}};
 }
 
-Table stage_iterate(Workbench &bench, Findings &findings)
+Table stage_iterate(StudyState &study, Findings &findings)
 {
   Table rounds = Table::array();
   constexpr int most = 6, most_challenges = 3;
@@ -142,45 +146,46 @@ Table stage_iterate(Workbench &bench, Findings &findings)
     Table steps = Table::array();
     const EffectSet before = findings.chosen.fit.effects;
     Table additions = Table::array();
-    findings.chosen = enlarge(bench, findings,
-                              prune(bench, findings, findings.posterior.best(), steps), additions);
-    Table row = {{"effects", name_of(bench, findings.chosen.fit.effects)},
-                 {"likeliest", name_of(bench, findings.posterior.best().fit.effects)},
+    findings.chosen =
+        add_effect(study, findings,
+                   eliminate_effects(study, findings, findings.posterior.best(), steps), additions);
+    Table row = {{"effects", name_of(study, findings.chosen.fit.effects)},
+                 {"likeliest", name_of(study, findings.posterior.best().fit.effects)},
                  {"deletions tried", steps},
                  {"additions tried", additions}};
     const bool settled = findings.chosen.fit.effects == before;
     if (!settled)
-      row["verification"] = verify(bench, {findings.chosen.fit}, bench.options.fit_runs).front();
-    else if (bench.options.confirm && challenges++ < most_challenges)
-      row["rivals"] = challenge(bench, findings);
+      row["verification"] = verify(study, {findings.chosen.fit}, study.options.fit_runs).front();
+    else if (study.options.confirm && challenges++ < most_challenges)
+      row["rivals"] = replicate_competitors(study, findings);
     rounds.push_back(row);
     if (settled && row.value("rivals", Table::array()).empty())
       break;
-    settle_chaos(bench);
-    findings.posterior = compare_models(bench, findings.decision);
+    estimate_replicate_covariance(study);
+    findings.posterior = compare_models(study, findings.decision);
   }
   findings.chosen = find_scored(findings.posterior.models, findings.chosen.fit.effects);
   findings.p_fit = p_of_fit(findings, findings.chosen.fit);
   return {{"rounds", rounds},
           {"p of the fit", findings.p_fit},
-          {"models", describe_models(bench, findings.posterior.models)}};
+          {"models", describe_models(study, findings.posterior.models)}};
 }
 
-Interval amplitude_interval(const Workbench &bench, const Findings &findings, const Fit &fit,
+Interval amplitude_interval(const StudyState &study, const Findings &findings, const Fit &fit,
                             const std::size_t member)
 {
-  return profile_interval(bench, fit, member,
+  return profile_interval(study, fit, member,
                           findings.decision.width_of_intervals *
-                              findings.reference.direction_limit);
+                              findings.null_distribution.direction_limit);
 }
 
-Table describe_amplitudes(const Workbench &bench, const Findings &findings)
+Table describe_amplitudes(const StudyState &study, const Findings &findings)
 {
   Table rows = Table::array();
   const Fit &fit = findings.chosen.fit;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
-    const Factor &effect = bench.effects[fit.effects[k]];
-    const Interval interval = amplitude_interval(bench, findings, fit, k);
+    const Factor &effect = study.effects[fit.effects[k]];
+    const Interval interval = amplitude_interval(study, findings, fit, k);
     const auto amplitude = [&](double u) { return effect.null_value + u * effect.scale; };
     rows.push_back({{"effect", effect.name},
                     {"unit", effect.unit},
@@ -194,19 +199,19 @@ Table describe_amplitudes(const Workbench &bench, const Findings &findings)
   return rows;
 }
 
-Eigen::VectorXd nuisance_estimates(const Workbench &bench, const Eigen::VectorXd &remainder,
+Eigen::VectorXd nuisance_estimates(const StudyState &study, const Eigen::VectorXd &remainder,
                                    const double leverage)
 {
   const Eigen::MatrixXd changes =
-      bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
-  return changes.transpose() * remainder.cwiseQuotient(bench.misfit.variance(leverage));
+      study.misfit.coordinates(study.modes.basis() * study.nuisance_changes);
+  return changes.transpose() * remainder.cwiseQuotient(study.misfit.variance(leverage));
 }
 
-Eigen::MatrixXd nuisance_covariance(const Workbench &bench, const double leverage)
+Eigen::MatrixXd nuisance_covariance(const StudyState &study, const double leverage)
 {
   const Eigen::MatrixXd changes =
-      bench.misfit.coordinates(bench.modes.basis() * bench.nuisance_cells);
-  const Eigen::VectorXd weight = bench.misfit.variance(leverage).cwiseInverse();
+      study.misfit.coordinates(study.modes.basis() * study.nuisance_changes);
+  const Eigen::VectorXd weight = study.misfit.variance(leverage).cwiseInverse();
   return Eigen::MatrixXd::Identity(changes.cols(), changes.cols()) -
          changes.transpose() * weight.asDiagonal() * changes;
 }

@@ -8,11 +8,11 @@ namespace eunoe::discovery {
 
 Eigen::VectorXd Objective::change(const Eigen::VectorXd &position, double &leverage) const
 {
-  const Eigen::VectorXd change = response.change(position);
-  const double noise = response.change_leverage(position) * static_cast<double>(misfit.size());
+  const Eigen::VectorXd change = emulator.change(position);
+  const double noise = emulator.change_leverage(position) * static_cast<double>(misfit.size());
   const double square = change.squaredNorm();
   const double share = square > noise ? 1. - noise / square : 0.;
-  leverage = (1. - share) * response.origin_leverage() + share * response.leverage(position);
+  leverage = (1. - share) * emulator.origin_leverage() + share * emulator.leverage(position);
   return share * change;
 }
 
@@ -20,33 +20,33 @@ Fit Objective::at(const Eigen::VectorXd &position) const
 {
   Fit fit;
   fit.position = position;
-  fit.remainder = data - response.origin() - change(position, fit.leverage);
+  fit.remainder = data - emulator.origin() - change(position, fit.leverage);
   fit.distance = misfit.distance(fit.remainder, fit.leverage);
   fit.deviance = misfit.deviance(fit.distance, misfit.log_determinant(fit.leverage));
   return fit;
 }
 
-Bounds bounds(const Workbench &bench, const EffectSet &set, const Response &response)
+Bounds bounds(const StudyState &study, const EffectSet &set, const Emulator &emulator)
 {
   const auto n = static_cast<Eigen::Index>(set.size());
   Bounds result{Eigen::VectorXd::Zero(n), Eigen::VectorXd::Zero(n)};
   for (Eigen::Index k = 0; k < n; ++k) {
-    const Factor &effect = bench.effects[set[static_cast<std::size_t>(k)]];
+    const Factor &effect = study.effects[set[static_cast<std::size_t>(k)]];
     double lower = (effect.lower - effect.null_value) / effect.scale;
     double upper = (effect.upper - effect.null_value) / effect.scale;
     if (effect.sign == Factor::Sign::above)
       lower = 0.;
     if (effect.sign == Factor::Sign::below)
       upper = 0.;
-    result.lower(k) = std::min(0., std::max(lower, response.lower(k)));
-    result.upper(k) = std::max(0., std::min(upper, response.upper(k)));
+    result.lower(k) = std::min(0., std::max(lower, emulator.lower(k)));
+    result.upper(k) = std::max(0., std::min(upper, emulator.upper(k)));
   }
   return result;
 }
 
 namespace {
 
-/// Least value along one effect: a coarse look, then golden sections about the best point.
+/// Minimum along one effect: a coarse scan, then golden sections about the best point.
 double minimise_along(const Objective &objective, const Bounds &bounds, Eigen::VectorXd position,
                       const Eigen::Index effect)
 {
@@ -117,34 +117,34 @@ Fit minimise(const Objective &objective, const Bounds &bounds)
   return best;
 }
 
-Eigen::VectorXd data_coordinates(const Workbench &bench)
+Eigen::VectorXd data_coordinates(const StudyState &study)
 {
-  return bench.misfit.coordinates(bench.modes.reduce(bench.value));
+  return study.misfit.coordinates(study.modes.reduce(study.value));
 }
 
-Fit fit_model(const Workbench &bench, const EffectSet &set)
+Fit fit_model(const StudyState &study, const EffectSet &set)
 {
-  const Response response = bench.response(set);
-  const Eigen::VectorXd data = data_coordinates(bench);
-  Fit fit = minimise(Objective(bench.misfit, response, data), bounds(bench, set, response));
+  const Emulator emulator = study.emulator(set);
+  const Eigen::VectorXd data = data_coordinates(study);
+  Fit fit = minimise(Objective(study.misfit, emulator, data), bounds(study, set, emulator));
   fit.effects = set;
   return fit;
 }
 
-Interval profile_interval(const Workbench &bench, const Fit &fit, const std::size_t member,
+Interval profile_interval(const StudyState &study, const Fit &fit, const std::size_t member,
                           const double allowed)
 {
-  const Response response = bench.response(fit.effects);
-  const Eigen::VectorXd data = data_coordinates(bench);
-  const Objective objective(bench.misfit, response, data);
-  const Bounds all = bounds(bench, fit.effects, response);
+  const Emulator emulator = study.emulator(fit.effects);
+  const Eigen::VectorXd data = data_coordinates(study);
+  const Objective objective(study.misfit, emulator, data);
+  const Bounds all = bounds(study, fit.effects, emulator);
   const auto k = static_cast<Eigen::Index>(member);
   const auto inside = [&](double x) {
     Bounds pinned = all;
     pinned.lower(k) = pinned.upper(k) = x;
     return minimise(objective, pinned).deviance - fit.deviance <= allowed;
   };
-  // The first place outside, in steps from the best, then by halves.
+  // The first position outside, in steps from the best, then by bisection.
   const auto end = [&](double limit, bool &open) {
     constexpr int steps = 24, halves = 24;
     double in = fit.position(k);

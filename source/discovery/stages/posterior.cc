@@ -16,11 +16,11 @@ double choose(const double n, const std::size_t k)
   return std::max(1., result);
 }
 
-Scored score(const Workbench &bench, const Decision &decision, const EffectSet &set,
-             const double n_effects)
+ScoredModel score(const StudyState &study, const DecisionRule &decision, const EffectSet &set,
+                  const double n_effects)
 {
-  Scored scored;
-  scored.fit = fit_model(bench, set);
+  ScoredModel scored;
+  scored.fit = fit_model(study, set);
   const std::size_t size = set.size();
   scored.score = scored.fit.deviance / decision.temperature +
                  decision.cost_of_effect * static_cast<double>(size) -
@@ -28,38 +28,38 @@ Scored score(const Workbench &bench, const Decision &decision, const EffectSet &
   return scored;
 }
 
-/// -2 log evidence of something else: a change of any size along directions like those of the
-/// catalogue's fingerprints, or along none in particular.
-double score_off_catalogue(const Workbench &bench, const Decision &decision,
+/// -2 log evidence of "off catalogue": a change of unknown size, with directions distributed like
+/// the catalogue's fingerprints and, to a smaller part, evenly.
+double score_off_catalogue(const StudyState &study, const DecisionRule &decision,
                            const std::vector<std::size_t> &simulated)
 {
   constexpr double share_of_fingerprints = 0.7;
-  const Eigen::Index n = bench.misfit.size();
+  const Eigen::Index n = study.misfit.size();
   Eigen::MatrixXd directions =
       Eigen::MatrixXd::Identity(n, n) * ((1. - share_of_fingerprints) / static_cast<double>(n));
   for (const std::size_t k : simulated) {
-    const Response response = bench.response({k});
-    const Bounds range = bounds(bench, {k}, response);
+    const Emulator emulator = study.emulator({k});
+    const Bounds range = bounds(study, {k}, emulator);
     Eigen::VectorXd change =
-        response.change(range.upper(0) > -range.lower(0) ? range.upper : range.lower);
+        emulator.change(range.upper(0) > -range.lower(0) ? range.upper : range.lower);
     if (change.norm() > 0.)
       change.normalize();
     directions +=
         change * change.transpose() * share_of_fingerprints / static_cast<double>(simulated.size());
   }
-  const Fit base = fit_model(bench, {});
-  const Eigen::VectorXd deviation = bench.misfit.variance(base.leverage).cwiseSqrt().cwiseInverse();
+  const Fit base = fit_model(study, {});
+  const Eigen::VectorXd deviation = study.misfit.variance(base.leverage).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(deviation.asDiagonal() * directions *
                                                              deviation.asDiagonal());
   const Eigen::ArrayXd square =
       (eigen.eigenvectors().transpose() * deviation.cwiseProduct(base.remainder)).array().square();
-  const double determinant = bench.misfit.log_determinant(base.leverage);
+  const double determinant = study.misfit.log_determinant(base.leverage);
 
   std::vector<double> deviances;
   for (double strength = 1.; strength < 130.; strength *= std::sqrt(2.)) {
     const Eigen::ArrayXd variance = 1. + strength * strength * eigen.eigenvalues().array().max(0.);
     deviances.push_back(
-        bench.misfit.deviance((square / variance).sum(), determinant + variance.log().sum()));
+        study.misfit.deviance((square / variance).sum(), determinant + variance.log().sum()));
   }
   const double least = *std::min_element(deviances.begin(), deviances.end());
   double mean = 0.;
@@ -70,12 +70,12 @@ double score_off_catalogue(const Workbench &bench, const Decision &decision,
          2. * std::log(decision.prior_off_catalogue);
 }
 
-void add_triples(const Workbench &bench, const Decision &decision,
-                 const std::vector<std::size_t> &simulated, std::vector<Scored> &models)
+void add_triples(const StudyState &study, const DecisionRule &decision,
+                 const std::vector<std::size_t> &simulated, std::vector<ScoredModel> &models)
 {
   constexpr std::size_t n_pairs = 4;
   std::vector<EffectSet> pairs;
-  for (const Scored &model : models)
+  for (const ScoredModel &model : models)
     if (model.fit.effects.size() == 2 && pairs.size() < n_pairs)
       pairs.push_back(model.fit.effects);
   std::set<EffectSet> triples;
@@ -87,48 +87,48 @@ void add_triples(const Workbench &bench, const Decision &decision,
         triples.insert(triple);
       }
   for (const EffectSet &triple : triples)
-    models.push_back(score(bench, decision, triple, static_cast<double>(simulated.size())));
+    models.push_back(score(study, decision, triple, static_cast<double>(simulated.size())));
 }
 
 } // namespace
 
-bool is_simulated(const Workbench &bench, const std::size_t effect)
+bool is_simulated(const StudyState &study, const std::size_t effect)
 {
-  const std::string &name = bench.effects[effect].name;
-  return std::any_of(bench.runs.begin(), bench.runs.end(), [&](const auto &entry) {
+  const std::string &name = study.effects[effect].name;
+  return std::any_of(study.replicates.begin(), study.replicates.end(), [&](const auto &entry) {
     return entry.first.size() == 1 && entry.first.count(name) > 0 && !entry.second.empty();
   });
 }
 
-Posterior compare_models(const Workbench &bench, const Decision &decision)
+Posterior compare_models(const StudyState &study, const DecisionRule &decision)
 {
   std::vector<std::size_t> simulated;
-  for (std::size_t k = 0; k < bench.effects.size(); ++k)
-    if (is_simulated(bench, k))
+  for (std::size_t k = 0; k < study.effects.size(); ++k)
+    if (is_simulated(study, k))
       simulated.push_back(k);
   const auto n_effects = static_cast<double>(simulated.size());
 
   Posterior posterior;
-  const auto better = [](const Scored &a, const Scored &b) { return a.score < b.score; };
+  const auto better = [](const ScoredModel &a, const ScoredModel &b) { return a.score < b.score; };
   for (const std::size_t k : simulated)
-    posterior.models.push_back(score(bench, decision, {k}, n_effects));
-  if (bench.options.max_effects >= 2)
+    posterior.models.push_back(score(study, decision, {k}, n_effects));
+  if (study.options.max_effects >= 2)
     for (std::size_t a = 0; a < simulated.size(); ++a)
       for (std::size_t b = a + 1; b < simulated.size(); ++b)
-        posterior.models.push_back(score(bench, decision, {simulated[a], simulated[b]}, n_effects));
+        posterior.models.push_back(score(study, decision, {simulated[a], simulated[b]}, n_effects));
   std::stable_sort(posterior.models.begin(), posterior.models.end(), better);
-  if (bench.options.max_effects >= 3) {
-    add_triples(bench, decision, simulated, posterior.models);
+  if (study.options.max_effects >= 3) {
+    add_triples(study, decision, simulated, posterior.models);
     std::stable_sort(posterior.models.begin(), posterior.models.end(), better);
   }
 
-  const double off = score_off_catalogue(bench, decision, simulated);
+  const double off = score_off_catalogue(study, decision, simulated);
   const double least = std::min(off, posterior.models.front().score);
   double sum = std::exp(-0.5 * (off - least));
-  for (Scored &model : posterior.models)
+  for (ScoredModel &model : posterior.models)
     sum += model.probability = std::exp(-0.5 * (model.score - least));
-  posterior.inclusion.assign(bench.effects.size(), 0.);
-  for (Scored &model : posterior.models) {
+  posterior.inclusion.assign(study.effects.size(), 0.);
+  for (ScoredModel &model : posterior.models) {
     model.probability /= sum;
     for (const std::size_t k : model.fit.effects)
       posterior.inclusion[k] += model.probability;

@@ -8,25 +8,26 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Runs of the base model and of each member of a tie, all with the same columns.
+/// Replicates of the base model, and predictions of each member of a tie, at the same data points.
 struct Rows
 {
-  std::vector<Cell> cells;
-  Eigen::MatrixXd base;               ///< runs x cells, for the chaos
+  std::vector<DataPoint> points;
+  Eigen::MatrixXd base;               ///< replicates x data points, for the covariance
   std::vector<Eigen::VectorXd> means; ///< of each member of the tie
   std::vector<double> leverages;
 };
 
-/// How far an observable would set each member of the tie apart from the likeliest, in standard
-/// deviations of one measurement; the least of them, as a tie is broken when all are out.
+/// Distance of each member of the tie from the likeliest one, as one measurement of an observable
+/// would show it, in standard deviations. The smallest of them counts, because a tie is broken only
+/// when all other members are refuted.
 double separation(const Rows &rows, const std::vector<Eigen::Index> &columns)
 {
-  std::vector<Cell> cells;
+  std::vector<DataPoint> points;
   Eigen::MatrixXd base(rows.base.rows(), static_cast<Eigen::Index>(columns.size()));
   std::vector<double> deviations;
   for (std::size_t c = 0; c < columns.size(); ++c) {
     base.col(static_cast<Eigen::Index>(c)) = rows.base.col(columns[c]);
-    cells.push_back(rows.cells[static_cast<std::size_t>(columns[c])]);
+    points.push_back(rows.points[static_cast<std::size_t>(columns[c])]);
   }
   if (!base.allFinite())
     return 0.;
@@ -36,14 +37,14 @@ double separation(const Rows &rows, const std::vector<Eigen::Index> &columns)
   const double floor = 0.2 * deviation.maxCoeff();
   if (floor <= 0.)
     return 0.;
-  const Modes modes(cells, deviation.cwiseMax(floor));
+  const Modes modes(points, deviation.cwiseMax(floor));
   Eigen::MatrixXd reduced(base.rows(), modes.n_modes());
   for (Eigen::Index r = 0; r < base.rows(); ++r)
     reduced.row(r) = modes.reduce(base.row(r).transpose()).transpose();
-  Covariance chaos = shrunk_covariance(centred(reduced), static_cast<double>(base.rows() - 1),
-                                       modes.experiment_of_mode());
-  chaos.matrix.diagonal().array() += 1e-3;
-  const Eigen::LDLT<Eigen::MatrixXd> factor(chaos.matrix);
+  Covariance covariance = shrunk_covariance(centred(reduced), static_cast<double>(base.rows() - 1),
+                                            modes.experiment_of_mode());
+  covariance.matrix.diagonal().array() += 1e-3;
+  const Eigen::LDLT<Eigen::MatrixXd> factor(covariance.matrix);
   double least = 1e300;
   for (std::size_t m = 1; m < rows.means.size(); ++m) {
     Eigen::VectorXd change(static_cast<Eigen::Index>(columns.size()));
@@ -59,18 +60,18 @@ double separation(const Rows &rows, const std::vector<Eigen::Index> &columns)
   return least;
 }
 
-/// One row for each observable of which some cells are not measured yet.
-void add_observables(const Rows &rows, const std::vector<Cell> &known, Table &table)
+/// One row for each observable of which some data points are not measured yet.
+void add_observables(const Rows &rows, const std::vector<DataPoint> &known, Table &table)
 {
   std::map<std::pair<std::string, std::string>, std::vector<Eigen::Index>> groups;
-  for (std::size_t c = 0; c < rows.cells.size(); ++c)
-    if (std::find(known.begin(), known.end(), rows.cells[c]) == known.end())
-      groups[{rows.cells[c].experiment, rows.cells[c].observable}].push_back(
+  for (std::size_t c = 0; c < rows.points.size(); ++c)
+    if (std::find(known.begin(), known.end(), rows.points[c]) == known.end())
+      groups[{rows.points[c].experiment, rows.points[c].observable}].push_back(
           static_cast<Eigen::Index>(c));
   for (const auto &[name, columns] : groups) {
     Table indices = Table::array();
     for (const Eigen::Index c : columns)
-      indices.push_back(rows.cells[static_cast<std::size_t>(c)].index);
+      indices.push_back(rows.points[static_cast<std::size_t>(c)].index);
     table.push_back({{"experiment", name.first},
                      {"observable", name.second},
                      {"indices", indices},
@@ -78,42 +79,42 @@ void add_observables(const Rows &rows, const std::vector<Cell> &known, Table &ta
   }
 }
 
-Rows rows_of_study(const Workbench &bench, const std::vector<Scored> &tie)
+Rows rows_of_study(const StudyState &study, const std::vector<ScoredModel> &tie)
 {
   Rows rows;
-  rows.cells = bench.columns;
-  rows.base.resize(static_cast<Eigen::Index>(bench.base().size()),
-                   static_cast<Eigen::Index>(bench.columns.size()));
-  for (std::size_t r = 0; r < bench.base().size(); ++r)
-    rows.base.row(static_cast<Eigen::Index>(r)) = bench.base()[r].values.transpose();
-  for (const Scored &member : tie) {
-    const Response response = bench.response_of_columns(member.fit.effects);
-    rows.means.push_back(response.origin() + response.change(member.fit.position));
-    rows.leverages.push_back(response.leverage(member.fit.position));
+  rows.points = study.columns;
+  rows.base.resize(static_cast<Eigen::Index>(study.base().size()),
+                   static_cast<Eigen::Index>(study.columns.size()));
+  for (std::size_t r = 0; r < study.base().size(); ++r)
+    rows.base.row(static_cast<Eigen::Index>(r)) = study.base()[r].values.transpose();
+  for (const ScoredModel &member : tie) {
+    const Emulator emulator = study.emulator_of_columns(member.fit.effects);
+    rows.means.push_back(emulator.origin() + emulator.change(member.fit.position));
+    rows.leverages.push_back(emulator.leverage(member.fit.position));
   }
   return rows;
 }
 
 /// Makes a few runs of an experiment that is not in the data; without rows if the budget does not
 /// allow them or runs fail.
-Rows rows_of_experiment(Workbench &bench, const std::vector<Scored> &tie,
+Rows rows_of_experiment(StudyState &study, const std::vector<ScoredModel> &tie,
                         const std::string &experiment)
 {
   constexpr std::uint32_t base_runs = 8, member_runs = 4;
   std::vector<RunRequest> requests;
-  const std::uint32_t seed = 100000u * bench.options.seed + 1u;
+  const std::uint32_t seed = 100000u * study.options.seed + 1u;
   for (std::uint32_t k = 0; k < base_runs; ++k)
     requests.push_back({experiment, {}, seed + k});
-  for (const Scored &member : tie)
+  for (const ScoredModel &member : tie)
     for (std::uint32_t k = 0; k < member_runs; ++k)
       requests.push_back(
-          {experiment, bench.amplitudes(member.fit.effects, member.fit.position), seed + k});
+          {experiment, study.amplitudes(member.fit.effects, member.fit.position), seed + k});
   Rows rows;
-  if (requests.size() > bench.archive.remaining())
+  if (requests.size() > study.archive.remaining())
     return rows;
-  const std::vector<RunResult> results = bench.archive.get(requests);
-  rows.cells = bench.archive.laboratory().cells(experiment);
-  const auto n = static_cast<Eigen::Index>(rows.cells.size());
+  const std::vector<RunResult> results = study.archive.get(requests);
+  rows.points = study.archive.simulator().data_points(experiment);
+  const auto n = static_cast<Eigen::Index>(rows.points.size());
   std::size_t place = 0;
   const auto take = [&](std::uint32_t number) {
     std::vector<Eigen::VectorXd> good;
@@ -142,13 +143,13 @@ Rows rows_of_experiment(Workbench &bench, const std::vector<Scored> &tie,
 }
 
 /// How often the same measurement would have to be repeated to tell the members apart.
-Table more_repeats(const Workbench &bench, const std::vector<Scored> &tie)
+Table more_repeats(const StudyState &study, const std::vector<ScoredModel> &tie)
 {
   constexpr double clear = 4.; // standard deviations
   double least = 1e300;
   for (std::size_t m = 1; m < tie.size(); ++m) {
     const Fit &a = tie[0].fit, &b = tie[m].fit;
-    const double noise = (a.leverage + b.leverage) * static_cast<double>(bench.misfit.size());
+    const double noise = (a.leverage + b.leverage) * static_cast<double>(study.misfit.size());
     const Eigen::VectorXd change = a.remainder - b.remainder;
     least = std::min(least, std::sqrt(std::max(0., change.squaredNorm() - noise)));
   }
@@ -160,27 +161,27 @@ Table more_repeats(const Workbench &bench, const std::vector<Scored> &tie)
 
 } // namespace
 
-Table separating_measurements(Workbench &bench, const std::vector<Scored> &tie)
+Table separating_measurements(StudyState &study, const std::vector<ScoredModel> &tie)
 {
   constexpr std::size_t most = 4;
-  const std::vector<Scored> members(tie.begin(), tie.begin() + std::min(most, tie.size()));
-  std::vector<Cell> known = bench.cells;
-  for (const MeasuredCell &cell : bench.data.fit)
-    known.push_back(cell.cell);
+  const std::vector<ScoredModel> members(tie.begin(), tie.begin() + std::min(most, tie.size()));
+  std::vector<DataPoint> known = study.data_points;
+  for (const MeasuredPoint &point : study.data.fit)
+    known.push_back(point.point);
   Table rows = Table::array();
-  add_observables(rows_of_study(bench, members), known, rows);
-  for (const std::string &experiment : bench.options.further_experiments) {
-    if (std::find(bench.experiments.begin(), bench.experiments.end(), experiment) !=
-        bench.experiments.end())
+  add_observables(rows_of_study(study, members), known, rows);
+  for (const std::string &experiment : study.options.further_experiments) {
+    if (std::find(study.experiments.begin(), study.experiments.end(), experiment) !=
+        study.experiments.end())
       continue;
-    const Rows further = rows_of_experiment(bench, members, experiment);
+    const Rows further = rows_of_experiment(study, members, experiment);
     if (further.means.size() == members.size())
       add_observables(further, known, rows);
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Table &a, const Table &b) {
     return a["separation"].get<double>() > b["separation"].get<double>();
   });
-  rows.push_back(more_repeats(bench, members));
+  rows.push_back(more_repeats(study, members));
   return rows;
 }
 

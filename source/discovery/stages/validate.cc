@@ -37,8 +37,8 @@ Eigen::VectorXd data_jitter(const HeldOut &held_out, RandomStream &random)
   return sum.cwiseProduct(held_out.deviation);
 }
 
-/// Where the data lie between the two models: 0 at the base model, 1 at the chosen one; below a
-/// half the gap grows.
+/// Position of the data between the two models: 0 at the base model, 1 at the chosen one. Below one
+/// half the discrepancy grows.
 struct Progress
 {
   double value = 0., error = 1e300;
@@ -47,19 +47,19 @@ struct Progress
 Progress progress(const HeldOut &held_out, const Prediction &base, const Prediction &chosen)
 {
   const Eigen::VectorXd change = chosen.mean - base.mean;
-  const Eigen::MatrixXd chaos = centred(base.runs), chaos_after = centred(chosen.runs);
-  const auto m = static_cast<double>(chaos.rows()), n = static_cast<double>(chaos_after.rows());
+  const Eigen::MatrixXd scatter = centred(base.runs), scatter_after = centred(chosen.runs);
+  const auto m = static_cast<double>(scatter.rows()), n = static_cast<double>(scatter_after.rows());
   const double noise =
-      chaos.squaredNorm() / (m - 1.) / m + chaos_after.squaredNorm() / (n - 1.) / n;
+      scatter.squaredNorm() / (m - 1.) / m + scatter_after.squaredNorm() / (n - 1.) / n;
   const double square = change.squaredNorm() - noise;
   if (square <= 0.)
     return {};
-  const double along = (chaos * change).squaredNorm() / (m - 1.);
+  const double along = (scatter * change).squaredNorm() / (m - 1.);
   const double ratio = std::max(0.3, held_out.deviation.cwiseAbs2().mean());
   const double variance = along * (ratio / held_out.repeats.mean() + 1. / m) +
-                          (base.doubt.transpose() * change).squaredNorm();
+                          (base.uncertainty.transpose() * change).squaredNorm();
   // The base runs' own noise is in both factors.
-  const double bias = chaos.squaredNorm() / (m - 1.) / m;
+  const double bias = scatter.squaredNorm() / (m - 1.) / m;
   return {(change.dot(held_out.data - base.mean) - bias) / square, std::sqrt(variance) / square};
 }
 
@@ -72,32 +72,35 @@ Table quantiles(std::vector<double> values)
   return {at(0.025), at(0.975)};
 }
 
-/// The gap to a model, and draws of it in which runs, repeats and what is doubtful are drawn anew.
-struct GapDraws
+/// The discrepancy to a model, and its bootstrap draws: of replicates, repeats, nuisances and
+/// amplitudes.
+struct DiscrepancyDraws
 {
-  Gap gap;
+  Discrepancy discrepancy;
   std::vector<double> values;
 };
 
-/// Both models' gaps, with the same draws of the data.
-std::pair<GapDraws, GapDraws> draw_gaps(const HeldOut &held_out, const Prediction &base,
-                                        const Prediction &chosen, const std::uint32_t seed)
+/// Discrepancies of both models, with the same draws of the data.
+std::pair<DiscrepancyDraws, DiscrepancyDraws> draw_discrepancies(const HeldOut &held_out,
+                                                                 const Prediction &base,
+                                                                 const Prediction &chosen,
+                                                                 const std::uint32_t seed)
 {
   constexpr int n_draws = 999;
   RandomStream random(seed, 2);
   const Eigen::VectorXd noise = noise_variance(held_out, base),
                         noise_after = noise_variance(held_out, chosen);
-  std::pair<GapDraws, GapDraws> result;
-  result.first.gap = gap(held_out.data - base.mean, noise);
-  result.second.gap = gap(held_out.data - chosen.mean, noise_after);
+  std::pair<DiscrepancyDraws, DiscrepancyDraws> result;
+  result.first.discrepancy = discrepancy(held_out.data - base.mean, noise);
+  result.second.discrepancy = discrepancy(held_out.data - chosen.mean, noise_after);
   for (int d = 0; d < n_draws; ++d) {
     const Eigen::VectorXd data = held_out.data + data_jitter(held_out, random);
-    const Eigen::VectorXd doubts = random.normals(1, base.doubt.cols()).row(0).transpose();
+    const Eigen::VectorXd shifts = random.normals(1, base.uncertainty.cols()).row(0).transpose();
     const auto drawn = [&](const Prediction &p, const Eigen::VectorXd &variance) {
       const Eigen::VectorXd model =
-          p.mean - mean_of(p.runs) + resampled_mean(p.runs, random) + p.doubt * doubts;
-      // A draw adds the noise once more.
-      return gap(data - model, 2. * variance).value;
+          p.mean - mean_of(p.runs) + resampled_mean(p.runs, random) + p.uncertainty * shifts;
+      // The draw has the noise twice: the real one and its own.
+      return discrepancy(data - model, 2. * variance).value;
     };
     result.first.values.push_back(drawn(base, noise));
     result.second.values.push_back(drawn(chosen, noise_after));
@@ -108,19 +111,20 @@ std::pair<GapDraws, GapDraws> draw_gaps(const HeldOut &held_out, const Predictio
 Table compare(const HeldOut &held_out, const Prediction &base, const Prediction &chosen,
               const std::uint32_t seed)
 {
-  const auto [before, after] = draw_gaps(held_out, base, chosen, seed);
+  const auto [before, after] = draw_discrepancies(held_out, base, chosen, seed);
   std::vector<double> shrinks;
   for (std::size_t d = 0; d < before.values.size(); ++d) {
     const double b = before.values[d], a = after.values[d];
     shrinks.push_back(b > 0. ? 1. - a / b : a > 0. ? -1e3 : 0.);
   }
-  return {{"cells", held_out.cells.size()},
-          {"gap before", before.gap.value},
-          {"deviation before", before.gap.before_correction},
-          {"gap after", after.gap.value},
-          {"deviation after", after.gap.before_correction},
-          {"shrink",
-           before.gap.value > 0. ? Table(1. - after.gap.value / before.gap.value) : Table(nullptr)},
+  return {{"cells", held_out.points.size()},
+          {"gap before", before.discrepancy.value},
+          {"deviation before", before.discrepancy.before_correction},
+          {"gap after", after.discrepancy.value},
+          {"deviation after", after.discrepancy.before_correction},
+          {"shrink", before.discrepancy.value > 0.
+                         ? Table(1. - after.discrepancy.value / before.discrepancy.value)
+                         : Table(nullptr)},
           {"gap before interval", quantiles(before.values)},
           {"gap after interval", quantiles(after.values)},
           {"shrink interval", quantiles(shrinks)},
@@ -130,20 +134,20 @@ Table compare(const HeldOut &held_out, const Prediction &base, const Prediction 
 
 Table compare_base(const HeldOut &held_out, const Prediction &base, const std::uint32_t seed)
 {
-  const Gap before = gap(held_out.data - base.mean, noise_variance(held_out, base));
-  return {{"cells", held_out.cells.size()},
+  const Discrepancy before = discrepancy(held_out.data - base.mean, noise_variance(held_out, base));
+  return {{"cells", held_out.points.size()},
           {"gap before", before.value},
           {"deviation before", before.before_correction},
           {"p of the base model", p_of_held_out(held_out, base, seed)}};
 }
 
 /// Relative standard error of fitted amplitudes, root mean square.
-double amplitude_error(const Workbench &bench, const Findings &findings, const Fit &fit)
+double amplitude_error(const StudyState &study, const Findings &findings, const Fit &fit)
 {
-  const double deviations = 2. * std::sqrt(findings.reference.direction_limit);
+  const double deviations = 2. * std::sqrt(findings.null_distribution.direction_limit);
   double square = 0.;
   for (std::size_t k = 0; k < fit.effects.size(); ++k) {
-    const Interval interval = amplitude_interval(bench, findings, fit, k);
+    const Interval interval = amplitude_interval(study, findings, fit, k);
     const double size = std::abs(fit.position(static_cast<Eigen::Index>(k)));
     const double error = (interval.upper - interval.lower) / deviations;
     square += std::pow(size > 0. ? error / size : 1., 2) / static_cast<double>(fit.effects.size());
@@ -151,21 +155,21 @@ double amplitude_error(const Workbench &bench, const Findings &findings, const F
   return std::sqrt(square);
 }
 
-Table describe_cells(const HeldOut &held_out)
+Table describe_points(const HeldOut &held_out)
 {
   const auto spread = [](const Eigen::MatrixXd &rows, Eigen::Index c) {
     return std::sqrt(centred(rows).col(c).squaredNorm() / static_cast<double>(rows.rows() - 1));
   };
   Table rows = Table::array();
-  for (std::size_t k = 0; k < held_out.cells.size(); ++k) {
+  for (std::size_t k = 0; k < held_out.points.size(); ++k) {
     const auto c = static_cast<Eigen::Index>(k);
-    const MeasuredCell &cell = held_out.cells[k];
-    Table row = {{"experiment", cell.cell.experiment},
-                 {"observable", cell.cell.observable},
-                 {"index", cell.cell.index},
-                 {"measured", cell.value},
-                 {"measured deviation", cell.standard_deviation},
-                 {"repeats", cell.repeats},
+    const MeasuredPoint &point = held_out.points[k];
+    Table row = {{"experiment", point.point.experiment},
+                 {"observable", point.point.observable},
+                 {"index", point.point.index},
+                 {"measured", point.value},
+                 {"measured deviation", point.standard_deviation},
+                 {"repeats", point.repeats},
                  {"base", held_out.before.col(c).mean() * held_out.scale(c)},
                  {"base deviation", spread(held_out.before, c) * held_out.scale(c)}};
     if (held_out.after.rows() > 1) {
@@ -177,38 +181,38 @@ Table describe_cells(const HeldOut &held_out)
   return rows;
 }
 
-/// What held-out data say of a model.
-struct Judgement
+/// Result of the validation of a model on held-out data.
+struct Validation
 {
   Table table;
   bool shrinks = false, does_not_shrink = false, is_bad_fit = false;
-  /// Whether few more runs could change that.
+  /// Whether more runs could change that.
   bool is_in_doubt = false;
 
   bool refutes() const { return does_not_shrink || is_bad_fit; }
 };
 
-/// @param times how many times the runs of the study's options
-Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit,
-                const unsigned int times)
+/// @param times multiplies the numbers of runs in the study's options
+Validation validate(StudyState &study, const Findings &findings, const Fit &fit,
+                    const unsigned int times)
 {
-  Judgement result;
-  const HeldOut held_out = make_held_out(bench, bench.amplitudes(fit.effects, fit.position), times);
-  if (held_out.cells.empty()) {
+  Validation result;
+  const HeldOut held_out = make_held_out(study, study.amplitudes(fit.effects, fit.position), times);
+  if (held_out.points.empty()) {
     result.table = {{"result", "too few runs of the held-out experiments came to their end"}};
     return result;
   }
-  const Prediction base = predict(bench, held_out, held_out.before, fit_model(bench, {}), 0.);
+  const Prediction base = predict(study, held_out, held_out.before, fit_model(study, {}), 0.);
   Table &table = result.table;
   if (held_out.after.rows() < 3) {
-    table = compare_base(held_out, base, bench.options.seed);
+    table = compare_base(held_out, base, study.options.seed);
     table["result"] =
         fit.effects.empty() ? "base model only" : "runs of the model with the effect failed";
   } else {
     const Prediction chosen =
-        predict(bench, held_out, held_out.after, fit, amplitude_error(bench, findings, fit));
-    table = compare(held_out, base, chosen, bench.options.seed);
-    // Between the models, with one standard error against the name: shrinks are rarely so unlucky.
+        predict(study, held_out, held_out.after, fit, amplitude_error(study, findings, fit));
+    table = compare(held_out, base, chosen, study.options.seed);
+    // One standard error below one half: a discrepancy that really shrinks is rarely so unlucky.
     const Progress between = progress(held_out, base, chosen);
     const bool informative = between.error < 0.5;
     const double p = table["p of the chosen model"].get<double>();
@@ -226,50 +230,52 @@ Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit,
                       : informative          ? "the gap shrinks"
                                              : "held-out data cannot tell the two models apart";
   }
-  table["envelopes"] = describe_cells(held_out);
+  table["envelopes"] = describe_points(held_out);
   return result;
 }
 
-/// Few runs estimate a covariance badly: where they speak against a model, or nearly, more decide.
-Judgement judge(Workbench &bench, const Findings &findings, const Fit &fit)
+/// Validates a model, and again with more runs where the first refute it or nearly do, because few
+/// runs give a poor estimate of a covariance.
+Validation validate(StudyState &study, const Findings &findings, const Fit &fit)
 {
   constexpr unsigned int more = 3;
-  const Judgement first = judge(bench, findings, fit, 1);
+  const Validation first = validate(study, findings, fit, 1);
   const std::uint64_t needed =
-      more * held_out_runs(bench.data, bench.options, bench.nuisances.size());
-  return first.is_in_doubt && needed <= bench.archive.remaining()
-             ? judge(bench, findings, fit, more)
+      more * held_out_runs(study.data, study.options, study.nuisances.size());
+  return first.is_in_doubt && needed <= study.archive.remaining()
+             ? validate(study, findings, fit, more)
              : first;
 }
 
-/// Members of a tie that the held-out data refute leave it, if two at least stay; if one stays with
-/// which the gap shrinks, it is named; and if none does, nothing is. Only the likeliest are judged.
-Judgement judge_tie(Workbench &bench, Findings &findings)
+/// Validates the likeliest members of a tie, and removes those that the held-out data refute. If
+/// one member is left and its discrepancy shrinks, it is named. If none is left, the verdict is
+/// withdrawn.
+Validation validate_tie(StudyState &study, Findings &findings)
 {
   constexpr std::size_t most = 4;
   Table rows = Table::array();
-  std::vector<Scored> left;
+  std::vector<ScoredModel> left;
   std::vector<EffectSet> refuted;
-  std::vector<Judgement> judgements, of_left;
+  std::vector<Validation> validations, of_left;
   for (std::size_t k = 0; k < findings.tie.size(); ++k) {
-    const Scored &member = findings.tie[k];
+    const ScoredModel &member = findings.tie[k];
     if (k >= most) {
       left.push_back(member);
       continue;
     }
-    judgements.push_back(judge(bench, findings, member.fit));
-    const Judgement &judgement = judgements.back();
-    rows.push_back({{"effects", name_of(bench, member.fit.effects)},
-                    {"p", judgement.table.value("p of the chosen model", Table(nullptr))},
-                    {"result", judgement.table["result"]}});
-    if (judgement.refutes()) {
+    validations.push_back(validate(study, findings, member.fit));
+    const Validation &validation = validations.back();
+    rows.push_back({{"effects", name_of(study, member.fit.effects)},
+                    {"p", validation.table.value("p of the chosen model", Table(nullptr))},
+                    {"result", validation.table["result"]}});
+    if (validation.refutes()) {
       refuted.push_back(member.fit.effects);
     } else {
       left.push_back(member);
-      of_left.push_back(judgement);
+      of_left.push_back(validation);
     }
   }
-  Judgement result = judgements.front();
+  Validation result = validations.front();
   findings.withdrawn = left.empty();
   if (!of_left.empty() && (left.size() >= 2 || of_left.front().shrinks)) {
     result = of_left.front();
@@ -278,7 +284,7 @@ Judgement judge_tie(Workbench &bench, Findings &findings)
     findings.verdict = left.size() == 1 ? Verdict::named : Verdict::tie;
     findings.tie = left;
     findings.refuted = refuted;
-    settle_confidence(findings);
+    compute_confidence(findings);
   }
   result.table["members of the tie"] = rows;
   return result;
@@ -286,16 +292,16 @@ Judgement judge_tie(Workbench &bench, Findings &findings)
 
 } // namespace
 
-Table stage_validate(Workbench &bench, Findings &findings)
+Table stage_validate(StudyState &study, Findings &findings)
 {
-  if (bench.data.held_out.empty())
+  if (study.data.held_out.empty())
     return {{"result", "no held-out data"}};
-  bench.archive.set_aside(0);
+  study.archive.set_aside(0);
   if (findings.verdict == Verdict::tie)
-    return judge_tie(bench, findings).table;
-  const Judgement judgement = judge(bench, findings, findings.chosen.fit);
-  findings.withdrawn = judgement.refutes();
-  return judgement.table;
+    return validate_tie(study, findings).table;
+  const Validation validation = validate(study, findings, findings.chosen.fit);
+  findings.withdrawn = validation.refutes();
+  return validation.table;
 }
 
 } // namespace eunoe::discovery

@@ -1,4 +1,4 @@
-#include <eunoe/discovery/stages/places.h>
+#include <eunoe/discovery/stages/design.h>
 #include <eunoe/discovery/stages/stages.h>
 
 #include <algorithm>
@@ -42,12 +42,12 @@ int exit_code(const Verdict verdict)
 
 namespace {
 
-/// Sets of as many effects as the chosen one, without those that were refuted. Other sizes were
-/// ruled out by the stages fit and iterate, which says nothing of "something else".
-std::vector<const Scored *> rivals(const Findings &findings)
+/// Sets of effects that compete with the chosen one: those of the same size that were not refuted.
+/// The stages fit and iterate have decided the size; "off catalogue" is not among them.
+std::vector<const ScoredModel *> competing_models(const Findings &findings)
 {
-  std::vector<const Scored *> result;
-  for (const Scored &model : findings.posterior.models)
+  std::vector<const ScoredModel *> result;
+  for (const ScoredModel &model : findings.posterior.models)
     if (model.fit.effects.size() == findings.chosen.fit.effects.size() &&
         std::find(findings.refuted.begin(), findings.refuted.end(), model.fit.effects) ==
             findings.refuted.end())
@@ -55,9 +55,8 @@ std::vector<const Scored *> rivals(const Findings &findings)
   return result;
 }
 
-/// Takes a part of all confidences and shares it out by their fourth roots. What was not expected
-/// befalls whatever is likely enough to be looked at: the second of a hundred to one is right more
-/// often than once in a hundred.
+/// Takes a share of all confidences and distributes it by their fourth roots, for errors outside
+/// the statistical model: an alternative at odds of one to a hundred is right more often than that.
 void allow_for_surprise(const double surprise, std::vector<double> &confidence)
 {
   double sum = 0., roots = 0.;
@@ -72,15 +71,15 @@ void allow_for_surprise(const double surprise, std::vector<double> &confidence)
 
 } // namespace
 
-void settle_confidence(Findings &findings)
+void compute_confidence(Findings &findings)
 {
   double alike = 0.;
-  for (const Scored *model : rivals(findings))
+  for (const ScoredModel *model : competing_models(findings))
     alike += model->probability;
   findings.off_catalogue = findings.posterior.off_catalogue;
   const double share = alike > 0. ? (1. - findings.off_catalogue) / alike : 0.;
   findings.confidence.assign(findings.posterior.inclusion.size(), 0.);
-  for (const Scored *model : rivals(findings))
+  for (const ScoredModel *model : competing_models(findings))
     for (const std::size_t k : model->fit.effects)
       findings.confidence[k] += model->probability * share;
   allow_for_surprise(findings.decision.surprise, findings.confidence);
@@ -88,13 +87,13 @@ void settle_confidence(Findings &findings)
 
 void decide(Findings &findings)
 {
-  const Decision &decision = findings.decision;
-  settle_confidence(findings);
+  const DecisionRule &decision = findings.decision;
+  compute_confidence(findings);
   double alike = 0., sum = 0.;
-  for (const Scored *model : rivals(findings))
+  for (const ScoredModel *model : competing_models(findings))
     alike += model->probability;
   findings.tie.clear();
-  for (const Scored *model : rivals(findings)) {
+  for (const ScoredModel *model : competing_models(findings)) {
     if (sum < decision.credible * alike)
       findings.tie.push_back(*model);
     sum += model->probability;
@@ -105,37 +104,37 @@ void decide(Findings &findings)
     findings.verdict = findings.tie.size() == 1 ? Verdict::named : Verdict::tie;
 }
 
-Table describe_remainder(const Workbench &bench, const Findings &findings)
+Table describe_remainder(const StudyState &study, const Findings &findings)
 {
   const Fit &fit = findings.chosen.fit;
   Table rows = Table::array();
-  const Response response = bench.response_of_columns(fit.effects);
-  const Eigen::VectorXd model = bench.measured(response.origin() + response.change(fit.position));
-  const Eigen::VectorXd errors = cell_errors(bench);
-  for (std::size_t c = 0; c < bench.cells.size(); ++c) {
+  const Emulator emulator = study.emulator_of_columns(fit.effects);
+  const Eigen::VectorXd model = study.measured(emulator.origin() + emulator.change(fit.position));
+  const Eigen::VectorXd errors = standard_errors(study);
+  for (std::size_t c = 0; c < study.data_points.size(); ++c) {
     const auto k = static_cast<Eigen::Index>(c);
-    const double z = (bench.value(k) - model(k)) / bench.modes.deviations()(k) / errors(k);
-    const double p = findings.reference.p_cell(z);
-    if (p <= bench.options.level)
-      rows.push_back({{"experiment", bench.cells[c].experiment},
-                      {"observable", bench.cells[c].observable},
-                      {"index", bench.cells[c].index},
+    const double z = (study.value(k) - model(k)) / study.modes.deviations()(k) / errors(k);
+    const double p = findings.null_distribution.p_largest_deviation(z);
+    if (p <= study.options.level)
+      rows.push_back({{"experiment", study.data_points[c].experiment},
+                      {"observable", study.data_points[c].observable},
+                      {"index", study.data_points[c].index},
                       {"deviation", z},
                       {"p", p}});
   }
 
-  // The data's whole deviation from the base model beside each fingerprint.
-  const Fit base = fit_model(bench, {});
-  const Eigen::VectorXd error = bench.misfit.variance(base.leverage).cwiseSqrt();
+  // Cosine between the data's deviation from the base model and each fingerprint.
+  const Fit base = fit_model(study, {});
+  const Eigen::VectorXd error = study.misfit.variance(base.leverage).cwiseSqrt();
   const Eigen::VectorXd deviation = base.remainder.cwiseQuotient(error);
   std::vector<std::pair<double, std::string>> family;
-  for (std::size_t k = 0; k < bench.effects.size(); ++k) {
-    const Fit alone = fit_model(bench, {k});
-    const Response single = bench.response({k});
+  for (std::size_t k = 0; k < study.effects.size(); ++k) {
+    const Fit alone = fit_model(study, {k});
+    const Emulator single = study.emulator({k});
     const Eigen::VectorXd change = single.change(alone.position).cwiseQuotient(error);
     if (change.norm() > 0.)
       family.emplace_back(deviation.dot(change) / deviation.norm() / change.norm(),
-                          bench.effects[k].name);
+                          study.effects[k].name);
   }
   std::stable_sort(family.begin(), family.end(),
                    [](const auto &a, const auto &b) { return a.first > b.first; });
@@ -144,43 +143,43 @@ Table describe_remainder(const Workbench &bench, const Findings &findings)
     similar.push_back(
         {{"effect", family[k].second}, {"mechanism", ""}, {"cosine", family[k].first}});
   for (auto &row : similar)
-    for (const Factor &effect : bench.effects)
+    for (const Factor &effect : study.effects)
       if (effect.name == row["effect"].get<std::string>())
         row["mechanism"] = effect.mechanism;
-  return {{"closest model", name_of(bench, fit.effects)},
+  return {{"closest model", name_of(study, fit.effects)},
           {"p of its fit", findings.p_fit},
           {"cells that deviate from it", rows},
           {"resembles", similar}};
 }
 
-Table describe_envelopes(const Workbench &bench, const Findings &findings)
+Table describe_envelopes(const StudyState &study, const Findings &findings)
 {
   const Fit &fit = findings.chosen.fit;
-  const Response response = bench.response_of_columns(fit.effects);
-  const Eigen::VectorXd after = bench.measured(response.origin() + response.change(fit.position));
-  const auto spread = [&](const std::vector<RunSet> &sets, const Eigen::Index c) {
+  const Emulator emulator = study.emulator_of_columns(fit.effects);
+  const Eigen::VectorXd after = study.measured(emulator.origin() + emulator.change(fit.position));
+  const auto spread = [&](const std::vector<Replicate> &sets, const Eigen::Index c) {
     double mean = 0., square = 0.;
-    for (const RunSet &set : sets)
-      mean += set.values(bench.column_of_cell[static_cast<std::size_t>(c)]) /
+    for (const Replicate &set : sets)
+      mean += set.values(study.column_of_point[static_cast<std::size_t>(c)]) /
               static_cast<double>(sets.size());
-    for (const RunSet &set : sets)
-      square += std::pow(set.values(bench.column_of_cell[static_cast<std::size_t>(c)]) - mean, 2);
+    for (const Replicate &set : sets)
+      square += std::pow(set.values(study.column_of_point[static_cast<std::size_t>(c)]) - mean, 2);
     return std::pair<double, double>(
         mean, std::sqrt(square / std::max(1., static_cast<double>(sets.size()) - 1.)));
   };
-  const auto found = bench.runs.find(near_amplitudes(bench, fit.effects, fit.position));
+  const auto found = study.replicates.find(nearest_design_point(study, fit.effects, fit.position));
   const bool has_runs =
-      !fit.effects.empty() && found != bench.runs.end() && found->second.size() > 2;
+      !fit.effects.empty() && found != study.replicates.end() && found->second.size() > 2;
   Table rows = Table::array();
-  for (std::size_t k = 0; k < bench.cells.size(); ++k) {
+  for (std::size_t k = 0; k < study.data_points.size(); ++k) {
     const auto c = static_cast<Eigen::Index>(k);
-    const auto [base, base_spread] = spread(bench.base(), c);
-    Table row = {{"experiment", bench.cells[k].experiment},
-                 {"observable", bench.cells[k].observable},
-                 {"index", bench.cells[k].index},
-                 {"measured", bench.value(c)},
-                 {"measured deviation", bench.deviation(c)},
-                 {"repeats", bench.repeats(c)},
+    const auto [base, base_spread] = spread(study.base(), c);
+    Table row = {{"experiment", study.data_points[k].experiment},
+                 {"observable", study.data_points[k].observable},
+                 {"index", study.data_points[k].index},
+                 {"measured", study.value(c)},
+                 {"measured deviation", study.deviation(c)},
+                 {"repeats", study.repeats(c)},
                  {"base", base},
                  {"base deviation", base_spread}};
     if (!fit.effects.empty()) {
@@ -192,7 +191,7 @@ Table describe_envelopes(const Workbench &bench, const Findings &findings)
   return rows;
 }
 
-Gap gap(const Eigen::VectorXd &deviation, const Eigen::VectorXd &noise_variance)
+Discrepancy discrepancy(const Eigen::VectorXd &deviation, const Eigen::VectorXd &noise_variance)
 {
   const double square = deviation.squaredNorm() / static_cast<double>(deviation.size());
   return {std::sqrt(std::max(0., square - noise_variance.mean())), std::sqrt(square)};

@@ -7,15 +7,14 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// What one observable says of the ratio of variances: its value, and on how many degrees of
-/// freedom it stands.
+/// Estimate of the ratio of variances from one observable, and its degrees of freedom.
 struct Witness
 {
   double ratio, weight;
   bool declared; ///< a single repeat: the deviation was not estimated from repeats
 
-  /// Of repeats that scatter so far beyond the chaos the instrument is the cause, or the observable
-  /// hardly varies in runs; what they say holds for them alone.
+  /// Where repeats vary far more than replicates, the cause is the instrument, or an observable
+  /// that hardly varies between replicates. Such a ratio is not shared with other observables.
   bool stands_alone() const
   {
     constexpr double most = 10.;
@@ -23,20 +22,20 @@ struct Witness
   }
 };
 
-Witness witness(const Modes::Group &group, const Eigen::MatrixXd &chaos,
-                const Eigen::VectorXd &cell_chaos, const Repeats &repeats)
+Witness witness(const Modes::Group &group, const Eigen::MatrixXd &replicate_covariance,
+                const Eigen::VectorXd &replicate_variance, const Repeats &repeats)
 {
   double ratio = 0., number = 0.;
-  for (const Eigen::Index c : group.cells) {
-    ratio += repeats.deviation(c) * repeats.deviation(c) / cell_chaos(c);
+  for (const Eigen::Index c : group.points) {
+    ratio += repeats.deviation(c) * repeats.deviation(c) / replicate_variance(c);
     number += repeats.number(c);
   }
-  const auto n = static_cast<double>(group.cells.size());
+  const auto n = static_cast<double>(group.points.size());
   double trace = 0., squares = 0.;
   for (const Eigen::Index i : group.modes)
     for (const Eigen::Index j : group.modes) {
-      trace += i == j ? chaos(i, i) : 0.;
-      squares += chaos(i, j) * chaos(i, j);
+      trace += i == j ? replicate_covariance(i, i) : 0.;
+      squares += replicate_covariance(i, j) * replicate_covariance(i, j);
     }
   const double effective = std::max(1., trace * trace / squares);
   const bool declared = number / n < 1.5;
@@ -45,16 +44,16 @@ Witness witness(const Modes::Group &group, const Eigen::MatrixXd &chaos,
 
 } // namespace
 
-DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
-                              const Eigen::VectorXd &cell_chaos, const Repeats &repeats)
+DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
+                              const Eigen::VectorXd &replicate_variance, const Repeats &repeats)
 {
-  // Degrees of freedom that the expectation is worth: no noise of the instrument for all
-  // observables together, and the mean of all for a single one.
+  // Degrees of freedom of the priors: no noise of the instrument for all observables together, and
+  // their mean for a single one.
   constexpr double weight_of_one = 4., weight_of_mean = 6.;
   std::vector<Witness> witnesses;
   double sum = weight_of_one, weight = weight_of_one;
   for (const Modes::Group &group : modes.groups()) {
-    witnesses.push_back(witness(group, chaos, cell_chaos, repeats));
+    witnesses.push_back(witness(group, replicate_covariance, replicate_variance, repeats));
     if (witnesses.back().stands_alone())
       continue;
     sum += witnesses.back().weight * witnesses.back().ratio;
@@ -62,9 +61,9 @@ DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
   }
 
   DataNoise noise;
-  const Eigen::Index n = modes.n_cells();
+  const Eigen::Index n = modes.n_points();
   noise.ratio = Eigen::VectorXd::Ones(n);
-  noise.cell_variance = Eigen::VectorXd::Zero(n);
+  noise.point_variance = Eigen::VectorXd::Zero(n);
   Eigen::VectorXd instrument(n), share = Eigen::VectorXd::Zero(modes.n_modes());
   for (std::size_t g = 0; g < witnesses.size(); ++g) {
     const Witness &w = witnesses[g];
@@ -73,17 +72,17 @@ DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
             ? std::max(1., w.ratio)
             : (weight_of_mean * sum / weight + w.weight * w.ratio) / (weight_of_mean + w.weight);
     double repeats_inverse = 0.;
-    for (const Eigen::Index c : modes.groups()[g].cells) {
+    for (const Eigen::Index c : modes.groups()[g].points) {
       noise.ratio(c) = ratio;
-      instrument(c) = std::max(0., ratio - 1.) * cell_chaos(c) / repeats.number(c);
-      noise.cell_variance(c) = ratio * cell_chaos(c) / repeats.number(c);
+      instrument(c) = std::max(0., ratio - 1.) * replicate_variance(c) / repeats.number(c);
+      noise.point_variance(c) = ratio * replicate_variance(c) / repeats.number(c);
       repeats_inverse += 1. / repeats.number(c);
     }
-    repeats_inverse /= static_cast<double>(modes.groups()[g].cells.size());
+    repeats_inverse /= static_cast<double>(modes.groups()[g].points.size());
     for (const Eigen::Index m : modes.groups()[g].modes)
       share(m) = std::sqrt(std::min(1., ratio) * repeats_inverse);
   }
-  noise.modes = share.asDiagonal() * chaos * share.asDiagonal();
+  noise.modes = share.asDiagonal() * replicate_covariance * share.asDiagonal();
   noise.modes += modes.basis() * instrument.asDiagonal() * modes.basis().transpose();
   return noise;
 }

@@ -4,9 +4,9 @@
 
 namespace eunoe::discovery {
 
-Misfit::Misfit(const Eigen::MatrixXd &chaos, const Eigen::MatrixXd &other)
+Misfit::Misfit(const Eigen::MatrixXd &replicate_covariance, const Eigen::MatrixXd &other)
 {
-  const Eigen::LLT<Eigen::MatrixXd> factor(chaos);
+  const Eigen::LLT<Eigen::MatrixXd> factor(replicate_covariance);
   const auto lower = factor.matrixL();
   const Eigen::MatrixXd half = lower.solve(other);
   Eigen::MatrixXd white = lower.solve(half.transpose());
@@ -14,7 +14,10 @@ Misfit::Misfit(const Eigen::MatrixXd &chaos, const Eigen::MatrixXd &other)
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(white);
   other_variance = eigen.eigenvalues().cwiseMax(0.);
   transform = eigen.eigenvectors().transpose() *
-              lower.solve(Eigen::MatrixXd::Identity(chaos.rows(), chaos.cols())).eval();
+              lower
+                  .solve(Eigen::MatrixXd::Identity(replicate_covariance.rows(),
+                                                   replicate_covariance.cols()))
+                  .eval();
 }
 
 double Misfit::deviance(const double distance, const double log_determinant) const

@@ -6,21 +6,22 @@
 
 namespace eunoe::discovery {
 
-Modes::Modes(const std::vector<Cell> &cells, const Eigen::VectorXd &deviations) : scale(deviations)
+Modes::Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviations)
+    : scale(deviations)
 {
   std::map<std::pair<std::string, std::string>, std::vector<Eigen::Index>> sorted;
-  for (std::size_t c = 0; c < cells.size(); ++c)
-    sorted[{cells[c].experiment, cells[c].observable}].push_back(static_cast<Eigen::Index>(c));
+  for (std::size_t c = 0; c < points.size(); ++c)
+    sorted[{points[c].experiment, points[c].observable}].push_back(static_cast<Eigen::Index>(c));
 
   Eigen::Index n_modes = 0;
   for (auto &[name, members] : sorted) {
     std::sort(members.begin(), members.end(), [&](Eigen::Index a, Eigen::Index b) {
-      return cells[static_cast<std::size_t>(a)] < cells[static_cast<std::size_t>(b)];
+      return points[static_cast<std::size_t>(a)] < points[static_cast<std::size_t>(b)];
     });
     n_modes += std::min<Eigen::Index>(static_cast<Eigen::Index>(members.size()), most_modes);
   }
 
-  matrix = Eigen::MatrixXd::Zero(n_modes, static_cast<Eigen::Index>(cells.size()));
+  matrix = Eigen::MatrixXd::Zero(n_modes, static_cast<Eigen::Index>(points.size()));
   std::map<std::string, int> numbers;
   Eigen::Index row = 0;
   for (const auto &[name, members] : sorted) {

@@ -1,7 +1,7 @@
 #ifndef eunoe_discovery_stages_archive_h
 #define eunoe_discovery_stages_archive_h
 
-#include <eunoe/discovery/laboratory.h>
+#include <eunoe/discovery/simulator.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,27 +9,29 @@
 
 namespace eunoe::discovery {
 
-/// All runs that a study has asked for, so that no stage asks twice, and the count that the budget
-/// limits: requests, not simulations, so that a study that goes on after a break decides the same.
+/// The results of all runs that a study has asked for, so that no run is asked for twice, and their
+/// number, which the budget limits. Requests count and not simulations, so that a study that
+/// continues after a break takes the same decisions.
 class Archive
 {
 public:
   /// @param budget most requests; 0: no limit
-  Archive(Laboratory &laboratory, std::uint64_t budget) : lab(laboratory), limit(budget) {}
+  Archive(Simulator &simulator, std::uint64_t budget) : source(simulator), limit(budget) {}
 
   /// Results in the order of the requests.
   std::vector<RunResult> get(const std::vector<RunRequest> &requests);
   std::uint64_t n_requests() const { return results.size(); }
   std::uint64_t n_failed() const;
-  /// How many more the budget allows, less what is set aside for later.
+  /// Number of further requests within the budget, less those that are set aside for later.
   std::uint64_t remaining() const;
   void set_aside(std::uint64_t requests) { reserved = requests; }
 
-  Laboratory &laboratory() { return lab; }
+  Simulator &simulator() { return source; }
 
-  /// Runs that were asked for since the last call, and to put them back.
-  nlohmann::ordered_json take_new();
-  void absorb(const nlohmann::ordered_json &runs);
+  /// The results that were asked for since the last call, and the way back: results that an earlier
+  /// start of the study had saved.
+  nlohmann::ordered_json take_unsaved();
+  void restore(const nlohmann::ordered_json &runs);
 
 private:
   using Key = std::tuple<std::string, Amplitudes, std::uint32_t>;
@@ -38,11 +40,11 @@ private:
     return {request.experiment, request.amplitudes, request.seed};
   }
 
-  Laboratory &lab;
+  Simulator &source;
   std::uint64_t limit, reserved = 0;
   std::map<Key, RunResult> results;
-  std::map<Key, RunResult> stock; ///< of an earlier start; counts once it is asked for
-  std::vector<Key> fresh;
+  std::map<Key, RunResult> restored; ///< from an earlier start; they count once they are asked for
+  std::vector<Key> unsaved;
 };
 
 } // namespace eunoe::discovery

@@ -5,13 +5,14 @@
 
 namespace eunoe::discovery {
 
-/// Whether there are runs to rest the fit on.
-bool is_verified(const Workbench &bench, const Fit &fit);
+/// Whether there are runs at the fitted amplitudes, or near them.
+bool is_verified(const StudyState &study, const Fit &fit);
 
-/// Makes so many runs to rest each of some fits on, all at once.
-/// @returns a row for each: where, runs that are there now, and how far they are from what the
-///   emulator foresaw (1: as far as noise makes expect)
-Table verify(Workbench &bench, const std::vector<Fit> &fits, unsigned int number);
+/// Runs replicates at each of some fits, all at once, and compares them with the emulator.
+/// @param number of further replicates for each fit
+/// @returns a row for each: amplitudes, number of replicates, and the distance between their mean
+///   and the emulator's prediction (1: as large as noise alone would make it)
+Table verify(StudyState &study, const std::vector<Fit> &fits, unsigned int number);
 
 } // namespace eunoe::discovery
 

@@ -6,21 +6,22 @@
 
 namespace eunoe::discovery {
 
-/// Covariance of one run, estimated from replicates.
+/// Covariance of one replicate, estimated from several.
 struct Covariance
 {
   Eigen::MatrixXd matrix;
-  /// The same with hardly any shrinkage, for bootstraps: draws that were rounder than nature would
-  /// make false alarms.
+  /// The same with hardly any shrinkage, for bootstraps: draws with weaker correlations than
+  /// nature's would give thresholds with too many false alarms.
   Eigen::MatrixXd unshrunk;
-  double shrinkage = 0.; ///< weight of the target: correlations that are zero
+  double shrinkage = 0.; ///< weight of the target, in which all correlations are zero
 };
 
 /// Estimate with correlations shrunk towards zero by the share that minimises the expected error
 /// (Ledoit and Wolf 2004; Schaefer and Strimmer 2005, Statist. Appl. Genet. Mol. Biol. 4, 32).
-/// @param deviations runs x modes, from their means
-/// @param degrees_of_freedom runs less the means that were subtracted
-/// @param block columns with different numbers are uncorrelated, as they come from other runs
+/// @param deviations from the means, replicates x modes
+/// @param degrees_of_freedom number of replicates less the number of means that were subtracted
+/// @param block of each column; columns of different blocks come from different runs and are
+///   uncorrelated
 Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, double degrees_of_freedom,
                              const std::vector<int> &block);
 

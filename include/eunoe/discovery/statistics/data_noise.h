@@ -5,28 +5,28 @@
 
 namespace eunoe::discovery {
 
-/// What is known of the measured means' noise. Repeats of a measurement differ as runs do, with
-/// the same chaos, and by the instrument, independently from cell to cell. The measured standard
-/// deviations, from few repeats each, say how much of the latter there is: per observable, drawn
-/// towards the mean over all observables.
+/// Noise of the measured means. Repeats of a measurement differ as replicates of a simulation do,
+/// with the same covariance, and by the noise of the instrument, which is independent at each data
+/// point. The instrument's share is estimated from the measured standard deviations: for each
+/// observable, shrunk towards the mean over all observables, because each comes from few repeats.
 struct DataNoise
 {
-  Eigen::MatrixXd modes;         ///< covariance of the means of all repeats
-  Eigen::VectorXd cell_variance; ///< of the means, in squared units of a cell's chaos
-  Eigen::VectorXd ratio;         ///< per cell: variance of a repeat over that of a run
+  Eigen::MatrixXd modes;          ///< covariance of the means of all repeats
+  Eigen::VectorXd point_variance; ///< of the means, in units of modes.deviations() squared
+  Eigen::VectorXd ratio;          ///< per data point: variance of a repeat over that of a replicate
 };
 
-/// What was measured beside the means.
+/// Standard deviations and numbers of the repeats of a measurement.
 struct Repeats
 {
-  Eigen::VectorXd deviation; ///< of a single repeat, in units of the cell's chaos
+  Eigen::VectorXd deviation; ///< of a single repeat, in units of modes.deviations()
   Eigen::VectorXd number;    ///< of repeats
 };
 
-/// @param chaos covariance of one run's modes
-/// @param cell_chaos variance of each cell in one run, in squared units of modes.deviations()
-DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &chaos,
-                              const Eigen::VectorXd &cell_chaos, const Repeats &repeats);
+/// @param replicate_covariance of the modes of one replicate
+/// @param replicate_variance of each data point, in units of modes.deviations() squared
+DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
+                              const Eigen::VectorXd &replicate_variance, const Repeats &repeats);
 
 } // namespace eunoe::discovery
 

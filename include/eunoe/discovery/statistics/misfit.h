@@ -5,18 +5,19 @@
 
 namespace eunoe::discovery {
 
-/// How unlikely deviations between data and a model are, where the variance of the model's
-/// prediction is a multiple h of one run's chaos C, and everything else (the data's noise, the
-/// nuisances) has covariance E: deviations have covariance E + h C. In coordinates that make both
-/// diagonal, each evaluation costs as many operations as there are modes.
+/// Mahalanobis distance and likelihood of deviations between data and a model. The variance of the
+/// model's prediction is a multiple h, its leverage, of the covariance C of one replicate; all else
+/// (the data's noise, the nuisances) has covariance E. So deviations have covariance E + h C. In
+/// coordinates that make both diagonal, each evaluation costs as many operations as there are
+/// modes.
 class Misfit
 {
 public:
   Misfit() = default;
 
-  /// @param chaos C, of one run
+  /// @param replicate_covariance C
   /// @param other E
-  Misfit(const Eigen::MatrixXd &chaos, const Eigen::MatrixXd &other);
+  Misfit(const Eigen::MatrixXd &replicate_covariance, const Eigen::MatrixXd &other);
 
   /// Coordinates of deviations (a column each) in which C is the unit matrix and E diagonal.
   Eigen::MatrixXd coordinates(const Eigen::MatrixXd &modes) const { return transform * modes; }
@@ -35,8 +36,8 @@ public:
   }
   double log_determinant(double h) const { return (other_variance.array() + h).log().sum(); }
 
-  /// What an estimated covariance does to squared distances: they follow inflation * n * F(n, dof)
-  /// instead of chi-square.
+  /// With an estimated covariance, squared distances follow inflation * n * F(n, degrees of
+  /// freedom) instead of chi-square.
   struct Tail
   {
     double degrees_of_freedom = 1e9, inflation = 1.;

@@ -1,7 +1,7 @@
-#ifndef eunoe_discovery_laboratory_h
-#define eunoe_discovery_laboratory_h
+#ifndef eunoe_discovery_simulator_h
+#define eunoe_discovery_simulator_h
 
-#include <eunoe/discovery/cell.h>
+#include <eunoe/discovery/data_point.h>
 
 #include <cstdint>
 #include <map>
@@ -14,8 +14,8 @@ namespace eunoe::discovery {
 /// Amplitudes of factors by name; a factor that is not named is at its null value.
 using Amplitudes = std::map<std::string, double>;
 
-/// One simulation to be made. Equal seeds give equal powders and packings as far as chaos lets
-/// them (common random numbers).
+/// A simulation to run. Runs with equal seeds begin with the same powder and packing (common random
+/// numbers), until chaos parts them.
 struct RunRequest
 {
   std::string experiment;
@@ -23,26 +23,27 @@ struct RunRequest
   std::uint32_t seed = 1;
 };
 
-/// Values of an experiment's cells, in the order of Laboratory::cells; none if the run failed.
+/// Values of an experiment's data points, in the order of Simulator::data_points; none if the run
+/// failed.
 using RunResult = std::optional<std::vector<double>>;
 
-/// Where models are tried out: runs simulations, or remembers those that were run before. The
-/// stages of a discovery know no more of simulations than this, so that they can be tested on
-/// models whose answer is known in closed form.
-class Laboratory
+/// Runs simulations, or returns the results of earlier ones. The stages of a study know simulations
+/// only through this interface, so that tests can give them models whose answer is known in closed
+/// form.
+class Simulator
 {
 public:
-  virtual ~Laboratory() = default;
+  virtual ~Simulator() = default;
 
-  /// The cells that a run of an experiment gives.
-  virtual const std::vector<Cell> &cells(const std::string &experiment) const = 0;
+  /// The data points that a run of an experiment gives.
+  virtual const std::vector<DataPoint> &data_points(const std::string &experiment) const = 0;
 
   /// Runs all that is asked; the order of results is that of the requests. Collective. A repeated
   /// request costs nothing. Throws Interrupted (leaving what was run in the cache) if the program
   /// was asked to stop.
   virtual std::vector<RunResult> run(const std::vector<RunRequest> &requests) = 0;
 
-  /// Number of simulations that were really made so far, and of requests met from the cache.
+  /// Number of simulations that were run so far, and of requests that the cache answered.
   virtual std::uint64_t n_runs() const = 0;
   virtual std::uint64_t n_cached() const = 0;
 };

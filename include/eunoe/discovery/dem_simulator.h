@@ -1,5 +1,5 @@
-#ifndef eunoe_discovery_dem_laboratory_h
-#define eunoe_discovery_dem_laboratory_h
+#ifndef eunoe_discovery_dem_simulator_h
+#define eunoe_discovery_dem_simulator_h
 
 #include <eunoe/core/log.h>
 #include <eunoe/discovery/experiment.h>
@@ -10,25 +10,26 @@
 
 namespace eunoe::discovery {
 
-/// The laboratory in which models are simulated: on groups of ranks, each run once and kept.
-class DemLaboratory : public Laboratory
+/// Runs DEM simulations on groups of ranks, each simulation once, and keeps their results in a
+/// cache.
+class DemSimulator : public Simulator
 {
 public:
   /// @param factors effects and nuisances that requests may name
   /// @param cache_folder created if missing
-  DemLaboratory(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
-                const std::string &cache_folder, unsigned int ranks_per_run, MPI_Comm comm,
-                Log &log);
+  DemSimulator(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
+               const std::string &cache_folder, unsigned int ranks_per_run, MPI_Comm comm,
+               Log &log);
 
-  /// Runs the base model of every experiment once, to see which cells it gives. Throws a UserError
-  /// if one fails; collective. To be called before `cells`.
-  void explore(std::uint32_t seed);
+  /// Runs the base model of every experiment once, to see which data points it gives. Throws a
+  /// UserError if one fails; collective. To be called before `data_points`.
+  void find_data_points(std::uint32_t seed);
 
-  /// From now on a run that lacks one of these cells counts as failed. A cell that is not named,
-  /// and that the base model gives, is NaN in a run that lacks it.
-  void require(const std::vector<Cell> &cells) { required = {cells.begin(), cells.end()}; }
+  /// From now on a run without a value for one of these data points counts as failed. For any other
+  /// data point that the base model gives, such a run has NaN.
+  void require(const std::vector<DataPoint> &points) { required = {points.begin(), points.end()}; }
 
-  const std::vector<Cell> &cells(const std::string &experiment) const override;
+  const std::vector<DataPoint> &data_points(const std::string &experiment) const override;
   std::vector<RunResult> run(const std::vector<RunRequest> &requests) override;
   std::uint64_t n_runs() const override { return made; }
   std::uint64_t n_cached() const override { return cached; }
@@ -49,10 +50,10 @@ private:
   const Experiment &find(const std::string &name) const;
   Case make_case(const RunRequest &request) const;
   RunRecord simulate(const Case &one);
-  void look(unsigned long long step);
+  void serve_and_check_stop(unsigned long long step);
   void simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases);
   RunResult result(const RunRequest &request, const RunRecord &record) const;
-  void note(const RunRequest &request, const std::string &key, bool was_cached);
+  void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
@@ -60,8 +61,8 @@ private:
   WorkQueue queue;
   MPI_Comm comm;
   Log &log;
-  std::map<std::string, std::vector<Cell>> known_cells;
-  std::set<Cell> required;
+  std::map<std::string, std::vector<DataPoint>> known_points;
+  std::set<DataPoint> required;
   std::map<std::string, RunRecord> records; ///< by key
   std::map<std::string, std::string> keys;  ///< by what was requested
   std::uint64_t made = 0, cached = 0;

@@ -4,7 +4,7 @@
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/core/version.h>
-#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// A request in words, the same for the same run.
-std::string words(const RunRequest &request)
+/// A text that is the same for equal requests.
+std::string text_of(const RunRequest &request)
 {
   std::string text = request.experiment + " " + std::to_string(request.seed);
   for (const auto &[name, amplitude] : request.amplitudes) {
@@ -63,45 +63,45 @@ std::string named_files(const std::string &input)
 
 } // namespace
 
-DemLaboratory::DemLaboratory(const std::vector<Experiment> &experiments,
-                             const std::vector<Effect> &factors, const std::string &cache_folder,
-                             const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
+DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
+                           const std::vector<Effect> &factors, const std::string &cache_folder,
+                           const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
     : experiments(experiments), factors(factors), cache(cache_folder, comm),
       queue(comm, ranks_per_run), comm(comm), log(log)
 {
   cache.open();
 }
 
-void DemLaboratory::explore(const std::uint32_t seed)
+void DemSimulator::find_data_points(const std::uint32_t seed)
 {
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
     requests.push_back({experiment.name(), {}, seed});
   run(requests);
   for (const RunRequest &request : requests) {
-    const RunRecord &record = records.at(keys.at(words(request)));
+    const RunRecord &record = records.at(keys.at(text_of(request)));
     if (!record.failure.empty())
       throw UserError("The base model of experiment '" + request.experiment +
                       "' cannot be run: " + record.failure);
-    std::vector<Cell> &cells = known_cells[request.experiment];
+    std::vector<DataPoint> &points = known_points[request.experiment];
     for (const Measurement &m : record.measurements)
       if (std::isfinite(m.value))
-        cells.push_back({request.experiment, m.observable, m.index});
+        points.push_back({request.experiment, m.observable, m.index});
   }
 }
 
-const std::vector<Cell> &DemLaboratory::cells(const std::string &experiment) const
+const std::vector<DataPoint> &DemSimulator::data_points(const std::string &experiment) const
 {
-  return known_cells.at(experiment);
+  return known_points.at(experiment);
 }
 
-const Experiment &DemLaboratory::find(const std::string &name) const
+const Experiment &DemSimulator::find(const std::string &name) const
 {
   return *std::find_if(experiments.begin(), experiments.end(),
                        [&](const Experiment &e) { return e.name() == name; });
 }
 
-DemLaboratory::Case DemLaboratory::make_case(const RunRequest &request) const
+DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
 {
   Case one;
   one.experiment = &find(request.experiment);
@@ -117,18 +117,18 @@ DemLaboratory::Case DemLaboratory::make_case(const RunRequest &request) const
   } catch (const UserError &error) {
     one.problem = error.what();
   }
-  // Another rank may see other files, so what one cannot do, none does.
+  // Ranks may see different files: if one cannot make the case, none runs it.
   const std::string of_first = broadcast(one.problem, comm);
   one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
   if (one.problem.empty()) {
     const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
     one.key = sha256(std::string(engine_digest()) + files + input);
   } else
-    one.key = sha256(std::string(engine_digest()) + one.problem + words(request));
+    one.key = sha256(std::string(engine_digest()) + one.problem + text_of(request));
   return one;
 }
 
-void DemLaboratory::look(const unsigned long long step)
+void DemSimulator::serve_and_check_stop(const unsigned long long step)
 {
   constexpr unsigned int steps_between_looks = 16, steps_between_votes = 256;
   if (step % steps_between_looks == 0)
@@ -143,7 +143,7 @@ void DemLaboratory::look(const unsigned long long step)
     throw Interrupted();
 }
 
-RunRecord DemLaboratory::simulate(const Case &one)
+RunRecord DemSimulator::simulate(const Case &one)
 {
   RunRecord record;
   record.failure = one.problem;
@@ -160,16 +160,16 @@ RunRecord DemLaboratory::simulate(const Case &one)
     const Forecast forecast = simulation.foresee(false);
     if (!forecast.problems.empty())
       throw UserError(forecast.problems);
-    simulation.run([this](Simulation &s) { look(s.step_number()); });
+    simulation.run([this](Simulation &s) { serve_and_check_stop(s.step_number()); });
     record.measurements = simulation.measurements();
     if (record.measurements.empty())
       record.failure = "The run ended before anything was measured. Check 'time end'.";
   } catch (const UserError &error) {
     record.failure = error.what();
   } catch (const std::bad_alloc &) {
-    throw; // says nothing about the model
+    throw; // this is no property of the model
   } catch (const std::exception &error) {
-    // Of several ranks, the others may not know.
+    // The other ranks of the group may not have this exception.
     if (!queue.is_alone())
       throw;
     record.failure = error.what();
@@ -178,7 +178,7 @@ RunRecord DemLaboratory::simulate(const Case &one)
   return record;
 }
 
-void DemLaboratory::simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases)
+void DemSimulator::simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases)
 {
   const double begin = MPI_Wtime();
   const int n = static_cast<int>(cases.size());
@@ -222,27 +222,28 @@ void DemLaboratory::simulate_all(const std::vector<std::pair<Case, nlohmann::ord
     }
 }
 
-RunResult DemLaboratory::result(const RunRequest &request, const RunRecord &record) const
+RunResult DemSimulator::result(const RunRequest &request, const RunRecord &record) const
 {
   if (!record.failure.empty())
     return std::nullopt;
-  const auto known = known_cells.find(request.experiment);
-  if (known == known_cells.end())
+  const auto known = known_points.find(request.experiment);
+  if (known == known_points.end())
     return std::vector<double>();
   std::map<std::pair<std::string, int>, double> found;
   for (const Measurement &m : record.measurements)
     found[{m.observable, m.index}] = m.value;
   std::vector<double> values;
-  for (const Cell &cell : known->second) {
-    const auto value = found.find({cell.observable, cell.index});
+  for (const DataPoint &point : known->second) {
+    const auto value = found.find({point.observable, point.index});
     values.push_back(value == found.end() ? std::nan("") : value->second);
-    if (!std::isfinite(values.back()) && required.count(cell) > 0)
+    if (!std::isfinite(values.back()) && required.count(point) > 0)
       return std::nullopt;
   }
   return values;
 }
 
-void DemLaboratory::note(const RunRequest &request, const std::string &key, const bool was_cached)
+void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &key,
+                                 const bool was_cached)
 {
   const RunRecord &record = records.at(key);
   nlohmann::ordered_json run = describe(request);
@@ -254,15 +255,15 @@ void DemLaboratory::note(const RunRequest &request, const std::string &key, cons
   runs.push_back(run);
 }
 
-std::vector<RunResult> DemLaboratory::run(const std::vector<RunRequest> &requests)
+std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests)
 {
   std::map<std::string, std::pair<Case, RunRequest>>
       unknown; // by words: also the order of the tasks
   std::vector<std::string> order;
   for (const RunRequest &request : requests)
-    if (keys.count(words(request)) == 0 && unknown.count(words(request)) == 0) {
-      unknown[words(request)] = {make_case(request), request};
-      order.push_back(words(request));
+    if (keys.count(text_of(request)) == 0 && unknown.count(text_of(request)) == 0) {
+      unknown[text_of(request)] = {make_case(request), request};
+      order.push_back(text_of(request));
     }
   std::set<std::string> wanted;
   for (const auto &[text, item] : unknown)
@@ -284,11 +285,11 @@ std::vector<RunResult> DemLaboratory::run(const std::vector<RunRequest> &request
     const bool was_cached = begun.count(one.key) == 0;
     keys[text] = one.key;
     cached += was_cached ? 1 : 0;
-    note(request, one.key, was_cached);
+    add_to_ledger(request, one.key, was_cached);
   }
   std::vector<RunResult> results;
   for (const RunRequest &request : requests)
-    results.push_back(result(request, records.at(keys.at(words(request)))));
+    results.push_back(result(request, records.at(keys.at(text_of(request)))));
   return results;
 }
 

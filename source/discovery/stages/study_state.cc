@@ -1,5 +1,5 @@
 #include <eunoe/core/problems.h>
-#include <eunoe/discovery/stages/workbench.h>
+#include <eunoe/discovery/stages/study_state.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@ namespace eunoe::discovery {
 
 namespace {
 
-std::string describe(const Cell &cell)
+std::string describe(const DataPoint &point)
 {
-  return "observable \"" + cell.observable + "\", index " + std::to_string(cell.index) +
-         ", of experiment \"" + cell.experiment + "\"";
+  return "observable \"" + point.observable + "\", index " + std::to_string(point.index) +
+         ", of experiment \"" + point.experiment + "\"";
 }
 
 void check_options(const StudyOptions &options)
@@ -25,24 +25,24 @@ void check_options(const StudyOptions &options)
                     "validate: raise these numbers.");
 }
 
-void check_cell(const MeasuredCell &cell, const std::vector<Cell> &known)
+void check_point(const MeasuredPoint &point, const std::vector<DataPoint> &known)
 {
-  if (std::find(known.begin(), known.end(), cell.cell) == known.end())
+  if (std::find(known.begin(), known.end(), point.point) == known.end())
     throw UserError(
-        "The measured data have a value for " + describe(cell.cell) +
+        "The measured data have a value for " + describe(point.point) +
         ", which its simulation does not give: see eunoe-discovery --list-observables.");
-  if (!std::isfinite(cell.value) || !std::isfinite(cell.standard_deviation) ||
-      cell.standard_deviation < 0. || cell.repeats == 0)
-    throw UserError("The measured data for " + describe(cell.cell) +
+  if (!std::isfinite(point.value) || !std::isfinite(point.standard_deviation) ||
+      point.standard_deviation < 0. || point.repeats == 0)
+    throw UserError("The measured data for " + describe(point.point) +
                     " need a finite value, a standard deviation of at least 0, and at least one "
                     "repeat.");
 }
 
 } // namespace
 
-Workbench::Workbench(const StudyOptions &options, const MeasuredData &data,
-                     const std::vector<Factor> &factors, Laboratory &laboratory, Log &log)
-    : options(options), data(data), archive(laboratory, options.budget), log(log)
+StudyState::StudyState(const StudyOptions &options, const MeasuredData &data,
+                       const std::vector<Factor> &factors, Simulator &simulator, Log &log)
+    : options(options), data(data), archive(simulator, options.budget), log(log)
 {
   check_options(options);
   for (const Factor &factor : factors) {
@@ -62,35 +62,35 @@ Workbench::Workbench(const StudyOptions &options, const MeasuredData &data,
     throw UserError("The measured data have no cell for the fit: set the column \"use\" of some "
                     "to fit.");
 
-  std::set<Cell> seen;
-  for (const MeasuredCell &cell : data.fit) {
-    if (!seen.insert(cell.cell).second)
-      throw UserError("The measured data have two values for " + describe(cell.cell) + ".");
-    if (std::find(experiments.begin(), experiments.end(), cell.cell.experiment) ==
+  std::set<DataPoint> seen;
+  for (const MeasuredPoint &point : data.fit) {
+    if (!seen.insert(point.point).second)
+      throw UserError("The measured data have two values for " + describe(point.point) + ".");
+    if (std::find(experiments.begin(), experiments.end(), point.point.experiment) ==
         experiments.end())
-      experiments.push_back(cell.cell.experiment);
+      experiments.push_back(point.point.experiment);
   }
-  for (const MeasuredCell &cell : data.held_out)
-    check_cell(cell, laboratory.cells(cell.cell.experiment));
+  for (const MeasuredPoint &point : data.held_out)
+    check_point(point, simulator.data_points(point.point.experiment));
   for (const std::string &experiment : experiments)
-    for (const Cell &cell : laboratory.cells(experiment))
-      columns.push_back(cell);
-  for (const MeasuredCell &cell : data.fit) {
-    check_cell(cell, laboratory.cells(cell.cell.experiment));
-    cells.push_back(cell.cell);
+    for (const DataPoint &point : simulator.data_points(experiment))
+      columns.push_back(point);
+  for (const MeasuredPoint &point : data.fit) {
+    check_point(point, simulator.data_points(point.point.experiment));
+    data_points.push_back(point.point);
   }
 }
 
-Eigen::VectorXd Workbench::measured(const Eigen::VectorXd &all) const
+Eigen::VectorXd StudyState::measured(const Eigen::VectorXd &all) const
 {
-  Eigen::VectorXd result(static_cast<Eigen::Index>(column_of_cell.size()));
-  for (std::size_t c = 0; c < column_of_cell.size(); ++c)
-    result(static_cast<Eigen::Index>(c)) = all(column_of_cell[c]);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(column_of_point.size()));
+  for (std::size_t c = 0; c < column_of_point.size(); ++c)
+    result(static_cast<Eigen::Index>(c)) = all(column_of_point[c]);
   return result;
 }
 
-std::vector<RunRequest> Workbench::requests(const Amplitudes &amplitudes,
-                                            const std::uint32_t seed) const
+std::vector<RunRequest> StudyState::requests(const Amplitudes &amplitudes,
+                                             const std::uint32_t seed) const
 {
   std::vector<RunRequest> result;
   for (const std::string &experiment : experiments)
@@ -98,7 +98,7 @@ std::vector<RunRequest> Workbench::requests(const Amplitudes &amplitudes,
   return result;
 }
 
-std::uint32_t Workbench::first_seed(const Amplitudes &amplitudes)
+std::uint32_t StudyState::first_seed(const Amplitudes &amplitudes)
 {
   const std::uint32_t start = 100000u * options.seed + 1u;
   if (options.common_random_numbers)
@@ -107,75 +107,77 @@ std::uint32_t Workbench::first_seed(const Amplitudes &amplitudes)
   return start + 500u * seed_offsets.emplace(amplitudes, number).first->second;
 }
 
-void Workbench::ask(const std::vector<Order> &orders)
+void StudyState::run_design(const std::vector<DesignPoint> &design)
 {
   // Two rounds: the second stands in for runs that failed in the first.
   for (unsigned int round = 0; round < 2; ++round) {
     struct Asked
     {
-      const Order *order;
+      const DesignPoint *at;
       std::uint32_t seed;
     };
     std::vector<Asked> asked;
     std::vector<RunRequest> all;
     std::uint64_t room = archive.remaining() / experiments.size();
-    for (const Order &order : orders) {
-      const std::size_t there = runs[order.amplitudes].size();
-      for (std::size_t k = there; k < order.count && room > 0; ++k, --room) {
-        const std::uint32_t seed = first_seed(order.amplitudes) + tried[order.amplitudes]++;
-        asked.push_back({&order, seed});
-        const auto set = requests(order.amplitudes, seed);
-        all.insert(all.end(), set.begin(), set.end());
+    for (const DesignPoint &at : design) {
+      const std::size_t there = replicates[at.amplitudes].size();
+      for (std::size_t k = there; k < at.n_replicates && room > 0; ++k, --room) {
+        const std::uint32_t seed = first_seed(at.amplitudes) + tried[at.amplitudes]++;
+        asked.push_back({&at, seed});
+        const auto runs = requests(at.amplitudes, seed);
+        all.insert(all.end(), runs.begin(), runs.end());
       }
     }
     const std::vector<RunResult> results = archive.get(all);
     for (std::size_t k = 0; k < asked.size(); ++k) {
-      RunSet set{asked[k].seed, Eigen::VectorXd(static_cast<Eigen::Index>(columns.size())), {}};
-      Eigen::Index place = 0;
+      Replicate replicate{
+          asked[k].seed, Eigen::VectorXd(static_cast<Eigen::Index>(columns.size())), {}};
+      Eigen::Index column = 0;
       bool complete = true;
       for (std::size_t e = 0; e < experiments.size(); ++e) {
         const RunResult &result = results[k * experiments.size() + e];
         complete = complete && result.has_value();
         for (std::size_t c = 0; complete && c < result->size(); ++c)
-          set.values(place++) = (*result)[c];
+          replicate.values(column++) = (*result)[c];
       }
-      if (!complete || !measured(set.values).allFinite())
+      if (!complete || !measured(replicate.values).allFinite())
         continue;
       if (modes.n_modes() > 0)
-        set.modes = modes.reduce(measured(set.values));
-      runs[asked[k].order->amplitudes].push_back(set);
+        replicate.modes = modes.reduce(measured(replicate.values));
+      replicates[asked[k].at->amplitudes].push_back(replicate);
     }
     correlations.clear();
   }
 }
 
-void Workbench::settle_modes(const Modes &settled)
+void StudyState::set_modes(const Modes &chosen)
 {
-  modes = settled;
-  for (auto &[amplitudes, sets] : runs)
-    for (RunSet &set : sets)
-      set.modes = modes.reduce(measured(set.values));
+  modes = chosen;
+  for (auto &[amplitudes, there] : replicates)
+    for (Replicate &replicate : there)
+      replicate.modes = modes.reduce(measured(replicate.values));
 }
 
-Eigen::VectorXd Workbench::tolerance() const
+Eigen::VectorXd StudyState::tolerance() const
 {
   return options.model_tolerance * value.cwiseAbs().cwiseQuotient(modes.deviations());
 }
 
-Eigen::MatrixXd Workbench::other_covariance(const DataNoise &data_noise,
-                                            const Eigen::MatrixXd &run_chaos) const
+Eigen::MatrixXd StudyState::other_covariance(const DataNoise &data_noise,
+                                             const Eigen::MatrixXd &run_covariance) const
 {
-  Eigen::MatrixXd result = data_noise.modes + nuisance_noise * run_chaos;
-  if (nuisance_cells.cols() > 0) {
-    const Eigen::MatrixXd changes = modes.basis() * nuisance_cells;
+  Eigen::MatrixXd result = data_noise.modes + nuisance_noise * run_covariance;
+  if (nuisance_changes.cols() > 0) {
+    const Eigen::MatrixXd changes = modes.basis() * nuisance_changes;
     result += changes * changes.transpose();
   }
   if (options.model_tolerance > 0.) {
-    // Half of what is forgiven belongs to each cell, half to the observable as a whole.
+    // Half of the forgiven variance is independent at each data point, half common to the
+    // observable.
     const Eigen::VectorXd size = tolerance();
     for (const Modes::Group &group : modes.groups()) {
       Eigen::VectorXd part = Eigen::VectorXd::Zero(size.size());
-      for (const Eigen::Index c : group.cells)
+      for (const Eigen::Index c : group.points)
         part(c) = size(c);
       const Eigen::VectorXd whole = modes.basis() * part;
       result += 0.5 * whole * whole.transpose();
@@ -185,7 +187,7 @@ Eigen::MatrixXd Workbench::other_covariance(const DataNoise &data_noise,
   return result;
 }
 
-Amplitudes Workbench::amplitudes(const EffectSet &set, const Eigen::VectorXd &position) const
+Amplitudes StudyState::amplitudes(const EffectSet &set, const Eigen::VectorXd &position) const
 {
   Amplitudes result;
   for (std::size_t k = 0; k < set.size(); ++k) {
@@ -197,30 +199,30 @@ Amplitudes Workbench::amplitudes(const EffectSet &set, const Eigen::VectorXd &po
   return result;
 }
 
-double Workbench::seed_correlation(const EffectSet &active) const
+double StudyState::seed_correlation(const EffectSet &active) const
 {
   const auto known = correlations.find(active);
   return known != correlations.end() ? known->second
                                      : correlations[active] = estimate_correlation(active);
 }
 
-double Workbench::estimate_correlation(const EffectSet &active) const
+double StudyState::estimate_correlation(const EffectSet &active) const
 {
   std::set<std::string> names;
   for (const std::size_t k : active)
     names.insert(effects[k].name);
   double products = 0., squares = 0., base_squares = 0., pairs = 0.;
-  for (const auto &[amplitudes, sets] : runs) {
+  for (const auto &[amplitudes, there] : replicates) {
     std::set<std::string> here;
     for (const auto &[name, amplitude] : amplitudes)
       here.insert(name);
     if (here != names)
       continue;
     std::vector<Eigen::VectorXd> changed, unchanged;
-    for (const RunSet &set : sets)
-      for (const RunSet &other : base())
-        if (other.seed == set.seed) {
-          changed.push_back(misfit.coordinates(set.modes));
+    for (const Replicate &replicate : there)
+      for (const Replicate &other : base())
+        if (other.seed == replicate.seed) {
+          changed.push_back(misfit.coordinates(replicate.modes));
           unchanged.push_back(misfit.coordinates(other.modes));
         }
     if (changed.size() < 2)
@@ -244,13 +246,13 @@ double Workbench::estimate_correlation(const EffectSet &active) const
   return correlation > 3. * error ? std::min(correlation, 0.98) : 0.;
 }
 
-std::vector<Response::Run> Workbench::runs_of(
-    const EffectSet &set, const std::function<Eigen::VectorXd(const RunSet &)> &values) const
+std::vector<Emulator::Run> StudyState::runs_of(
+    const EffectSet &set, const std::function<Eigen::VectorXd(const Replicate &)> &values) const
 {
-  std::vector<Response::Run> result;
+  std::vector<Emulator::Run> result;
   Eigen::VectorXd base_mean;
   std::map<std::uint32_t, Eigen::VectorXd> base_of_seed;
-  for (const RunSet &run : base()) {
+  for (const Replicate &run : base()) {
     base_of_seed[run.seed] = values(run);
     base_mean = result.empty() ? base_of_seed[run.seed] : base_mean + base_of_seed[run.seed];
     result.push_back(
@@ -258,7 +260,7 @@ std::vector<Response::Run> Workbench::runs_of(
   }
   base_mean /= static_cast<double>(result.size());
 
-  for (const auto &[amplitudes, sets] : runs) {
+  for (const auto &[amplitudes, there] : replicates) {
     if (amplitudes.empty())
       continue;
     Eigen::VectorXd position = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(set.size()));
@@ -274,8 +276,8 @@ std::vector<Response::Run> Workbench::runs_of(
     if (active.size() != amplitudes.size())
       continue;
     const double correlation = options.common_random_numbers ? seed_correlation(active) : 0.;
-    for (const RunSet &run : sets) {
-      Response::Run row{position, values(run), 1.};
+    for (const Replicate &run : there) {
+      Emulator::Run row{position, values(run), 1.};
       const auto same = base_of_seed.find(run.seed);
       if (correlation > 0. && same != base_of_seed.end()) {
         row.values -= correlation * (same->second - base_mean);
@@ -287,11 +289,11 @@ std::vector<Response::Run> Workbench::runs_of(
   return result;
 }
 
-Slopes Workbench::slopes(const EffectSet &set) const
+Slopes StudyState::slopes(const EffectSet &set) const
 {
   constexpr double least = 1e-3, clear = 3.;
   Eigen::VectorXd base_mean = Eigen::VectorXd::Zero(modes.n_modes());
-  for (const RunSet &run : base())
+  for (const Replicate &run : base())
     base_mean += run.modes / static_cast<double>(base().size());
   const auto mean_square = [&](const Eigen::VectorXd &slope) {
     return misfit.coordinates(slope).squaredNorm() / static_cast<double>(misfit.size());
@@ -304,13 +306,13 @@ Slopes Workbench::slopes(const EffectSet &set) const
     double &overall = result.overall(static_cast<Eigen::Index>(k)), steepest = least;
     Eigen::VectorXd products = Eigen::VectorXd::Zero(modes.n_modes());
     double squares = 0.;
-    for (const auto &[amplitudes, sets] : runs) {
-      if (amplitudes.size() != 1 || amplitudes.begin()->first != effect.name || sets.empty())
+    for (const auto &[amplitudes, there] : replicates) {
+      if (amplitudes.size() != 1 || amplitudes.begin()->first != effect.name || there.empty())
         continue;
       const double u = (amplitudes.begin()->second - effect.null_value) / effect.scale;
-      const auto number = static_cast<double>(sets.size());
+      const auto number = static_cast<double>(there.size());
       Eigen::VectorXd change = Eigen::VectorXd::Zero(modes.n_modes());
-      for (const RunSet &run : sets)
+      for (const Replicate &run : there)
         change += (run.modes - base_mean) / number;
       products += number * u * change;
       squares += number * u * u;
@@ -326,21 +328,21 @@ Slopes Workbench::slopes(const EffectSet &set) const
   return result;
 }
 
-Response Workbench::response_of_modes(const EffectSet &set) const
+Emulator StudyState::emulator_of_modes(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.modes; }), slopes(set));
+  return Emulator(runs_of(set, [](const Replicate &run) { return run.modes; }), slopes(set));
 }
 
-Response Workbench::response_of_columns(const EffectSet &set) const
+Emulator StudyState::emulator_of_columns(const EffectSet &set) const
 {
-  return Response(runs_of(set, [](const RunSet &run) { return run.values; }), slopes(set));
+  return Emulator(runs_of(set, [](const Replicate &run) { return run.values; }), slopes(set));
 }
 
-std::string name_of(const Workbench &bench, const EffectSet &set)
+std::string name_of(const StudyState &study, const EffectSet &set)
 {
   std::string name;
   for (const std::size_t k : set)
-    name += (name.empty() ? "" : " + ") + bench.effects[k].name;
+    name += (name.empty() ? "" : " + ") + study.effects[k].name;
   return name;
 }
 

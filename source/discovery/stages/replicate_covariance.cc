@@ -8,14 +8,14 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Deviations of sets of runs of one model from their mean, in modes, a row each.
+/// Replicates at one design point: deviations from their mean, in modes, a row each.
 struct Group
 {
   Eigen::MatrixXd deviations;
   std::vector<std::uint32_t> seeds;
 };
 
-Group group_of(const std::vector<RunSet> &sets)
+Group group_of(const std::vector<Replicate> &sets)
 {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(sets.size()), sets.front().modes.size());
   Group group;
@@ -27,31 +27,31 @@ Group group_of(const std::vector<RunSet> &sets)
   return group;
 }
 
-/// Runs of models other than the base model, and what they are worth beside it. They use its seeds,
-/// and each other's, so that as far as seeds decide what chaos does they say the same many times
-/// over: as much as n / (1 + n rho^2) runs of the base model, for n runs of one seed whose values
-/// have the correlation rho. That is another number in each experiment; where an effect leaves no
-/// trace in one, its runs are those of the base model and say nothing.
-class Others
+/// Replicates of models other than the base model, with weights. They use the same seeds as the
+/// base model and as each other, so that runs with one seed are correlated: n of them with
+/// correlation rho weigh as much as n / (1 + n rho^2) runs of the base model. The correlation
+/// differs between experiments. Where an effect does not change an experiment at all, its runs are
+/// equal to those of the base model and have no weight.
+class OtherModels
 {
 public:
-  Others(const Workbench &bench, const Group &base, const Eigen::VectorXd &variance)
-      : block(bench.modes.experiment_of_mode()),
+  OtherModels(const StudyState &study, const Group &base, const Eigen::VectorXd &variance)
+      : block(study.modes.experiment_of_mode()),
         n_blocks(1 + *std::max_element(block.begin(), block.end()))
   {
     for (std::size_t r = 0; r < base.seeds.size(); ++r)
       row_of_seed[base.seeds[r]] = static_cast<Eigen::Index>(r);
-    for (const auto &[amplitudes, sets] : bench.runs) {
+    for (const auto &[amplitudes, sets] : study.replicates) {
       if (amplitudes.empty() || sets.size() < 2)
         continue;
       Group group = group_of(sets);
-      // Once their own size of chaos is taken off.
+      // Scaled to the total variance of the base model.
       const double ratio =
           (group.deviations.colwise().squaredNorm().transpose().array() / variance.array()).mean() /
           static_cast<double>(sets.size() - 1);
       if (!(ratio > 0.))
         continue;
-      traces.push_back(find_trace(bench, sets));
+      traces.push_back(find_trace(study, sets));
       for (const std::uint32_t seed : group.seeds)
         runs_of_seed[seed] += 1.;
       group.deviations /= std::sqrt(ratio);
@@ -61,7 +61,7 @@ public:
     find_correlations(base.deviations * unit.matrix().asDiagonal(), unit);
   }
 
-  /// All rows, each as large as its share.
+  /// All deviations, each times the root of its weight.
   Eigen::MatrixXd rows() const
   {
     Eigen::Index n = 0;
@@ -80,7 +80,7 @@ public:
     return result;
   }
 
-  /// Degrees of freedom that they are worth in each experiment.
+  /// Degrees of freedom that they add in each experiment.
   Eigen::VectorXd degrees_of_freedom() const
   {
     Eigen::VectorXd result = Eigen::VectorXd::Zero(n_blocks);
@@ -95,23 +95,23 @@ public:
 
 private:
   /// Whether the runs differ at all from those of the base model with their seeds.
-  std::vector<bool> find_trace(const Workbench &bench, const std::vector<RunSet> &sets) const
+  std::vector<bool> find_trace(const StudyState &study, const std::vector<Replicate> &sets) const
   {
     std::vector<bool> trace(static_cast<std::size_t>(n_blocks), false);
-    for (const RunSet &set : sets) {
+    for (const Replicate &set : sets) {
       const auto same = row_of_seed.find(set.seed);
       for (std::size_t m = 0; m < block.size(); ++m) {
         const auto k = static_cast<Eigen::Index>(m);
         if (same == row_of_seed.end() ||
-            set.modes(k) != bench.base()[static_cast<std::size_t>(same->second)].modes(k))
+            set.modes(k) != study.base()[static_cast<std::size_t>(same->second)].modes(k))
           trace[static_cast<std::size_t>(block[m])] = true;
       }
     }
     return trace;
   }
 
-  /// @param base deviations in standard deviations
-  /// @param unit that makes deviations such
+  /// @param base deviations, in standard deviations
+  /// @param unit inverse standard deviations
   void find_correlations(const Eigen::MatrixXd &base, const Eigen::ArrayXd &unit)
   {
     correlation = products = squares = base_squares = Eigen::VectorXd::Zero(n_blocks);
@@ -161,41 +161,42 @@ private:
 
 } // namespace
 
-void settle_chaos(Workbench &bench)
+void estimate_replicate_covariance(StudyState &study)
 {
-  const Group base = group_of(bench.base());
+  const Group base = group_of(study.base());
   const auto base_dof = static_cast<double>(base.deviations.rows() - 1);
   const Eigen::VectorXd variance =
       (base.deviations.colwise().squaredNorm().transpose() / base_dof).cwiseMax(1e-6);
 
-  // Repeated runs of other models tell of the chaos too, and there are many more of them.
-  const Others others(bench, base, variance);
+  // Replicates of other models add to the estimate, and there are many more of them.
+  const OtherModels others(study, base, variance);
   const Eigen::VectorXd dof = others.degrees_of_freedom().array() + base_dof;
   const Eigen::MatrixXd more = others.rows();
   Eigen::MatrixXd all(base.deviations.rows() + more.rows(), base.deviations.cols());
   all << base.deviations, more;
-  bench.chaos_degrees_of_freedom = dof.minCoeff();
+  study.replicate_degrees_of_freedom = dof.minCoeff();
   for (Eigen::Index m = 0; m < all.cols(); ++m)
-    all.col(m) *= std::sqrt(bench.chaos_degrees_of_freedom /
-                            dof(bench.modes.experiment_of_mode()[static_cast<std::size_t>(m)]));
-  bench.chaos =
-      shrunk_covariance(all, bench.chaos_degrees_of_freedom, bench.modes.experiment_of_mode());
-  // Modes that hardly vary are no better known than the cells that they are made of.
-  bench.chaos.matrix.diagonal().array() += 1e-3;
+    all.col(m) *= std::sqrt(study.replicate_degrees_of_freedom /
+                            dof(study.modes.experiment_of_mode()[static_cast<std::size_t>(m)]));
+  study.replicate_covariance =
+      shrunk_covariance(all, study.replicate_degrees_of_freedom, study.modes.experiment_of_mode());
+  // A floor for modes that hardly vary.
+  study.replicate_covariance.matrix.diagonal().array() += 1e-3;
 
-  Eigen::MatrixXd cells(base.deviations.rows(), bench.modes.n_cells());
-  for (Eigen::Index r = 0; r < cells.rows(); ++r)
-    cells.row(r) = bench.measured(bench.base()[static_cast<std::size_t>(r)].values)
-                       .cwiseQuotient(bench.modes.deviations())
-                       .transpose();
-  bench.cell_chaos = (centred(cells).colwise().squaredNorm().transpose() / base_dof).cwiseMax(0.04);
-  bench.noise =
-      estimate_data_noise(bench.modes, bench.chaos.matrix, bench.cell_chaos,
-                          {bench.deviation.cwiseQuotient(bench.modes.deviations()), bench.repeats});
-  const Misfit::Tail tail = bench.misfit.tail;
-  bench.misfit =
-      Misfit(bench.chaos.matrix, bench.other_covariance(bench.noise, bench.chaos.matrix));
-  bench.misfit.tail = tail;
+  Eigen::MatrixXd points(base.deviations.rows(), study.modes.n_points());
+  for (Eigen::Index r = 0; r < points.rows(); ++r)
+    points.row(r) = study.measured(study.base()[static_cast<std::size_t>(r)].values)
+                        .cwiseQuotient(study.modes.deviations())
+                        .transpose();
+  study.replicate_variance =
+      (centred(points).colwise().squaredNorm().transpose() / base_dof).cwiseMax(0.04);
+  study.noise =
+      estimate_data_noise(study.modes, study.replicate_covariance.matrix, study.replicate_variance,
+                          {study.deviation.cwiseQuotient(study.modes.deviations()), study.repeats});
+  const Misfit::Tail tail = study.misfit.tail;
+  study.misfit = Misfit(study.replicate_covariance.matrix,
+                        study.other_covariance(study.noise, study.replicate_covariance.matrix));
+  study.misfit.tail = tail;
 }
 
 } // namespace eunoe::discovery

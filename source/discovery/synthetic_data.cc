@@ -1,10 +1,10 @@
 #include <eunoe/core/files.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
-#include <eunoe/discovery/dem_laboratory.h>
+#include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_folder.h>
-#include <eunoe/discovery/twin.h>
+#include <eunoe/discovery/synthetic_data.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -38,7 +38,7 @@ private:
 };
 
 /// Effects and amplitudes of "name: amplitude, ...".
-Amplitudes truth_of(const TwinParameters &twin, const std::vector<Effect> &factors)
+Amplitudes truth_of(const SyntheticDataParameters &synthetic, const std::vector<Effect> &factors)
 {
   Problems problems;
   Amplitudes truth;
@@ -47,7 +47,7 @@ Amplitudes truth_of(const TwinParameters &twin, const std::vector<Effect> &facto
     if (effect.factor.kind == Factor::Kind::effect)
       names.push_back(effect.factor.name);
   const std::string where = "subsection 'twin' / entry 'effects'";
-  for (const std::string &text : twin.effects) {
+  for (const std::string &text : synthetic.effects) {
     const std::size_t colon = text.find(':');
     const std::string name = boost::trim_copy(text.substr(0, colon));
     const std::string number =
@@ -67,13 +67,14 @@ Amplitudes truth_of(const TwinParameters &twin, const std::vector<Effect> &facto
   return truth;
 }
 
-/// The experiments as the truth has them.
+/// The experiments with the overrides of the truth.
 std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm comm)
 {
   Problems problems;
   std::vector<Experiment> experiments;
   for (ExperimentParameters e : study.experiments) {
-    e.overrides.insert(e.overrides.end(), study.twin.overrides.begin(), study.twin.overrides.end());
+    e.overrides.insert(e.overrides.end(), study.synthetic.overrides.begin(),
+                       study.synthetic.overrides.end());
     experiments.emplace_back(e, comm, problems);
   }
   if (!problems.empty())
@@ -81,7 +82,7 @@ std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm co
   return experiments;
 }
 
-/// The entry that lets the truth run with another time step.
+/// A nuisance that changes the time step of the truth.
 Effect make_time_step_change()
 {
   NuisanceParameters p;
@@ -91,38 +92,39 @@ Effect make_time_step_change()
   return make_nuisance(p);
 }
 
-/// What an instrument with noise says of simulated repeats.
-/// @param runs values of all cells, one row a repeat
-std::vector<MeasuredCell> measure(const std::vector<Cell> &cells,
-                                  const std::vector<std::vector<double>> &runs,
-                                  const TwinParameters &twin, NormalNumbers &normal)
+/// Readings of an instrument with noise, from simulated repeats.
+/// @param runs values of all data points, one row a repeat
+std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
+                                   const std::vector<std::vector<double>> &runs,
+                                   const SyntheticDataParameters &synthetic, NormalNumbers &normal)
 {
-  const bool takes_all = twin.observables == std::vector<std::string>{"all"};
+  const bool takes_all = synthetic.observables == std::vector<std::string>{"all"};
   const auto n = static_cast<double>(runs.size());
   std::map<std::string, std::pair<double, double>> squares; // sum and number, by observable
-  for (std::size_t c = 0; c < cells.size(); ++c)
+  for (std::size_t c = 0; c < points.size(); ++c)
     for (const std::vector<double> &values : runs) {
-      squares[cells[c].observable].first += values[c] * values[c];
-      squares[cells[c].observable].second += 1.;
+      squares[points[c].observable].first += values[c] * values[c];
+      squares[points[c].observable].second += 1.;
     }
-  std::vector<MeasuredCell> rows;
-  for (std::size_t c = 0; c < cells.size(); ++c) {
-    const auto &[sum, number] = squares[cells[c].observable];
+  std::vector<MeasuredPoint> rows;
+  for (std::size_t c = 0; c < points.size(); ++c) {
+    const auto &[sum, number] = squares[points[c].observable];
     const double size = std::sqrt(sum / number);
     std::vector<double> readings;
     for (const std::vector<double> &values : runs)
-      readings.push_back(values[c] + twin.noise * size * normal());
-    MeasuredCell row;
-    row.cell = cells[c];
+      readings.push_back(values[c] + synthetic.noise * size * normal());
+    MeasuredPoint row;
+    row.point = points[c];
     row.repeats = static_cast<unsigned int>(runs.size());
     for (const double reading : readings)
       row.value += reading / n;
     for (const double reading : readings)
       row.standard_deviation += (reading - row.value) * (reading - row.value) / (n - 1.);
     row.standard_deviation = std::max(std::sqrt(row.standard_deviation), 1e-9 * size);
-    const bool is_wanted = takes_all || std::find(twin.observables.begin(), twin.observables.end(),
-                                                  cells[c].observable) != twin.observables.end();
-    // A cell without any value, such as a loss that never happened, says nothing.
+    const bool is_wanted =
+        takes_all || std::find(synthetic.observables.begin(), synthetic.observables.end(),
+                               points[c].observable) != synthetic.observables.end();
+    // A data point without a value, such as a loss that never happened, is not measured.
     if (is_wanted && std::isfinite(row.value) && row.standard_deviation > 0.)
       rows.push_back(row);
   }
@@ -146,52 +148,53 @@ struct Truth
 };
 
 /// Draws the nuisances of the truth.
-Truth draw_truth(const TwinParameters &twin, const std::vector<Effect> &factors,
+Truth draw_truth(const SyntheticDataParameters &synthetic, const std::vector<Effect> &factors,
                  NormalNumbers &normal)
 {
   Truth truth;
-  truth.amplitudes = truth_of(twin, factors);
+  truth.amplitudes = truth_of(synthetic, factors);
   truth.sealed["effects"] = truth.amplitudes;
   truth.sealed["nuisances"] = nlohmann::ordered_json::object();
   for (const Effect &factor : factors)
-    if (factor.factor.kind == Factor::Kind::nuisance && twin.jitter_nuisances)
+    if (factor.factor.kind == Factor::Kind::nuisance && synthetic.jitter_nuisances)
       truth.sealed["nuisances"][factor.factor.name] = truth.amplitudes[factor.factor.name] =
           factor.factor.prior_deviation * normal();
-  truth.amplitudes[time_step_change] = twin.time_step_factor - 1.;
-  truth.sealed["time_step_factor"] = twin.time_step_factor;
-  truth.sealed["overrides"] = twin.overrides;
-  truth.sealed["noise"] = twin.noise;
-  truth.sealed["repeats"] = twin.repeats;
-  truth.sealed["seed"] = twin.seed;
+  truth.amplitudes[time_step_change] = synthetic.time_step_factor - 1.;
+  truth.sealed["time_step_factor"] = synthetic.time_step_factor;
+  truth.sealed["overrides"] = synthetic.overrides;
+  truth.sealed["noise"] = synthetic.noise;
+  truth.sealed["repeats"] = synthetic.repeats;
+  truth.sealed["seed"] = synthetic.seed;
   truth.sealed["engine"] = engine_digest();
   return truth;
 }
 
 /// Runs every experiment of the truth several times and measures it.
-MeasuredData measure_truth(const TwinParameters &twin, const std::vector<Experiment> &experiments,
-                           const Amplitudes &amplitudes, DemLaboratory &laboratory,
-                           NormalNumbers &normal)
+MeasuredData measure_truth(const SyntheticDataParameters &synthetic,
+                           const std::vector<Experiment> &experiments, const Amplitudes &amplitudes,
+                           DemSimulator &simulator, NormalNumbers &normal)
 {
   // Above all seeds of studies.
-  const std::uint32_t first_seed = 0x40000000u + (twin.seed * 64u & 0x3fffffffu);
-  laboratory.explore(first_seed);
+  const std::uint32_t first_seed = 0x40000000u + (synthetic.seed * 64u & 0x3fffffffu);
+  simulator.find_data_points(first_seed);
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
-    for (unsigned int r = 0; r < twin.repeats; ++r)
+    for (unsigned int r = 0; r < synthetic.repeats; ++r)
       requests.push_back({experiment.name(), amplitudes, first_seed + r});
-  const std::vector<RunResult> results = laboratory.run(requests);
+  const std::vector<RunResult> results = simulator.run(requests);
 
   MeasuredData data;
   std::size_t k = 0;
   for (const Experiment &experiment : experiments) {
     std::vector<std::vector<double>> runs;
-    for (unsigned int r = 0; r < twin.repeats; ++r, ++k)
+    for (unsigned int r = 0; r < synthetic.repeats; ++r, ++k)
       if (results[k])
         runs.push_back(*results[k]);
     if (runs.size() < 2)
       throw UserError("The truth cannot be simulated in experiment '" + experiment.name() +
-                      "': " + laboratory.ledger().back().value("failure", "runs broke off."));
-    for (const MeasuredCell &row : measure(laboratory.cells(experiment.name()), runs, twin, normal))
+                      "': " + simulator.ledger().back().value("failure", "runs broke off."));
+    for (const MeasuredPoint &row :
+         measure(simulator.data_points(experiment.name()), runs, synthetic, normal))
       (experiment.is_held_out() ? data.held_out : data.fit).push_back(row);
     for (const ObservableDescription &o : experiment.observables())
       data.header[unit_key(o.name)] = o.unit;
@@ -201,22 +204,22 @@ MeasuredData measure_truth(const TwinParameters &twin, const std::vector<Experim
 
 } // namespace
 
-void make_twin(const StudyParameters &study, const std::vector<Effect> &factors, MPI_Comm comm,
-               Log &log)
+void make_synthetic_data(const StudyParameters &study, const std::vector<Effect> &factors,
+                         MPI_Comm comm, Log &log)
 {
-  const TwinParameters &twin = study.twin;
-  const std::string data_file = study.measured_data, sealed_file = twin.sealed_file;
+  const SyntheticDataParameters &synthetic = study.synthetic;
+  const std::string data_file = study.measured_data, sealed_file = synthetic.sealed_file;
   refuse_existing(data_file, comm);
   refuse_existing(sealed_file, comm);
 
-  NormalNumbers normal(twin.seed);
-  const Truth truth = draw_truth(twin, factors, normal);
+  NormalNumbers normal(synthetic.seed);
+  const Truth truth = draw_truth(synthetic, factors, normal);
   std::vector<Effect> changes = factors;
   changes.push_back(make_time_step_change());
   const std::vector<Experiment> experiments = experiments_of(study, comm);
-  DemLaboratory laboratory(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
-                           log);
-  MeasuredData data = measure_truth(twin, experiments, truth.amplitudes, laboratory, normal);
+  DemSimulator simulator(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
+                         log);
+  MeasuredData data = measure_truth(synthetic, experiments, truth.amplitudes, simulator, normal);
   const std::string sealed_text = truth.sealed.dump(1) + "\n";
   data.header["made by"] = "eunoe-discovery --make-twin";
   data.header["sealed truth sha256"] = sha256(sealed_text);

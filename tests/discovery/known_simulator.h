@@ -1,7 +1,7 @@
-#ifndef eunoe_tests_discovery_known_laboratory_h
-#define eunoe_tests_discovery_known_laboratory_h
+#ifndef eunoe_tests_discovery_known_simulator_h
+#define eunoe_tests_discovery_known_simulator_h
 
-// What laboratories have in common whose models are known, so that discoveries can be made hundreds
+// Base of simulators whose models are known, so that studies can be made hundreds
 // of times and compared with the truth: strengths of effects, amplitudes that have a given
 // strength, and measurements of a truth.
 
@@ -21,12 +21,12 @@ namespace test {
 using namespace eunoe;
 using namespace eunoe::discovery;
 
-class KnownLaboratory : public Laboratory
+class KnownSimulator : public Simulator
 {
 public:
-  const std::vector<Cell> &cells(const std::string &experiment) const override
+  const std::vector<DataPoint> &data_points(const std::string &experiment) const override
   {
-    return all_cells.at(experiment);
+    return all_points.at(experiment);
   }
 
   std::vector<RunResult> run(const std::vector<RunRequest> &requests) override
@@ -52,11 +52,11 @@ public:
     return result;
   }
 
-  /// Mean of an experiment's cells in runs with these amplitudes.
+  /// Mean of an experiment's data points in runs with these amplitudes.
   virtual Eigen::VectorXd mean(const std::string &experiment,
                                const Amplitudes &amplitudes) const = 0;
 
-  /// Mahalanobis distance from the base model in the chaos of one run of each experiment.
+  /// Mahalanobis distance from the base model in the scatter of one run of each experiment.
   double strength(const Amplitudes &amplitudes, const std::vector<std::string> &experiments) const
   {
     return change(amplitudes, experiments).norm();
@@ -86,25 +86,25 @@ public:
   }
 
   /// Means and deviations of repeated measurements of an experiment, with other seeds than any
-  /// study's, and noise of the instrument in shares of each cell's chaos.
-  std::vector<MeasuredCell> measure(const std::string &experiment, const Amplitudes &truth,
-                                    unsigned int repeats, double instrument,
-                                    std::uint32_t seed) const
+  /// study's, and noise of the instrument in shares of each data point's scatter.
+  std::vector<MeasuredPoint> measure(const std::string &experiment, const Amplitudes &truth,
+                                     unsigned int repeats, double instrument,
+                                     std::uint32_t seed) const
   {
     RandomStream random(seed, 7);
-    const auto n = static_cast<Eigen::Index>(all_cells.at(experiment).size());
+    const auto n = static_cast<Eigen::Index>(all_points.at(experiment).size());
     Eigen::MatrixXd rows(repeats, n);
     const Eigen::VectorXd chaos = half.at(experiment).rowwise().norm();
     for (unsigned int r = 0; r < repeats; ++r)
       rows.row(r) = (value(experiment, truth, 0x80000000u + 100u * seed + r) +
                      instrument * chaos.cwiseProduct(random.normals(1, n).row(0).transpose()))
                         .transpose();
-    std::vector<MeasuredCell> result;
+    std::vector<MeasuredPoint> result;
     for (Eigen::Index c = 0; c < n; ++c) {
       const double m = rows.col(c).mean();
       const double s =
           std::sqrt((rows.col(c).array() - m).square().sum() / std::max(1u, repeats - 1));
-      result.push_back({all_cells.at(experiment)[static_cast<std::size_t>(c)], m, s, repeats});
+      result.push_back({all_points.at(experiment)[static_cast<std::size_t>(c)], m, s, repeats});
     }
     return result;
   }
@@ -115,16 +115,16 @@ public:
   {
     MeasuredData data;
     for (const std::string &e : fit)
-      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed))
-        data.fit.push_back(cell);
+      for (const MeasuredPoint &point : measure(e, truth, repeats, instrument, seed))
+        data.fit.push_back(point);
     for (const std::string &e : held_out)
-      for (const MeasuredCell &cell : measure(e, truth, repeats, instrument, seed + 50000))
-        data.held_out.push_back(cell);
+      for (const MeasuredPoint &point : measure(e, truth, repeats, instrument, seed + 50000))
+        data.held_out.push_back(point);
     return data;
   }
 
-  /// What changes in all cells of some experiments, in units in which the chaos of a run is the
-  /// unit matrix.
+  /// What changes in all data points of some experiments, in units in which the scatter of a run is
+  /// the unit matrix.
   Eigen::VectorXd change(const Amplitudes &amplitudes,
                          const std::vector<std::string> &experiments) const
   {
@@ -152,7 +152,7 @@ protected:
     return h;
   }
 
-  std::map<std::string, std::vector<Cell>> all_cells;
+  std::map<std::string, std::vector<DataPoint>> all_points;
   std::map<std::string, Eigen::MatrixXd> half; ///< of each experiment's covariance of one run
   std::vector<Factor> all_factors;
 
@@ -174,11 +174,10 @@ private:
 class Resolution
 {
 public:
-  Resolution(const KnownLaboratory &laboratory, std::vector<std::string> experiments,
-             double repeats)
-      : laboratory(laboratory), experiments(std::move(experiments)), scale(std::sqrt(repeats))
+  Resolution(const KnownSimulator &simulator, std::vector<std::string> experiments, double repeats)
+      : simulator(simulator), experiments(std::move(experiments)), scale(std::sqrt(repeats))
   {
-    for (const Factor &f : laboratory.factors())
+    for (const Factor &f : simulator.factors())
       if (f.kind == Factor::Kind::nuisance) {
         const Eigen::VectorXd column = change_by({{f.name, f.null_value + f.prior_deviation}});
         nuisances.conservativeResize(column.size(), nuisances.cols() + 1);
@@ -198,7 +197,7 @@ public:
   {
     const Eigen::VectorXd wanted = effects_of(truth);
     double least = size(wanted);
-    for (const Factor &f : laboratory.factors())
+    for (const Factor &f : simulator.factors())
       if (f.kind == Factor::Kind::effect &&
           (truth.size() > 1 + n_nuisances() || truth.count(f.name) == 0))
         for (const double limit : {f.lower, f.upper})
@@ -214,12 +213,12 @@ private:
 
   Eigen::VectorXd change_by(const Amplitudes &amplitudes) const
   {
-    return scale * laboratory.change(amplitudes, experiments);
+    return scale * simulator.change(amplitudes, experiments);
   }
 
   Eigen::VectorXd effects_of(Amplitudes truth) const
   {
-    for (const Factor &f : laboratory.factors())
+    for (const Factor &f : simulator.factors())
       if (f.kind == Factor::Kind::nuisance)
         truth.erase(f.name);
     return change_by(truth);
@@ -253,7 +252,7 @@ private:
     return least;
   }
 
-  const KnownLaboratory &laboratory;
+  const KnownSimulator &simulator;
   const std::vector<std::string> experiments;
   const double scale;
   Eigen::MatrixXd nuisances;

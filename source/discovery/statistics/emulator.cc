@@ -1,4 +1,4 @@
-#include <eunoe/discovery/statistics/response.h>
+#include <eunoe/discovery/statistics/emulator.h>
 
 #include <algorithm>
 #include <cmath>
@@ -7,35 +7,35 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Number of amplitudes of one effect that are clearly apart, zero among them.
-int n_levels(const std::vector<Response::Run> &runs, const Eigen::Index effect)
+/// Number of distinct amplitudes of one effect, with zero.
+int n_levels(const std::vector<Emulator::Run> &runs, const Eigen::Index effect)
 {
   constexpr double apart = 0.25;
   std::vector<double> levels = {0.};
   std::vector<double> all;
-  for (const Response::Run &run : runs)
+  for (const Emulator::Run &run : runs)
     all.push_back(run.position(effect));
   std::sort(all.begin(), all.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   for (const double x : all)
     if (std::all_of(levels.begin(), levels.end(),
                     [&](double level) { return std::abs(x - level) > apart; }))
       levels.push_back(x);
-  // Runs that are all close to zero still make a slope.
+  // Amplitudes that are all close to zero still give a slope.
   if (levels.size() == 1 && std::any_of(all.begin(), all.end(), [](double x) { return x != 0.; }))
     return 2;
   return static_cast<int>(levels.size());
 }
 
-/// Expected change of a slope where the amplitude grows e times, over the slope.
+/// Prior change of a slope when the amplitude grows by a factor of e, over the slope.
 constexpr double expected_turn = 0.4;
 
 /// Next amplitude of an effect beyond a level that was run, on the side of a number; 0 if there is
 /// none.
-double next_level(const std::vector<Response::Run> &runs, const Eigen::Index effect,
+double next_level(const std::vector<Emulator::Run> &runs, const Eigen::Index effect,
                   const double level, const double side)
 {
   double next = 0.;
-  for (const Response::Run &run : runs) {
+  for (const Emulator::Run &run : runs) {
     const double u = run.position(effect);
     if (u * side > 0. && std::abs(u) > std::abs(level) &&
         (next == 0. || std::abs(u) < std::abs(next)))
@@ -44,18 +44,17 @@ double next_level(const std::vector<Response::Run> &runs, const Eigen::Index eff
   return next;
 }
 
-/// Amplitudes of an effect after which the next one is far away, or beyond which runs go on to much
-/// larger ones, so that a response that is bent smoothly by what runs there say would be wrong
-/// before.
-std::vector<double> knots(const std::vector<Response::Run> &runs, const Eigen::Index effect)
+/// Amplitudes of an effect that are followed by a far larger one. A smooth polynomial that fits the
+/// runs beyond such an amplitude would be wrong below it, so the emulator has a kink there.
+std::vector<double> knots(const std::vector<Emulator::Run> &runs, const Eigen::Index effect)
 {
   constexpr double far = 3., much_larger = 6.;
   std::vector<double> result;
-  for (const Response::Run &run : runs) {
+  for (const Emulator::Run &run : runs) {
     const double u = run.position(effect);
     if (u == 0. || std::find(result.begin(), result.end(), u) != result.end())
       continue;
-    const bool goes_on = std::any_of(runs.begin(), runs.end(), [&](const Response::Run &other) {
+    const bool goes_on = std::any_of(runs.begin(), runs.end(), [&](const Emulator::Run &other) {
       return other.position(effect) / u >= much_larger;
     });
     if (goes_on || next_level(runs, effect, u, u) / u >= far)
@@ -66,7 +65,7 @@ std::vector<double> knots(const std::vector<Response::Run> &runs, const Eigen::I
 
 } // namespace
 
-void Response::add_terms(const std::vector<Run> &runs, const Eigen::Index n_effects)
+void Emulator::add_terms(const std::vector<Run> &runs, const Eigen::Index n_effects)
 {
   constexpr int highest_degree = 3;
   const Term none{std::vector<int>(static_cast<std::size_t>(n_effects), 0)};
@@ -94,7 +93,7 @@ void Response::add_terms(const std::vector<Run> &runs, const Eigen::Index n_effe
       }
 }
 
-double Response::stiffness(const Term &term, const std::vector<Run> &runs,
+double Emulator::stiffness(const Term &term, const std::vector<Run> &runs,
                            const Slopes &slopes) const
 {
   // Expected sizes over that of the slope: second order, third order, products.
@@ -118,7 +117,7 @@ double Response::stiffness(const Term &term, const std::vector<Run> &runs,
   return order > 1 ? 1. / (square * expected_bend[order - 2] * expected_bend[order - 2]) : 0.;
 }
 
-Response::Response(const std::vector<Run> &runs, const Slopes &slopes)
+Emulator::Emulator(const std::vector<Run> &runs, const Slopes &slopes)
     : least(Eigen::VectorXd::Zero(slopes.overall.size())), most(least), first_below(least),
       first_above(least), overall(slopes.overall)
 {
@@ -149,7 +148,7 @@ Response::Response(const std::vector<Run> &runs, const Slopes &slopes)
   coefficients = inverse * right;
 }
 
-Eigen::VectorXd Response::terms_at(const Eigen::VectorXd &position) const
+Eigen::VectorXd Emulator::terms_at(const Eigen::VectorXd &position) const
 {
   Eigen::VectorXd result(static_cast<Eigen::Index>(terms.size()));
   for (std::size_t t = 0; t < terms.size(); ++t) {
@@ -165,29 +164,29 @@ Eigen::VectorXd Response::terms_at(const Eigen::VectorXd &position) const
   return result;
 }
 
-Eigen::VectorXd Response::change(const Eigen::VectorXd &position) const
+Eigen::VectorXd Emulator::change(const Eigen::VectorXd &position) const
 {
   Eigen::VectorXd t = terms_at(position);
   t(0) = 0.;
   return coefficients.transpose() * t;
 }
 
-double Response::change_leverage(const Eigen::VectorXd &position) const
+double Emulator::change_leverage(const Eigen::VectorXd &position) const
 {
   Eigen::VectorXd t = terms_at(position);
   t(0) = 0.;
   return t.dot(inverse * t);
 }
 
-double Response::leverage(const Eigen::VectorXd &position) const
+double Emulator::leverage(const Eigen::VectorXd &position) const
 {
   const Eigen::VectorXd t = terms_at(position);
-  // By the mean slope, as changes themselves are noisy and the doubt is spread over all values.
+  // By the mean slope, as changes themselves are noisy and the variance is spread over all values.
   return t.dot(inverse * t) +
          unseen_bends(position).dot(position.cwiseAbs2().cwiseProduct(overall));
 }
 
-Eigen::VectorXd Response::unseen_bends(const Eigen::VectorXd &position) const
+Eigen::VectorXd Emulator::unseen_bends(const Eigen::VectorXd &position) const
 {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(overall.size());
   for (Eigen::Index k = 0; k < overall.size(); ++k) {
@@ -198,16 +197,16 @@ Eigen::VectorXd Response::unseen_bends(const Eigen::VectorXd &position) const
   return result;
 }
 
-Response Response::with_shifted_base(const Eigen::VectorXd &shift) const
+Emulator Emulator::with_shifted_base(const Eigen::VectorXd &shift) const
 {
-  Response result = *this;
+  Emulator result = *this;
   result.coefficients += base_weight * inverse.col(0) * shift.transpose();
   return result;
 }
 
-Response Response::transformed(const Eigen::MatrixXd &transform) const
+Emulator Emulator::transformed(const Eigen::MatrixXd &transform) const
 {
-  Response result = *this;
+  Emulator result = *this;
   result.coefficients = coefficients * transform.transpose();
   return result;
 }
