@@ -168,9 +168,8 @@ private:
   std::uint64_t made = 0;
 };
 
-/// How clear differences between models are to someone who knows covariance, nuisances and
-/// fingerprints: in standard errors of a measurement, after what nuisances could explain is taken
-/// off.
+/// Size of differences between models if covariance, nuisances and fingerprints are known exactly:
+/// in standard errors of a measurement, without the part that nuisances can explain.
 class Resolution
 {
 public:
@@ -191,8 +190,8 @@ public:
   /// Of a truth's effects from the base model.
   double clearness(const Amplitudes &truth) const { return size(effects_of(truth)); }
 
-  /// Of a truth's effects from the nearest single effect that is none of them, at its best
-  /// amplitude; their clearness if that is less.
+  /// Distance of a truth's effects from the nearest other single effect at its best amplitude;
+  /// their clearness if that is less.
   double separation(const Amplitudes &truth) const
   {
     const Eigen::VectorXd wanted = effects_of(truth);

@@ -1,13 +1,13 @@
 #ifndef eunoe_tests_discovery_recorded_h
 #define eunoe_tests_discovery_recorded_h
 
-// A simulator that draws from recorded simulations. Measured are, at the recorded amplitudes,
-// means and the growth of scatter, and the scatter of the base model. What is truth here are these
+// A simulator that draws from recorded simulations. The records give the means and the growth of
+// the scatter at the recorded amplitudes, and the scatter of the base model. The truth is these
 // means less the share of their changes that noise explains (James and Stein), with linear
-// interpolation between amplitudes, and along the last piece beyond them; nuisances, which move
-// little, change data points in proportion. Effects add. A run's scatter is a recorded deviation of
-// the base model from its mean, mixed with independent noise of each data point by Ledoit and
-// Wolf's share, so that its covariance is their estimate.
+// interpolation between amplitudes, and extrapolation of the last piece beyond them. Nuisances,
+// which move little, change data points in proportion. Effects add. A replicate is the mean plus a
+// recorded deviation of the base model, mixed with independent noise of each data point by Ledoit
+// and Wolf's share, so that its covariance is their estimate.
 
 #include <eunoe/discovery/statistics/covariance.h>
 
@@ -18,8 +18,8 @@
 
 namespace test {
 
-/// What is kept from the simulator, as data are made of it: seeds of the base model, or one
-/// amplitude of a factor.
+/// Records that serve as data and not for the simulator: seeds of the base model, or one amplitude
+/// of a factor.
 struct LeftOut
 {
   std::set<std::uint32_t> base_seeds;

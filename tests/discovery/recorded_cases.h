@@ -2,7 +2,7 @@
 #define eunoe_tests_discovery_recorded_cases_h
 
 // Studies on a simulator of recorded simulations: of truths at any amplitude, and of data that are
-// recorded simulations themselves, which the simulator then lacks.
+// recorded simulations themselves, which are then left out of the simulator.
 
 #include "recorded.h"
 #include "suite.h"

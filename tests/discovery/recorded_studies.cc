@@ -88,7 +88,7 @@ int main(int argc, char **argv)
   // 5.2 % false alarms: 0.3 %.
   check("false alarms", nothing.detected <= 2, nothing.text());
   const Answers strong = interpolated(table, {"single", 8., 1}, 1, 8);
-  // At least 97 % detected: 2.2 %. 74 % of first names right: 3.2 %; who guesses gets there in 1.1
+  // At least 97 % detected: 2.2 %. 74 % of first names right: 3.2 %; a guess reaches that in 1.1
   // %. 6.8 % wrong names: 1.4 %.
   check("strong effects are detected", strong.detected >= 7, strong.text());
   check("and named", strong.right >= 4, strong.text());
