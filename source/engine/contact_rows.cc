@@ -62,7 +62,8 @@ void ContactRows::collect(const ParticleArrays &particles, const PairList &pairs
     starts[candidate.particle + 1] += candidate.n_living * solid_length;
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
   if (starts.back() > values.capacity()) {
-    // What would grow by itself would double, and keep what is about to be written over.
+    // Without this the vector would grow to twice the size, and copy values that are overwritten
+    // anyway.
     values = {};
     values.reserve(starts.back() + starts.back() / 16);
   }

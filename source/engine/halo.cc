@@ -136,7 +136,7 @@ void Halo::leave_out_unpaired(const ParticleArrays &particles, const PairList &p
   std::vector<std::uint8_t> is_paired(particles.size(), 0);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     is_paired[pairs.i[k]] = is_paired[pairs.j[k]] = 1;
-  // Those who got the ghosts tell those who sent them.
+  // Receivers of ghosts tell the senders which of them are in pairs.
   for (Neighbour &neighbour : neighbours) {
     neighbour.out.clear();
     for (const std::int32_t row : neighbour.received)

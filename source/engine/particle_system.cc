@@ -47,7 +47,7 @@ void ParticleSystem::forget_contacts()
 void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)
 {
   sparse.update(particles, pairs, solid_contacts, halo, stirring);
-  // Those ghosts, too, who have just fallen asleep.
+  // Also the ghosts that have just fallen asleep.
   halo.include_sleepers();
   halo.update(particles);
   leave_out_sleepers();

@@ -31,7 +31,7 @@ public:
   void attach(const RowViews &views, const ParticleArrays &particles, PairList &pairs,
               SolidContacts &solids) const;
 
-  /// @name Single records, for those who save, copy or transform rows
+  /// @name Single records, to save, copy or transform rows
   ///@{
   struct Record
   {

@@ -10,14 +10,15 @@
 
 namespace eunoe {
 
-/// Copies of the neighbours' particles (ghosts): who needs which, and their state step by step.
+/// Ghosts, copies of other ranks' particles: which rank needs which, and their update in every
+/// step.
 class Halo
 {
 public:
   explicit Halo(MPI_Comm comm) : comm(comm) {}
 
   /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
-  /// @param gap up to which pairs are listed (m)
+  /// @param gap separation up to which pairs are listed (m)
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double gap);
 
@@ -35,7 +36,7 @@ public:
 
   /// From now on takes in sleepers again.
   void include_sleepers();
-  /// From now on leaves out those who sleep, whose state does not change.
+  /// From now on leaves out sleepers, whose state does not change.
   void leave_out_sleepers(const ParticleArrays &particles);
 
 private:

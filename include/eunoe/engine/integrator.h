@@ -11,9 +11,8 @@ namespace eunoe {
 
 /// Moves the owned particles over one time step, before and after the forces are computed.
 ///
-/// What remains to be done after the forces may be put off to the beginning of the next step, in
-/// the same memory pass and with the same arithmetic; `complete` does it at once for those who want
-/// to look at the state.
+/// The work after the forces may be deferred to the beginning of the next step, in the same memory
+/// pass and with the same arithmetic; `complete` does it at once, for code that reads the state.
 class Integrator
 {
 public:
@@ -22,7 +21,7 @@ public:
   /// Brings positions to the end of the step and sets forces and torques to zero.
   /// @param dt (s)
   /// @return square of the largest distance of a particle that is awake from its reference position
-  ///         (m2), no number if one of them is none
+  ///         (m2), NaN if one of them is NaN
   virtual double begin_step(ParticleArrays &particles, double dt) = 0;
 
   /// To be called when the forces at the end of the step are complete.

@@ -21,8 +21,8 @@ public:
   /// @param time at which the forces are computed (s)
   virtual void add(ParticleArrays &particles, double time) const = 0;
 
-  /// Whether particles at rest feel another load at the end of a span of time than at its
-  /// beginning, so that those who sleep must wake.
+  /// Whether the load on particles at rest at the end of a span of time differs from that at its
+  /// beginning, so that sleepers must wake.
   virtual bool changes(double /*begin*/, double /*end*/) const { return false; }
 };
 

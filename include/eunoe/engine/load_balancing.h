@@ -16,7 +16,8 @@ struct LoadBalancingParameters : public ParameterSection
   /// When the first particles are there, sharing out by their number costs little.
   static constexpr double threshold_at_start = 0.1;
   unsigned int particle_weight = 2000;
-  double active_factor = 1., inactive_factor = 0.1; ///< on the weight of who is awake or sleeps
+  double active_factor = 1.,
+         inactive_factor = 0.1; ///< on the weights of awake particles and of sleepers
   /// Most cells are empty, and an empty one costs next to nothing.
   unsigned int cell_weight = 20;
   /// The same as an expression in x, y, z of the cell's centre (m); empty: it does not depend on

@@ -40,7 +40,7 @@ struct ParticlePhysics
 class ParticleSystem
 {
 public:
-  /// @param skin gap up to which pairs are listed (m)
+  /// @param skin separation up to which pairs are listed (m)
   /// @param largest_diameter of all particles ever (m)
   ParticleSystem(Domain &domain, ParticlePhysics physics, double skin, double largest_diameter,
                  Timers &timers);
@@ -112,7 +112,7 @@ public:
   /// Takes over the particles of a checkpoint into an empty system and rebuilds the lists as the
   /// last search had left them; collective.
   /// @param solids in their places at that search
-  /// @param sparse knows who slept
+  /// @param sparse has the sleepers
   void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
             const LoadBalancingParameters &balancing, const SparseContacts &sparse);
 
@@ -139,7 +139,7 @@ private:
   bool is_within_reach(std::size_t pair) const;
   /// Owned particles that are beyond an outlet, and which one.
   std::vector<std::pair<std::size_t, int>> beyond_outlets() const;
-  /// Counts those who leave through outlets, and those who are lost.
+  /// Counts particles that leave through outlets, and lost particles.
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
   /// Adds what the loads alone do to the particles of some rows.

@@ -30,8 +30,8 @@ public:
 
   explicit SolidContacts(const ContactModel &model);
 
-  /// Lists every owned particle whose gap to a solid's surface is at most @p reach (m), ordered by
-  /// particle and solid. All contacts are forgotten.
+  /// Lists every owned particle whose separation from a solid's surface is at most @p reach (m),
+  /// ordered by particle and solid. All contacts are forgotten.
   void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
 
   /// Adds the forces and torques on the owned particles and advances the memory by @p dt.
@@ -50,7 +50,7 @@ public:
   const double *history(std::int32_t record) const { return memory[record]; }
   /// Normal in the solid's own frame, by which a contact is recognised at the next step.
   const Vec3 &normal(std::int32_t record) const { return normals[record]; }
-  /// Depth of a sphere in a solid near it (m), negative across a gap.
+  /// Depth of a sphere in a solid near it (m), negative if they do not touch.
   double deepest_overlap(const Candidate &candidate, const Solid &solid, const Vec3 &centre,
                          double radius) const;
   /// Lets every contact begin anew.
@@ -90,7 +90,8 @@ private:
               std::vector<SolidLoad> *loads);
   std::int32_t create(const Vec3 &normal);
   /// Takes the living contact with nearly the same normal out of a candidate: a contact moves by a
-  /// tiny part of the particle's size in a step, over whatever edge. None if there is none.
+  /// tiny part of the particle's size in a step, over any edge. `ContactMemory::none` without such
+  /// a contact.
   std::int32_t take_living(Candidate &candidate, const Vec3 &normal) const;
   /// Contacts that were found go on, or begin; those that were not have ended.
   void go_on(Candidate &candidate, const SurfaceContact *found, unsigned int n_found);

@@ -11,7 +11,8 @@
 
 namespace eunoe {
 
-/// Who sleeps, so that contacts at rest cost nothing: `subsection adaptive sparse contacts`.
+/// Particles at rest sleep, so that their contacts cost nothing: `subsection adaptive sparse
+/// contacts`.
 struct SparseContactParameters : public ParameterSection
 {
   bool enabled = false;
@@ -22,7 +23,7 @@ struct SparseContactParameters : public ParameterSection
   void declare(dealii::ParameterHandler &prm) override;
 };
 
-/// What has happened outside the particles since the last look at who sleeps.
+/// Disturbances from outside the particles since the last check of the sleepers.
 struct Stirring
 {
   unsigned long long step = 0;
@@ -34,9 +35,9 @@ struct Stirring
 ///
 /// A particle is *restless* while it moves, for some time after, and while a solid that moves is
 /// near. Awake are the restless and their neighbours, and the neighbours of these, over the list of
-/// pairs that can touch. All others sleep: they have no velocity and feel nothing, but are
-/// obstacles for those who are awake; their contacts remember. So nothing that moves ever meets a
-/// sleeper, and a front of waking particles runs ahead of what stirs them.
+/// pairs that can touch. All others sleep: they have no velocity and no forces, but are
+/// obstacles for awake particles; their contacts keep their memory. So a moving particle never
+/// meets a sleeper, and a front of waking particles runs ahead of a disturbance.
 ///
 /// All decisions follow from what each particle has done and from lists that do not depend on the
 /// distribution over ranks, so they are the same on any number of ranks.
@@ -55,7 +56,7 @@ public:
   bool is_enabled() const { return parameters.enabled; }
   unsigned int frequency() const { return parameters.frequency; }
 
-  /// Decides who sleeps from now on; collective.
+  /// Determines the sleepers from now on; collective.
   void update(ParticleArrays &particles, const PairList &pairs, const SolidContacts &solids,
               Halo &halo, const Stirring &stirring) const;
 
@@ -64,7 +65,7 @@ public:
   void stir_neighbours(ParticleArrays &particles, const PairList &pairs,
                        const std::vector<std::uint8_t> &flags, unsigned long long step) const;
 
-  /// Lets those sleep who slept when their fields were saved; collective.
+  /// Restores the sleepers from saved fields; collective.
   void recall(ParticleArrays &particles, Halo &halo) const;
 
 private:

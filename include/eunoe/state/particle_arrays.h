@@ -27,7 +27,7 @@ struct ParticleArrays
   std::vector<ParticleId> id;
   std::vector<std::int32_t> type; ///< particle type, which is its material
 
-  /// @name Who is awake (see SparseContacts)
+  /// @name Awake particles (see SparseContacts)
   ///@{
   std::vector<std::uint8_t> awake;      ///< a flag each, ghosts too; empty while all are awake
   std::vector<std::int32_t> awake_rows; ///< of owned particles, ascending; empty while all are
@@ -70,7 +70,7 @@ struct ParticleArrays
   /// All are awake afterwards.
   void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
 
-  /// Forces on those who sleep have no meaning, and must not pile up.
+  /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
 
   /// Calls `action(row)` for every owned particle that is awake.

@@ -9,7 +9,7 @@ class ExplicitEuler : public Integrator
 public:
   double begin_step(ParticleArrays &p, double dt) override
   {
-    // The largest of numbers forgets what is no number; this sum does not.
+    // A maximum ignores NaN; this sum does not.
     double largest = 0., poison = 0.;
     p.for_each_awake([&](const std::size_t k) {
       p.position[k].add(dt * p.velocity[k].vec());

@@ -24,7 +24,7 @@ template <bool twice>
 EUNOE_ALWAYS_INLINE double kick_and_drift(ParticleArrays &p, const double dt)
 {
   const double half_dt = 0.5 * dt;
-  // The largest of numbers forgets what is no number; this sum does not.
+  // A maximum ignores NaN; this sum does not.
   double largest = 0., poison = 0.;
   p.for_each_awake([&](const std::size_t k) {
     Quad &v = p.velocity[k], &w = p.spin[k], &x = p.position[k];

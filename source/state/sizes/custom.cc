@@ -53,7 +53,7 @@ private:
   double cube = 0.;
 };
 
-/// For those who ask before the parameters have been checked, or in spite of that.
+/// For callers before the check of the parameters, or in spite of its result.
 UserError cannot_be_made(const std::string &what)
 {
   return UserError("A custom size distribution cannot be made: " + what);
