@@ -134,7 +134,8 @@ public:
     }
   }
 
-  /// Whether each of the spheres [first, first + batch) has a gap of less than @p reach to sphere
+  /// Whether each of the spheres [first, first + batch) has a separation of less than @p reach from
+  /// sphere
   /// @p a.
   void find_near(const std::size_t a, const std::size_t first, const double reach,
                  const Vec3 &period, const Vec3 &half, bool *near) const

@@ -16,7 +16,7 @@ struct ContactForce
   std::int32_t solid = -1;  ///< number of the solid, -1 for a particle
   Vec3 normal;              ///< unit vector from the first body to the second
   double distance = 0.;     ///< of the centres, or of the centre from the surface (m)
-  double overlap = 0.;      ///< negative across a gap (m)
+  double overlap = 0.;      ///< negative if the bodies do not touch (m)
   double normal_force = 0.; ///< repulsion positive (N)
   Vec3 tangential_force;    ///< on the second body (N)
   Vec3 rolling_torque;      ///< resistance against rolling, on the first body (N m)

@@ -26,7 +26,7 @@ public:
   /// Place of a position's cell in the order of all cells; near positions have near keys.
   std::uint64_t key(const Vec3 &x) const;
 
-  /// Lists all pairs with at least one owned particle and a gap of at most @p reach (m).
+  /// Lists all pairs with at least one owned particle and a separation of at most @p reach (m).
   /// The positions are those of the search; owned and ghost particles must each be ordered by
   /// (key, id).
   void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs) const;

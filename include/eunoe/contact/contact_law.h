@@ -27,7 +27,7 @@ public:
   /// @param axis normal to the mirror: 0, 1 or 2
   virtual void mirror(double * /*history*/, unsigned int /*axis*/) const {}
 
-  /// Largest gap across which the law acts between two materials (m); the contact search reaches
+  /// Largest separation at which the law acts between two materials (m); the contact search reaches
   /// that far.
   /// @param kind of the pair of materials, see Materials::kind
   virtual double range(int /*kind*/) const { return 0.; }

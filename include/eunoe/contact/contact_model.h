@@ -58,7 +58,7 @@ public:
   /// Number of doubles that a contact remembers.
   unsigned int history_size() const { return n_history; }
 
-  /// Largest gap across which some law acts between any two materials (m).
+  /// Largest separation at which some law acts between any two materials (m).
   double range() const { return largest_range; }
 
   /// Runs all laws over a block whose geometry and history are filled in.

@@ -42,7 +42,7 @@ struct alignas(64) PairBlock : ContactForces
   /// @name Written by the geometry, read by the laws
   ///@{
   alignas(64) Lanes nx, ny, nz;    ///< unit normal from i to j
-  alignas(64) Lanes overlap;       ///< positive in contact, negative across a gap (m)
+  alignas(64) Lanes overlap;       ///< positive in contact, else negative (m)
   alignas(64) Lanes distance;      ///< of the centres, or of a centre from a solid's surface (m)
   alignas(64) Lanes radius;        ///< effective radius (m)
   alignas(64) Lanes mass;          ///< effective mass (kg)

@@ -6,8 +6,8 @@ namespace eunoe {
 namespace {
 
 /// Derjaguin-Muller-Toporov cohesion with the long-range van der Waals part of Meier et al. 2019:
-/// the pull-off force down to a small gap, then the attraction of two spheres, cut off where it
-/// has fallen to a given share of the pull-off force.
+/// the pull-off force up to a small separation, then the attraction of two spheres, cut off where
+/// it has fallen to a given share of the pull-off force.
 class Dmt : public ContactLaw
 {
 public:
@@ -39,8 +39,8 @@ private:
   {
     double pull_off;      ///< pull-off force over effective radius (N/m)
     double van_der_waals; ///< A/6 (J)
-    double plateau;       ///< gap up to which the pull-off force acts, |d_o| (m)
-    double cut_off;       ///< gap beyond which nothing acts, |d*| (m)
+    double plateau;       ///< separation up to which the pull-off force acts, |d_o| (m)
+    double cut_off;       ///< separation beyond which nothing acts, |d*| (m)
   };
 
   EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *pull_off,

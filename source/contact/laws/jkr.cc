@@ -42,8 +42,8 @@ EUNOE_ALWAYS_INLINE double neck_root(const double g)
 /// Elastic adhesive contact of Johnson, Kendall and Roberts (1971), with the damping and the
 /// friction of adhesive contacts as in doc/physics.md.
 ///
-/// It begins where the bodies touch and holds across a gap until the neck between them tears. A
-/// contact remembers whether it has begun.
+/// It begins where the bodies touch and holds across a separation until the neck between them
+/// tears. A contact remembers whether it has begun.
 class Jkr : public ContactLaw
 {
 public:
