@@ -15,7 +15,7 @@ constexpr int tag_here = 341;
 /// What a message takes at most, and a rank that speaks and ends all (s).
 constexpr double time_for_messages = 1., time_to_end = 10.;
 
-/// Asks again and again, without taking the processor from those who work.
+/// Polls, and sleeps in between to leave the processor to ranks that work.
 bool wait_for(const double seconds, const std::function<bool()> &is_done)
 {
   const double end = MPI_Wtime() + seconds;

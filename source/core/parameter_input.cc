@@ -111,9 +111,9 @@ bool is_number(const std::string &text)
   return !text.empty() && *end == '\0';
 }
 
-/// What is wrong with a value that is no number, or none of the wanted kind, as far as it is a
-/// usual mistake; empty otherwise.
-/// @param wanted in words
+/// Explains a value that is not a number, or not of the wanted kind, if the mistake is a usual one;
+/// empty otherwise.
+/// @param wanted description of the wanted kind
 std::string usual_mistake(const std::string &value, const std::string &wanted)
 {
   const std::string lookalike = advice_on_lookalikes(value);
@@ -213,7 +213,7 @@ unsigned int RepeatedSections::count(const std::vector<InputEntry> &entries) con
     if (e.path == path && e.name == entry) {
       char *end;
       const long n = std::strtol(e.value.c_str(), &end, 10);
-      // What is no number is reported when it is set.
+      // A value that is not a number is reported when it is set.
       if (*end == '\0' && n >= 0 && n <= static_cast<long>(largest))
         number = static_cast<unsigned int>(n);
     }

@@ -1,5 +1,5 @@
-// Whether a file of Gmsh holds a background mesh. deal.II's reader takes cells of any kind and
-// fails only where nobody can say why.
+// Checks that a Gmsh file has a background mesh. deal.II's reader accepts cells of any kind and
+// fails later, with a message that does not give the cause.
 
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>

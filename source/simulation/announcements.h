@@ -1,7 +1,7 @@
 #ifndef eunoe_source_simulation_announcements_h
 #define eunoe_source_simulation_announcements_h
 
-// A word before what takes more than seconds, so that nobody waits in silence.
+// Announces steps of the set-up that take more than seconds, so that the user knows why it waits.
 
 namespace eunoe {
 

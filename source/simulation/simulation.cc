@@ -219,7 +219,7 @@ void Simulation::advance()
     const Timers::Scope scope(progress.timers, Section::integration);
     moved2 = integrator->begin_step(system.particles, clock.time_step());
   }
-  // Sleepers stay where they have drifted to. Where it is no number, it stays none.
+  // Sleepers keep the displacement from before their sleep. NaN stays NaN.
   if (moved2 < system.particles.sleepers_moved2)
     moved2 = system.particles.sleepers_moved2;
   criterion.ask(clock.step(), moved2);

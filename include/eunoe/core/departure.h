@@ -6,8 +6,8 @@
 
 namespace eunoe {
 
-/// The way out of a program for ranks that cannot go on. Most errors are known to all ranks, who
-/// leave in good order; where one rank alone has an error, the others would wait for it for ever.
+/// Ends a program whose ranks cannot continue. Most errors occur on all ranks alike, and these end
+/// in good order; if one rank alone has an error, the others would wait for it for ever.
 class Departure
 {
 public:

@@ -12,8 +12,8 @@ std::string shortened(const std::string &text, std::size_t kept = 60);
 /// What a text begins with if it is a byte-order mark of UTF-8, which editors leave unseen.
 extern const std::string byte_order_mark;
 
-/// A sentence on the first character that looks like an ordinary one, or like nothing, and is none,
-/// such as a no-break space; empty if there is none.
+/// A sentence on the first character that is invisible or only looks like an ordinary one, such as
+/// a no-break space; empty if the text has no such character.
 std::string advice_on_lookalikes(const std::string &text);
 
 } // namespace eunoe

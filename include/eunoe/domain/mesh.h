@@ -41,8 +41,8 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
 /// for any other.
 std::string read_background_mesh(const MeshParameters &mesh, MPI_Comm comm);
 
-/// A mesh of equal boxes as a single cell, for those who look at it without particles, and the
-/// numbers of its cells along the axes.
+/// A mesh of equal boxes as a single cell, for checks without particles, and the numbers of its
+/// cells along the axes.
 struct BoxSketch
 {
   MeshParameters mesh;

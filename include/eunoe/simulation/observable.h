@@ -41,7 +41,7 @@ public:
 
   /// Writes the rows that it holds back, adds what it remembers from step to step to a checkpoint,
   /// the same on any number of ranks, and takes it back on every rank; collective. `resume` throws
-  /// a std::invalid_argument for what is none.
+  /// a std::invalid_argument for a text that is no saved state.
   ///@{
   virtual void save(nlohmann::ordered_json &) {}
   virtual void resume(const nlohmann::ordered_json &) {}

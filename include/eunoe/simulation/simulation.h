@@ -79,8 +79,8 @@ public:
   const ParticleSystem &get_system() const { return system; }
   const ParticleIds &particle_ids() const { return inserter.get_ids(); }
 
-  /// Finishes what the integrator put off, so that velocities belong to the present time. To be
-  /// called before particles are looked at; changes no result.
+  /// Completes the step of the integrator, so that velocities belong to the present time. To be
+  /// called before particles are read; changes no result.
   const ParticleArrays &complete_step();
   /// What acts at present in all contacts of owned particles, of which one of two ranks is known to
   /// both; collective.
