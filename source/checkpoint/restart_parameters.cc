@@ -13,7 +13,7 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
   prm.enter_subsection(section);
   prm.add_parameter("checkpoint", checkpoint,
                     "Whether checkpoints are written: at intervals, and when the run is asked to "
-                    "stop (SIGTERM, SIGINT, SIGUSR1), by which it ends with exit code 3.");
+                    "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
   declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
   declare::not_negative(prm, "wall time interval", minutes,
                         "Minutes of wall-clock time between checkpoints; 0: by steps alone.");

@@ -26,13 +26,13 @@ std::string names_for_walls()
 void ContactParameters::declare(dealii::ParameterHandler &prm)
 {
   prm.enter_subsection(section);
-  declare::choice(
-      prm, "particle particle contact force method", method, contact_models().names(),
-      "Laws of a contact of two particles. All but 'linear', which has springs of constant "
-      "stiffness, are Hertz's elastic force with Tsuji's damping and Mindlin's tangential force "
-      "with memory, which 'hertz' does not damp; 'DMT' adds cohesion with its "
-      "long-range part; 'hertz_JKR' or, in short, 'JKR' has the adhesion of soft contacts, which "
-      "hold until they are drawn out to a neck.");
+  declare::choice(prm, "particle particle contact force method", method, contact_models().names(),
+                  "Laws of a contact of two particles. All but 'linear', which has springs of "
+                  "constant stiffness, are Hertz's elastic force with Tsuji's damping and "
+                  "Mindlin's tangential force with memory, which 'hertz' does not damp; 'DMT' "
+                  "adds cohesion with its long-range part; 'hertz_JKR' or, in short, 'JKR' has "
+                  "the adhesion of soft bodies, whose contact forms a neck and holds across a "
+                  "small separation.");
   declare::choice(prm, "particle wall contact force method", wall_method, names_for_walls(),
                   "Laws of a contact with a wall or solid: the same as between particles, so "
                   "'DMT' or 'JKR' where particles use it and 'nonlinear' elsewhere.");

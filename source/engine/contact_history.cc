@@ -8,9 +8,9 @@ void ContactHistoryParameters::declare(dealii::ParameterHandler &prm)
   prm.enter_subsection("model parameters");
   prm.enter_subsection("contact history");
   declare::count(prm, "forget interval", forget_interval,
-                 "Steps after which every contact forgets what it remembers (slip, rolling, "
-                 "bridges), as in programs that lose it when they share out the work anew: for "
-                 "studies of what that changes. 0: never.");
+                 "Steps after which every contact loses its memory (slip, rolling, bridges), as "
+                 "in programs that lose it at every load balancing: for studies of the "
+                 "consequences. 0: never.");
   prm.leave_subsection();
   prm.leave_subsection();
 }

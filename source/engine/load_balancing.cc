@@ -9,8 +9,8 @@ void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
   prm.enter_subsection("model parameters");
   prm.enter_subsection("load balancing");
   declare::choice(prm, "load balance method", method, "none|once|frequent|dynamic",
-                  "When the cells are shared out anew over the ranks. It happens at the next "
-                  "contact search and never changes a result.");
+                  "When the mesh is divided among the ranks anew. It happens at the next contact "
+                  "search and never changes a result.");
   declare::count(prm, "step", step, "once: the step.");
   declare::count(prm, "frequency", frequency, "frequent: steps between balances.", 1);
   prm.add_parameter("threshold", threshold,
@@ -18,7 +18,7 @@ void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
                     "the mean.",
                     declare::Patterns::Double(0.));
   declare::count(prm, "dynamic check frequency", check_frequency,
-                 "dynamic: steps between looks at the loads.", 1);
+                 "dynamic: steps between checks of the loads.", 1);
   declare::count(prm, "particle weight", particle_weight,
                  "Cost of a particle, beside that of a cell.");
   declare::count(prm, "cell weight", cell_weight, "Cost of a cell.", 1);

@@ -25,9 +25,9 @@ void FaultParameters::declare(dealii::ParameterHandler &prm)
 {
   prm.enter_subsection("model parameters");
   declare::choice(prm, "lost particles", lost_particles, "stop|remove|ignore",
-                  "What happens when a particle has left the mesh other than through an outlet, or "
-                  "is not a number any more: the run stops, or the particle is taken out and "
-                  "counted, with or without a warning.");
+                  "What happens when a particle has left the mesh other than through an outlet, "
+                  "or has a position that is not a number: the run stops, or the particle is "
+                  "removed and counted, with or without a warning.");
   declare::not_negative(
       prm, "largest overlap", largest_overlap,
       "Overlap over the radius of the smaller particle above which the run stops, as "

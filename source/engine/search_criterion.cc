@@ -14,15 +14,15 @@ void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "contact detection method", method, "constant|dynamic",
                   "Search for pairs every so many steps, or when a particle has moved too far.");
   declare::count(prm, "frequency", frequency,
-                 "Steps between searches (constant) or between looks at the displacement "
+                 "Steps between searches (constant) or between checks of the displacement "
                  "(dynamic).",
                  1);
   prm.add_parameter("dynamic contact search size coefficient", displacement_share,
                     "Share of the safe displacement after which the search is repeated.",
                     declare::Patterns::Double(1e-3, 1.));
   prm.add_parameter("neighborhood threshold", neighborhood_threshold,
-                    "The search lists pairs with gaps up to (threshold - 1) times the largest "
-                    "diameter. Larger: longer lists, fewer searches.",
+                    "The search lists pairs with separations up to the skin, (threshold - 1) times "
+                    "the largest diameter. Larger: longer lists, fewer searches.",
                     declare::Patterns::Double(1.));
   prm.leave_subsection();
   prm.leave_subsection();

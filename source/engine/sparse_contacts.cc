@@ -7,10 +7,10 @@ namespace eunoe {
 
 namespace {
 
-/// Neighbours of neighbours are awake, so that those who move feel others that can give way.
+/// Neighbours of neighbours are awake, so that moving particles touch others that can give way.
 constexpr unsigned int n_rings = 2;
 
-/// Takes the flags for those who are awake; without flags if that is everyone.
+/// Sets the flags of awake particles; no flags if all are awake.
 void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
 {
   p.awake_rows.clear();
@@ -37,15 +37,15 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
   prm.add_parameter("enable adaptive sparse contacts", enabled,
                     "Whether particles that are at rest, and whose neighbours are, sleep: they do "
                     "not move and their contacts with each other are not computed, until something "
-                    "stirs near them.");
+                    "moves near them.");
   declare::not_negative(prm, "granular temperature threshold", temperature,
                         "Square of the speed below which a particle is at rest (m2/s2).");
   declare::not_negative(
       prm, "rest time", rest_time,
       "Time for which a particle must have been at rest before it may sleep (s).");
   declare::count(prm, "check frequency", frequency,
-                 "Steps between two looks at who may sleep and who must wake; every search for "
-                 "contacts looks as well.",
+                 "Steps between two checks which particles may sleep and which must wake; every "
+                 "search for contacts checks as well.",
                  1);
   prm.leave_subsection();
   prm.leave_subsection();
@@ -72,8 +72,8 @@ std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
   const auto now = static_cast<double>(stirring.step);
   const double limit = parameters.temperature;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
-    // What is no number is not at rest. Spin does not count: many particles turn in place for long,
-    // as nothing resists a spin about the normal of a contact, and one that rolls moves as well.
+    // NaN is not at rest. Spin does not count: many particles turn in place for long, as nothing
+    // resists a spin about the normal of a contact, and a rolling particle has a velocity.
     const bool at_rest = norm_square(p.velocity[row].vec()) <= limit;
     if (!at_rest || stirring.everything || moved[row] < 0.)
       moved[row] = now;
@@ -111,7 +111,7 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
       p.velocity[row] = {0., 0., 0., p.mass(row)};
       p.spin[row] = {0., 0., 0., p.moment_of_inertia(row)};
     } else
-      // Who wakes has been in balance; what was noted meanwhile is no force on it.
+      // A particle that wakes was in balance; forces that were added during its sleep do not count.
       p.force[row] = p.torque[row] = Quad();
   }
   set_awake(p, std::move(awake));

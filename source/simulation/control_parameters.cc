@@ -33,7 +33,7 @@ void ControlParameters::declare(dealii::ParameterHandler &prm)
                     "Simulated times between which files for pictures are written (s).",
                     declare::Patterns::List(declare::Patterns::Double(), 2, 2));
   declare::count(prm, "log frequency", log_frequency,
-                 "Steps between lines of a log that is no terminal; 0: none.");
+                 "Steps between lines of a log that is not on a terminal; 0: none.");
   declare::count(prm, "seed", seed,
                  "Seed of all random numbers, in the place of every other entry for a seed; -1: "
                  "each entry's own. The option --seed gives it, too.",

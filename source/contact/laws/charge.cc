@@ -79,10 +79,10 @@ public:
   {
     prm.enter_subsection("model parameters");
     prm.enter_subsection("electrostatic charge");
-    declare::not_negative(prm, "cut-off share", cut_off_share,
-                          "Gap at which the force between two charged particles has fallen to "
-                          "zero, over the largest radius. The larger, the longer the lists of "
-                          "pairs.");
+    declare::not_negative(
+        prm, "cut-off share", cut_off_share,
+        "Separation at which the force between two charged particles has fallen to "
+        "zero, over the largest radius. The larger, the longer the neighbour lists.");
     prm.leave_subsection();
     prm.leave_subsection();
   }

@@ -17,8 +17,8 @@ void declare_powder(dealii::ParameterHandler &prm, HeapParameters &p)
       "Mass of powder that is filled in, to within the scatter of the sizes (kg); 0: 'number "
       "of particles' or 'fill ratio' rules.");
   not_negative(prm, "fill ratio", p.fill_ratio,
-               "Without number and mass: powder that is filled in over that of a heap with a base "
-               "angle of 37.5 degrees, so that discs of any size are filled alike.");
+               "If number and mass are 0: mass of powder over that of a heap with a base angle "
+               "of 37.5 degrees, so that discs of any size are filled alike.");
   not_negative(prm, "insertion speed", p.insertion_speed,
                "Speed at which the loose particles start to fall into the tube (m/s).");
   declare::count(prm, "seed", p.seed, "Seed of the random places of the loose particles.");
@@ -35,7 +35,7 @@ void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
                     "Share of the particles that may still move in powder at rest.",
                     declare::Patterns::Double(0., 1.));
   declare::count(prm, "rest check frequency", p.rest_check_frequency,
-                 "Steps between two looks at the energies.", 1);
+                 "Steps between two checks of the energies.", 1);
   not_negative(
       prm, "rest duration", p.rest_duration,
       "Time for which all other particles must stay calm until the powder counts as at rest (s).");

@@ -77,7 +77,7 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
   using declare::not_negative;
   declare::choice(prm, "feedstock", p.feedstock, "replenished|full",
                   "replenished: a shallow bed is settled once and copied back before every pass, "
-                  "shifted and mirrored in z at random, after what was left has been taken out. "
+                  "shifted and mirrored in z at random, after the old powder has been taken out. "
                   "full: one deep reservoir for all passes.");
   not_negative(prm, "feedstock bed depth", p.bed_depth,
                "Depth of the bed that is settled (m); 0: the stroke and the margin.");
@@ -85,9 +85,8 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
                "Powder left below the level of the transfer plate after the stroke (m).");
   not_negative(prm, "feedstock insertion speed", p.insertion_speed,
                "Downward velocity of the particles inserted for the bed (m/s).");
-  not_negative(
-      prm, "settled speed", p.settled_speed,
-      "The bed is at rest when all but one in a hundred particles are slower than this (m/s).");
+  not_negative(prm, "settled speed", p.settled_speed,
+               "The bed is at rest when 99 % of the particles are slower than this (m/s).");
   not_negative(prm, "settling time", p.settling_time,
                "Longest time that the bed is given to come to rest (s).");
   declare::count(prm, "seed", p.seed, "Seed of the random positions, shifts and mirrorings.");
@@ -114,10 +113,10 @@ void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p
                     Double());
   prm.add_parameter("feedstock stroke error", p.stroke_error,
                     "Relative error of the feedstock platform's strokes.", Double());
-  not_negative(
-      prm, "plate recoil", p.plate_recoil,
-      "Way that the measuring plate yields while the spreader passes over it, and springs "
-      "back (m): a squared sine of the time between the spreader's arrival and its leaving.");
+  not_negative(prm, "plate recoil", p.plate_recoil,
+               "Distance by which the measuring plate yields while the spreader passes over it "
+               "(m): a squared sine of the time between the spreader's arrival and its "
+               "leaving.");
   prm.add_parameter("side walls", p.side_walls,
                     "Whether the slice ends at two walls in z, instead of being periodic.");
   prm.add_parameter("side wall friction", p.side_wall_friction,

@@ -207,8 +207,8 @@ void Custom::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "custom distribution probability function type", function_type, "PDF|CDF",
                   "Whether probabilities are those of each diameter or of all up to it.");
   prm.add_parameter("custom distribution interpolation", interpolates,
-                    "Whether each share is spread evenly over the diameters since the one before, "
-                    "instead of having its own.");
+                    "Whether each share is spread evenly between its diameter and the one before, "
+                    "instead of belonging to its diameter alone.");
 }
 
 SizeTable Custom::table() const
