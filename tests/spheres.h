@@ -6,6 +6,7 @@
 
 #include "tests.h"
 
+#include <array>
 #include <vector>
 
 namespace test {
@@ -131,6 +132,17 @@ private:
   }
 };
 
+/// Spheres whose contacts lose energy in every way.
+inline Scene dissipative_scene()
+{
+  Scene s;
+  s.particle.restitution = 0.6;
+  s.particle.friction = 0.4;
+  s.particle.rolling_friction = 0.1;
+  s.rolling = "epsd";
+  return s;
+}
+
 /// All spheres of one rank, in the order in which they were inserted.
 inline std::vector<Sphere> spheres_of(Simulation &simulation)
 {
@@ -189,6 +201,25 @@ struct Impact
     return 0.8 * std::sqrt(M_PI) * std::tgamma(0.4) / std::tgamma(0.9) * overlap() / speed;
   }
 };
+
+/// Two equal spheres that meet head-on in the origin, or one that meets the floor, from touch to
+/// after the impact.
+/// @param normal from the first to the second, or to the floor
+/// @param spins of both (rad/s)
+inline void meet(Scene &s, bool floor, double radius, double speed, const Vec3 &normal,
+                 const std::array<Vec3, 2> &spins)
+{
+  s.floor = floor;
+  s.spheres = {{-radius * normal, speed * normal, spins[0], 2. * radius}};
+  if (!floor)
+    s.spheres.push_back({radius * normal, -speed * normal, spins[1], 2. * radius});
+  const double share = floor ? 1. : 0.5;
+  const double duration =
+      Impact(s.particle, s.wall, share * s.mass(s.spheres[0]), share * radius, speed / share)
+          .duration();
+  s.time_step = duration / 5000.;
+  s.time_end = 1.5 * duration;
+}
 
 /// A sphere that rests on the floor under gravity, which may pull along the floor too.
 inline Sphere resting_sphere(const Scene &scene, double diameter = 1e-3)

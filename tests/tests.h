@@ -132,6 +132,16 @@ inline std::string box_input(double time_step, double time_end, const std::strin
   return head + more;
 }
 
+/// A solid from a shape, at rest unless told otherwise.
+/// @param more entries of the solid
+inline std::string shape_input(const std::string &shape, const std::string &arguments,
+                               const std::string &more = "")
+{
+  return "subsection solid objects\n subsection solid surfaces\n set number of solids = 1\n"
+         " subsection solid object 0\n subsection mesh\n set type = shape\n set grid type = " +
+         shape + "\n set grid arguments = " + arguments + "\n end\n" + more + " end\n end\nend\n";
+}
+
 } // namespace test
 
 #endif

@@ -7,16 +7,47 @@ using namespace eunoe;
 
 namespace {
 
+/// What has always been called as it is called now.
+const std::string common_words = R"(
+subsection simulation control
+  set time step        = 1e-5
+  set time end         = 2e-3
+  set log frequency    = 0
+  set output frequency = 0
+end
+
+subsection lagrangian physical properties
+  subsection particle type 0
+    set density particles                 = 2500
+    set young modulus particles           = 1e6
+    set poisson ratio particles           = 0.3
+    set restitution coefficient particles = 0.9
+    set friction coefficient particles    = 0.3
+  end
+  set young modulus wall = 1e6
+end
+
+subsection insertion info
+  set inserted number of particles at each time step = 3
+  set insertion frequency                            = 50
+  set insertion distance threshold                   = 1.5
+  subsection insertion acceptance function
+    set Function expression = x - 0.05
+  end
+end
+
+subsection model parameters
+  set particle particle contact force method = hertz_mindlin_limit_overlap
+  set particle wall contact force method     = nonlinear
+end
+)";
+
 const std::string old_words = R"(
 set dimension        = 3
 set print parameters = none
 
 subsection simulation control
   set method           = bdf1
-  set time step        = 1e-5
-  set time end         = 2e-3
-  set log frequency    = 0
-  set output frequency = 0
   set group files      = 1
 end
 
@@ -54,41 +85,27 @@ subsection lagrangian physical properties
     set size distribution type            = uniform
     set diameter                          = 0.005
     set number                            = 6
-    set density particles                 = 2500
-    set young modulus particles           = 1e6
-    set poisson ratio particles           = 0.3
-    set restitution coefficient particles = 0.9
-    set friction coefficient particles    = 0.3
     set random seed distribution          = 3
     set size distribution type            = custom
     set custom diameters                  = 0.004, 0.005
     set custom volume fractions           = 0.4, 0.6
   end
-  set young modulus wall = 1e6
 end
 
 subsection insertion info
   set insertion method                               = non_uniform
-  set inserted number of particles at each time step = 3
-  set insertion frequency                            = 50
   set insertion box minimum x                        = 0.01
   set insertion box minimum y                        = 0.01
   set insertion box minimum z                        = 0.01
   set insertion box maximum x                        = 0.09
   set insertion box maximum y                        = 0.09
   set insertion box maximum z                        = 0.09
-  set insertion distance threshold                   = 1.5
   set insertion random number range                  = 0.2
   set insertion random number seed                   = 7
   set velocity y                                     = 0.5
-  subsection insertion acceptance function
-    set Function expression = x - 0.05
-  end
 end
 
 subsection model parameters
-  set particle particle contact force method = hertz_mindlin_limit_overlap
-  set particle wall contact force method     = nonlinear
   set rolling resistance torque method       = constant_resistance
   set solver type                            = dem
   subsection dynamic disabling contacts
@@ -130,13 +147,6 @@ end
 )";
 
 const std::string present_words = R"(
-subsection simulation control
-  set time step        = 1e-5
-  set time end         = 2e-3
-  set log frequency    = 0
-  set output frequency = 0
-end
-
 subsection mesh
   set type               = dealii
   set grid type          = hyper_rectangle
@@ -162,37 +172,23 @@ subsection lagrangian physical properties
     set size distribution type            = uniform
     set average diameter                  = 0.005
     set number of particles               = 6
-    set density particles                 = 2500
-    set young modulus particles           = 1e6
-    set poisson ratio particles           = 0.3
-    set restitution coefficient particles = 0.9
-    set friction coefficient particles    = 0.3
     set distribution prn seed             = 3
     set size distribution type            = custom
     set distribution weighting basis                = volume
     set custom distribution diameters values        = 0.004, 0.005
     set custom distribution diameters probabilities = 0.4, 0.6
   end
-  set young modulus wall = 1e6
 end
 
 subsection insertion info
   set insertion method                               = volume
-  set inserted number of particles at each time step = 3
-  set insertion frequency                            = 50
   set insertion box points coordinates               = 0.01, 0.01, 0.01 : 0.09, 0.09, 0.09
-  set insertion distance threshold                   = 1.5
   set insertion maximum offset                       = 0.2
   set insertion prn seed                             = 7
   set initial velocity                               = 0, 0.5, 0
-  subsection insertion acceptance function
-    set Function expression = x - 0.05
-  end
 end
 
 subsection model parameters
-  set particle particle contact force method = hertz_mindlin_limit_overlap
-  set particle wall contact force method     = nonlinear
   set rolling resistance torque method       = constant
   subsection adaptive sparse contacts
     set enable adaptive sparse contacts = false
@@ -212,21 +208,7 @@ subsection floating walls
     set end time      = 1
   end
 end
-
-subsection solid objects
-  subsection solid surfaces
-    set number of solids = 1
-    subsection solid object 0
-      subsection mesh
-        set type           = shape
-        set grid type      = box
-        set grid arguments = 0.02, 0.02, 0.003 : 0.04, 0.04, 0.006
-        set simplex        = true
-      end
-    end
-  end
-end
-)";
+)" + test::shape_input("box", "0.02, 0.02, 0.003 : 0.04, 0.04, 0.006\n set simplex = true");
 
 void print_problems(const std::string &text)
 {
@@ -244,8 +226,9 @@ int main(int argc, char **argv)
 {
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Problems of_old, of_present;
-  const Parameters old = Parameters::read(old_words, "case.prm", {}, of_old);
-  const Parameters present = Parameters::read(present_words, "case.prm", {}, of_present);
+  const Parameters old = Parameters::read(old_words + common_words, "case.prm", {}, of_old);
+  const Parameters present =
+      Parameters::read(present_words + common_words, "case.prm", {}, of_present);
   test::check("old words are understood", of_old.empty());
   test::check("present words are understood", of_present.empty());
   test::check("present words give no warning", of_present.warnings().empty());

@@ -89,17 +89,8 @@ int main(int argc, char **argv)
   fly("shell between balls", generated_mesh("hyper_shell", "0, 0, 0 : 4e-3 : 12e-3 : 6 : true", 2),
       spheres_in(in_shell, lower, upper, d, 300), d, 300);
   // One that is finer in a corner, with nodes that hang on the curved wall.
-  fly("refined cylinder", generated_mesh("subdivided_cylinder", "2 : 10e-3 : 10e-3", 1) + R"(
-    subsection box refinement
-      set number of refinement boxes = 1
-      subsection box 0
-        set additional refinement = 1
-        subsection mesh
-          set grid type = hyper_rectangle
-          set grid arguments = 0, 0, 0 : 20e-3, 20e-3, 20e-3 : false
-        end
-      end
-    end
-)",
+  fly("refined cylinder",
+      generated_mesh("subdivided_cylinder", "2 : 10e-3 : 10e-3", 1) +
+          refinement({"0, 0, 0 : 20e-3, 20e-3, 20e-3"}),
       spheres_in(in_cylinder, lower, upper, d, 300), d, 300);
 }

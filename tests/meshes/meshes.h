@@ -88,6 +88,20 @@ inline std::string gmsh_mesh(const std::string &file, unsigned int refinement)
          "\n set initial refinement = " + std::to_string(refinement) + "\nend\n";
 }
 
+/// Boxes in which the cells are cut once more.
+/// @param boxes two corners each
+inline std::string refinement(const std::vector<std::string> &boxes)
+{
+  std::string text = "subsection box refinement\n set number of refinement boxes = " +
+                     std::to_string(boxes.size()) + "\n";
+  for (std::size_t k = 0; k < boxes.size(); ++k)
+    text += " subsection box " + std::to_string(k) +
+            "\n  set additional refinement = 1\n  subsection mesh\n"
+            "   set grid type = hyper_rectangle\n   set grid arguments = " +
+            boxes[k] + " : false\n  end\n end\n";
+  return text + "end\n";
+}
+
 /// Young's modulus 1 MPa, Poisson's ratio 0.3, 1000 kg/m3: spheres of 1 mm take steps of 1e-5 s.
 inline std::string powder(double diameter, double restitution, double friction,
                           const std::string &gravity, const std::string &more = "")

@@ -10,25 +10,8 @@ namespace {
 
 using Table = std::vector<std::vector<double>>;
 
-const char *const boxes = R"(
-    subsection box refinement
-      set number of refinement boxes = 2
-      subsection box 0
-        set additional refinement = 1
-        subsection mesh
-          set grid type = hyper_rectangle
-          set grid arguments = 0, 0, 0 : 4e-3, 5e-3, 5e-3 : false
-        end
-      end
-      subsection box 1
-        set additional refinement = 1
-        subsection mesh
-          set grid type = hyper_rectangle
-          set grid arguments = 9e-3, 0, 3e-3 : 11e-3, 2e-3, 9e-3 : false
-        end
-      end
-    end
-)";
+const std::string boxes =
+    refinement({"0, 0, 0 : 4e-3, 5e-3, 5e-3", "9e-3, 0, 3e-3 : 11e-3, 2e-3, 9e-3"});
 
 Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullptr)
 {

@@ -159,19 +159,7 @@ void test_walls_and_solids()
         set neighborhood threshold = 1.2
       end
     end
-    subsection solid objects
-      subsection solid surfaces
-        set number of solids = 1
-        subsection solid object 0
-          subsection mesh
-            set type = shape
-            set grid type = box
-            set grid arguments = -1e-3, -2e-3, -2e-3 : 1e-3, 2e-3, 2e-3
-          end
-        end
-      end
-    end
-)"));
+)" + shape_input("box", "-1e-3, -2e-3, -2e-3 : 1e-3, 2e-3, 2e-3")));
   const Result r = look_at(all);
   check("drum: none overlaps another", r.number == 1000 && r.largest_overlap <= 0.);
   bool on_axis = true, in_radius = true, beside = true;

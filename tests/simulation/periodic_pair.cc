@@ -14,11 +14,7 @@ constexpr double unit = 0x1p-9;
 /// @param spread of the spheres from where they meet, over their radius
 Scene collision(double shift, unsigned int axis, double spread = 1.5)
 {
-  Scene s;
-  s.particle.restitution = 0.6;
-  s.particle.friction = 0.4;
-  s.particle.rolling_friction = 0.1;
-  s.rolling = "epsd";
+  Scene s = dissipative_scene();
   const double r = 0x1p-11;
   s.spheres = {{{-spread * r, 0.25 * r, 0.}, {0.5, 0., 0.1}, {0., 80., -60.}, 2. * r},
                {{spread * r, -0.25 * r, 0.125 * r}, {-0.5, 0.1, 0.}, {30., 0., 0.}, 2. * r}};

@@ -9,9 +9,7 @@ using namespace test;
 
 namespace {
 
-std::string input(const std::string &balancing)
-{
-  return R"(
+const char *const space = R"(
     subsection simulation control
       set time step = 4e-6
       set time end = 0.024
@@ -41,6 +39,9 @@ std::string input(const std::string &balancing)
         set speed x = 0.3
       end
     end
+)";
+
+const char *const powder = R"(
     subsection lagrangian physical properties
       set g = 0, -9.81, 0
       set number of particle types = 2
@@ -65,6 +66,16 @@ std::string input(const std::string &balancing)
       set restitution coefficient wall = 0.3
       set surface energy wall = 0.01
     end
+)";
+
+const std::string paddle =
+    shape_input("box", "4e-3, 1e-3, -2e-3 : 5e-3, 3e-3, 6e-3",
+                " set center of rotation = 4.5e-3, 2e-3, 0\n subsection angular velocity\n"
+                "  set Function expression = 0; 0; 40\n end\n");
+
+std::string input(const std::string &balancing)
+{
+  return std::string(space) + powder + R"(
     subsection insertion info
       set inserted number of particles at each time step = 90
       set insertion frequency = 1500
@@ -87,23 +98,7 @@ std::string input(const std::string &balancing)
          R"(
       end
     end
-    subsection solid objects
-      subsection solid surfaces
-        set number of solids = 1
-        subsection solid object 0
-          subsection mesh
-            set type = shape
-            set grid type = box
-            set grid arguments = 4e-3, 1e-3, -2e-3 : 5e-3, 3e-3, 6e-3
-          end
-          set center of rotation = 4.5e-3, 2e-3, 0
-          subsection angular velocity
-            set Function expression = 0; 0; 40
-          end
-        end
-      end
-    end
-)";
+)" + paddle;
 }
 
 struct Result

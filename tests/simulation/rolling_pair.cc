@@ -18,17 +18,8 @@ std::vector<Sphere> collide(const std::string &rolling, const Vec3 &normal, cons
 {
   Scene s;
   s.rolling = rolling;
-  s.floor = floor;
   s.particle.rolling_friction = s.wall.rolling_friction = rolling_friction;
-  s.spheres = {{-radius * normal, speed * normal, spin_0, 2. * radius}};
-  if (!floor)
-    s.spheres.push_back({radius * normal, -speed * normal, spin_1, 2. * radius});
-  const double share = floor ? 1. : 0.5;
-  const double duration =
-      Impact(s.particle, s.wall, share * s.mass(s.spheres[0]), share * radius, speed / share)
-          .duration();
-  s.time_step = duration / 5000.;
-  s.time_end = 1.5 * duration;
+  meet(s, floor, radius, speed, normal, {{spin_0, spin_1}});
   return run(s);
 }
 

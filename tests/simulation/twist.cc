@@ -14,18 +14,9 @@ double lost_twist(const std::string &rolling, const Vec3 &normal, bool floor)
   const double radius = 0.5e-3, speed = 0.5, w = 1000.;
   Scene s;
   s.rolling = rolling;
-  s.floor = floor;
   s.particle.friction = s.particle.rolling_friction = 0.5;
   s.wall = s.particle;
-  s.spheres = {{-radius * normal, speed * normal, w * normal, 2. * radius}};
-  if (!floor)
-    s.spheres.push_back({radius * normal, -speed * normal, -w * normal, 2. * radius});
-  const double share = floor ? 1. : 0.5;
-  const double duration =
-      Impact(s.particle, s.wall, share * s.mass(s.spheres[0]), share * radius, speed / share)
-          .duration();
-  s.time_step = duration / 5000.;
-  s.time_end = 1.5 * duration;
+  meet(s, floor, radius, speed, normal, {{w * normal, -w * normal}});
   return norm(run(s)[0].w - w * normal) / w;
 }
 

@@ -180,16 +180,7 @@ inline std::string gmsh_input(const std::string &file, const std::string &more =
          file + "\n end\n" + more + " end\n end\nend\n";
 }
 
-/// A solid from a shape, at rest unless told otherwise.
-inline std::string shape_input(const std::string &shape, const std::string &arguments,
-                               const std::string &more = "")
-{
-  return "subsection solid objects\n subsection solid surfaces\n set number of solids = 1\n"
-         " subsection solid object 0\n subsection mesh\n set type = shape\n set grid type = " +
-         shape + "\n set grid arguments = " + arguments + "\n end\n" + more + " end\n end\nend\n";
-}
-
-/// Motion of a solid, for the two functions above.
+/// Motion of a solid, for the function above and `shape_input`.
 inline std::string motion_input(const std::string &velocity, const std::string &angular_velocity,
                                 const Vec3 &centre)
 {

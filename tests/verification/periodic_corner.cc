@@ -32,11 +32,7 @@ std::string boundary(unsigned int number, unsigned int axis, bool periodic, bool
 /// @param away whether the pair meets where all periodic directions end
 std::vector<std::vector<double>> collide(unsigned int n_periodic, bool away, bool declared_first)
 {
-  Scene s;
-  s.particle.restitution = 0.6;
-  s.particle.friction = 0.4;
-  s.particle.rolling_friction = 0.1;
-  s.rolling = "epsd";
+  Scene s = dissipative_scene();
   const double r = 0x1p-11;
   s.spheres = {{{-r, -r, -0.75 * r}, {0.4, 0.4, 0.3}, {0., 80., -60.}, 2. * r},
                {{r, r, 0.75 * r}, {-0.4, -0.3, -0.3}, {30., 0., 0.}, 2. * r}};
