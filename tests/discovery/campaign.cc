@@ -33,6 +33,121 @@ void check_runs(const std::string &name, const Simulator &simulator, const std::
         std::to_string(simulator.n_runs()) + " runs instead of " + std::to_string(made));
 }
 
+/// Two experiments and the effects, as all laboratories here take them.
+struct Setting
+{
+  std::vector<Experiment> experiments;
+  std::vector<Effect> effects;
+  MPI_Comm comm;
+};
+
+Setting read_setting(const MPI_Comm comm)
+{
+  Problems problems;
+  ExperimentParameters box, gentle;
+  box.name = "box";
+  box.case_file = gentle.case_file = folder + "/drop.prm";
+  gentle.name = "gentle";
+  gentle.overrides = {"drop/largest speed = 0.22"};
+  Setting setting = {{Experiment(box, comm, problems), Experiment(gentle, comm, problems)},
+                     read_effects({folder + "/effects"}, comm, problems),
+                     comm};
+  check("in order", problems.empty());
+  return setting;
+}
+
+const std::vector<RunRequest> requests = {{"box", {}, 1},
+                                          {"box", {{"bounce", 0.3}}, 1},
+                                          {"box", {{"tilt", 1.}, {"bounce", 0.}}, 1},
+                                          {"gentle", {{"bounce", 0.35}}, 1},
+                                          {"box", {}, 2},
+                                          {"box", {{"bounce", 0.}}, 1},
+                                          {"box", {{"growth", 20.}}, 1}};
+
+/// Runs of effects differ from the plain one as they should.
+void check_effects(const Laboratory &simulator, const std::vector<RunResult> &results)
+{
+  const auto value = [&simulator](const std::string &observable) {
+    const auto &points = simulator.data_points("box");
+    const auto found = std::find_if(points.begin(), points.end(), [&](const DataPoint &point) {
+      return point.observable == observable;
+    });
+    return [column = found - points.begin()](const std::vector<double> &row) {
+      return row[static_cast<std::size_t>(column)];
+    };
+  };
+  const auto speed = value("speed"), drift = value("drift");
+  const std::vector<double> &plain = *results[0], &bouncing = *results[1], &tilted = *results[2];
+  check("an effect that makes contacts more elastic makes spheres faster",
+        speed(bouncing) > 1.2 * speed(plain));
+  check("an effect that tilts moves them", drift(tilted) > drift(plain) + 0.5e-3);
+}
+
+std::vector<RunResult> run_first(const Setting &setting, Log &log)
+{
+  DemSimulator simulator(setting.experiments, setting.effects, cache, 1, setting.comm, log);
+  simulator.find_data_points(1);
+  print("cells: " + std::to_string(simulator.data_points("box").size()));
+  const std::vector<RunResult> first = simulator.run(requests);
+  const std::vector<bool> succeed = {true, true, true, false, true, true, false};
+  bool as_expected = true;
+  for (std::size_t k = 0; k < first.size(); ++k)
+    as_expected = as_expected && first[k].has_value() == succeed[k] &&
+                  (!first[k] || first[k]->size() == simulator.data_points("box").size());
+  check("those that break off have no result, all others one number a cell", as_expected);
+  check_effects(simulator, first);
+  same_on_one_rank("results", [&](MPI_Comm ranks) {
+    if (ranks == MPI_COMM_WORLD)
+      return numbers(first);
+    Log own_log(ranks, true);
+    DemSimulator alone(setting.experiments, setting.effects, cache_alone, 1, ranks, own_log);
+    alone.find_data_points(1);
+    return numbers(alone.run(requests));
+  });
+  check("a null value changes no bit", *first[0] == *first[5]);
+  check("other seeds, other packings", *first[0] != *first[4]);
+  // Two base models, and of the requests all but the first and its like.
+  check_runs("equal runs are made once", simulator, 7);
+  simulator.run(requests);
+  check_runs("and not again", simulator, 7);
+  check("the ledger names them", simulator.ledger().size() == 8);
+  for (const auto &run : simulator.ledger())
+    if (run.contains("failure"))
+      print(run.at("failure").get<std::string>().substr(0, 60));
+  return first;
+}
+
+/// Another simulator finds all in the cache; then one run of it is damaged.
+void run_from_cache(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+{
+  DemSimulator simulator(setting.experiments, setting.effects, cache, 2, setting.comm, log);
+  simulator.find_data_points(1);
+  check("kept results are the same", simulator.run(requests) == first);
+  check_runs("nothing is made again", simulator, 0);
+  check("all came from the cache", simulator.n_cached() == 8);
+  if (is_first_rank()) {
+    std::size_t n = 0;
+    for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
+      n += entry.is_regular_file() ? 1 : 0;
+    print(std::to_string(n) + " files");
+    // Damage is not taken for a result.
+    write_file(cache + "/" + simulator.ledger()[0].at("key").get<std::string>().substr(0, 2) + "/" +
+                   simulator.ledger()[0].at("key").get<std::string>() + ".json",
+               "{\"key\": 1");
+  }
+  MPI_Barrier(setting.comm);
+}
+
+void run_after_damage(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+{
+  DemSimulator simulator(setting.experiments, setting.effects, cache, 2, setting.comm, log);
+  simulator.find_data_points(1);
+  check_runs("what is damaged is made again", simulator, 1);
+  check("with the same result", simulator.run(requests) == first);
+  simulator.require({{"box", "drift", 0}});
+  check("a required cell that is there", simulator.run({requests[0]})[0].has_value());
+}
+
 } // namespace
 
 int main(int argc, char **argv)
@@ -45,93 +160,8 @@ int main(int argc, char **argv)
       std::filesystem::remove_all(old);
   MPI_Barrier(comm);
 
-  Problems problems;
-  ExperimentParameters box, gentle;
-  box.name = "box";
-  box.case_file = gentle.case_file = folder + "/drop.prm";
-  gentle.name = "gentle";
-  gentle.overrides = {"drop/largest speed = 0.22"};
-  const std::vector<Experiment> experiments = {Experiment(box, comm, problems),
-                                               Experiment(gentle, comm, problems)};
-  const std::vector<Effect> effects = read_effects({folder + "/effects"}, comm, problems);
-  check("in order", problems.empty());
-
-  const std::vector<RunRequest> requests = {{"box", {}, 1},
-                                            {"box", {{"bounce", 0.3}}, 1},
-                                            {"box", {{"tilt", 1.}, {"bounce", 0.}}, 1},
-                                            {"gentle", {{"bounce", 0.35}}, 1},
-                                            {"box", {}, 2},
-                                            {"box", {{"bounce", 0.}}, 1},
-                                            {"box", {{"growth", 20.}}, 1}};
-  std::vector<RunResult> first;
-  {
-    DemSimulator simulator(experiments, effects, cache, 1, comm, log);
-    simulator.find_data_points(1);
-    print("cells: " + std::to_string(simulator.data_points("box").size()));
-    first = simulator.run(requests);
-    const std::vector<bool> succeed = {true, true, true, false, true, true, false};
-    bool as_expected = true;
-    for (std::size_t k = 0; k < first.size(); ++k)
-      as_expected = as_expected && first[k].has_value() == succeed[k] &&
-                    (!first[k] || first[k]->size() == simulator.data_points("box").size());
-    check("those that break off have no result, all others one number a cell", as_expected);
-    const auto value = [&simulator](const std::string &observable) {
-      const auto &points = simulator.data_points("box");
-      const auto found = std::find_if(points.begin(), points.end(), [&](const DataPoint &point) {
-        return point.observable == observable;
-      });
-      return [column = found - points.begin()](const std::vector<double> &row) {
-        return row[static_cast<std::size_t>(column)];
-      };
-    };
-    const auto speed = value("speed"), drift = value("drift");
-    const std::vector<double> &plain = *first[0], &bouncing = *first[1], &tilted = *first[2];
-    check("an effect that makes contacts more elastic makes spheres faster",
-          speed(bouncing) > 1.2 * speed(plain));
-    check("an effect that tilts moves them", drift(tilted) > drift(plain) + 0.5e-3);
-    same_on_one_rank("results", [&](MPI_Comm ranks) {
-      if (ranks == MPI_COMM_WORLD)
-        return numbers(first);
-      Log own_log(ranks, true);
-      DemSimulator alone(experiments, effects, cache_alone, 1, ranks, own_log);
-      alone.find_data_points(1);
-      return numbers(alone.run(requests));
-    });
-    check("a null value changes no bit", *first[0] == *first[5]);
-    check("other seeds, other packings", *first[0] != *first[4]);
-    // Two base models, and of the requests all but the first and its like.
-    check_runs("equal runs are made once", simulator, 7);
-    simulator.run(requests);
-    check_runs("and not again", simulator, 7);
-    check("the ledger names them", simulator.ledger().size() == 8);
-    for (const auto &run : simulator.ledger())
-      if (run.contains("failure"))
-        print(run.at("failure").get<std::string>().substr(0, 60));
-  }
-  {
-    DemSimulator simulator(experiments, effects, cache, 2, comm, log);
-    simulator.find_data_points(1);
-    check("kept results are the same", simulator.run(requests) == first);
-    check_runs("nothing is made again", simulator, 0);
-    check("all came from the cache", simulator.n_cached() == 8);
-    if (is_first_rank()) {
-      std::size_t n = 0;
-      for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
-        n += entry.is_regular_file() ? 1 : 0;
-      print(std::to_string(n) + " files");
-      // Damage is not taken for a result.
-      write_file(cache + "/" + simulator.ledger()[0].at("key").get<std::string>().substr(0, 2) +
-                     "/" + simulator.ledger()[0].at("key").get<std::string>() + ".json",
-                 "{\"key\": 1");
-    }
-    MPI_Barrier(comm);
-  }
-  {
-    DemSimulator simulator(experiments, effects, cache, 2, comm, log);
-    simulator.find_data_points(1);
-    check_runs("what is damaged is made again", simulator, 1);
-    check("with the same result", simulator.run(requests) == first);
-    simulator.require({{"box", "drift", 0}});
-    check("a required cell that is there", simulator.run({requests[0]})[0].has_value());
-  }
+  const Setting setting = read_setting(comm);
+  const std::vector<RunResult> first = run_first(setting, log);
+  run_from_cache(setting, first, log);
+  run_after_damage(setting, first, log);
 }

@@ -3,11 +3,11 @@
 
 #include "../tests.h"
 
-int main(int argc, char **argv)
-{
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  using namespace test;
-  Case rain(box_input(2e-5, 0.05, R"(
+using namespace test;
+
+namespace {
+
+const char *const rain_input = R"(
     subsection DEM boundary conditions
       set number of boundary conditions = 2
       subsection boundary condition 0
@@ -41,7 +41,14 @@ int main(int argc, char **argv)
         set load balance method = frequent
         set frequency = 300
       end
-    end)"));
+    end)";
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  Case rain(box_input(2e-5, 0.05, rain_input));
   rain.run();
 
   const MPI_Comm comm = MPI_COMM_WORLD;

@@ -49,55 +49,64 @@ bool same_bits(const RigidState &a, const RigidState &b)
          a.rotation.y == b.rotation.y && a.rotation.z == b.rotation.z;
 }
 
-} // namespace
+const Vec3 start = {1e-2, 2e-2, -3e-2};
 
-int main()
+/// @param when for the names of the checks
+void examine_paths(const double t, const std::string &when)
 {
-  const Vec3 start = {1e-2, 2e-2, -3e-2};
-  // On a step and between two steps.
-  for (const double t : {0.7, 0.70003}) {
-    const std::string when = t == 0.7 ? "" : " between steps";
-    // The sums of 7000 steps leave about 1e-14.
-    const RigidState constant = motion(start, "0.1; -0.2; 0.3", "0; 0; 0").at(t);
-    check_close("constant velocity" + when,
-                norm(constant.centre - start - t * Vec3{0.1, -0.2, 0.3}), 0., 1e-13);
+  // The sums of 7000 steps leave about 1e-14.
+  const RigidState constant = motion(start, "0.1; -0.2; 0.3", "0; 0; 0").at(t);
+  check_close("constant velocity" + when, norm(constant.centre - start - t * Vec3{0.1, -0.2, 0.3}),
+              0., 1e-13);
 
-    const auto swing = motion(start, "a*cos(w*t); 0; 0", "0; 0; 0", "a=0.2, w = 30");
-    check_close("velocity in terms of time" + when,
-                swing.at(t).centre.x - start.x - 0.2 / 30. * std::sin(30. * t), 0., 1e-13);
-    check_close("its velocity" + when, swing.at(t).velocity.x - 0.2 * std::cos(30. * t), 0., 1e-14);
+  const auto swing = motion(start, "a*cos(w*t); 0; 0", "0; 0; 0", "a=0.2, w = 30");
+  check_close("velocity in terms of time" + when,
+              swing.at(t).centre.x - start.x - 0.2 / 30. * std::sin(30. * t), 0., 1e-13);
+  check_close("its velocity" + when, swing.at(t).velocity.x - 0.2 * std::cos(30. * t), 0., 1e-14);
 
-    const auto circle = motion({0.01, 0., 0.}, "-20*y; 20*x; -z", "0; 0; 0");
-    check_close("velocity in terms of the place" + when,
-                norm(circle.at(t).centre - 0.01 * Vec3{std::cos(20. * t), std::sin(20. * t), 0.}),
-                0., 1e-13);
+  const auto circle = motion({0.01, 0., 0.}, "-20*y; 20*x; -z", "0; 0; 0");
+  check_close("velocity in terms of the place" + when,
+              norm(circle.at(t).centre - 0.01 * Vec3{std::cos(20. * t), std::sin(20. * t), 0.}), 0.,
+              1e-13);
+}
 
-    // Turning about an axis through the moving centre.
-    const auto screw = motion(start, "0.05; 0; 0", "0; 0; 2*pi*3");
-    const Vec3 corner = start + Vec3{2e-3, 0., 1e-3};
-    const double angle = 6. * M_PI * t;
-    check_close("corner of a solid that turns and moves" + when,
-                norm(point(screw, corner, t) - start -
-                     Vec3{0.05 * t + 2e-3 * std::cos(angle), 2e-3 * std::sin(angle), 1e-3}),
-                0., 1e-14);
-    const Vec3 velocity = screw.at(t).velocity_at(point(screw, corner, t));
-    check_close("velocity of the corner" + when,
-                norm(velocity - Vec3{0.05 - 6. * M_PI * 2e-3 * std::sin(angle),
-                                     6. * M_PI * 2e-3 * std::cos(angle), 0.}),
-                0., 1e-13);
+/// Likewise of solids that turn.
+void examine_turns(const double t, const std::string &when)
+{
+  // Turning about an axis through the moving centre.
+  const auto screw = motion(start, "0.05; 0; 0", "0; 0; 2*pi*3");
+  const Vec3 corner = start + Vec3{2e-3, 0., 1e-3};
+  const double angle = 6. * M_PI * t;
+  check_close("corner of a solid that turns and moves" + when,
+              norm(point(screw, corner, t) - start -
+                   Vec3{0.05 * t + 2e-3 * std::cos(angle), 2e-3 * std::sin(angle), 1e-3}),
+              0., 1e-14);
+  const Vec3 velocity = screw.at(t).velocity_at(point(screw, corner, t));
+  check_close("velocity of the corner" + when,
+              norm(velocity - Vec3{0.05 - 6. * M_PI * 2e-3 * std::sin(angle),
+                                   6. * M_PI * 2e-3 * std::cos(angle), 0.}),
+              0., 1e-13);
 
-    const auto spun_up = motion({}, "0; 0; 0", "0; 8*t; 0");
-    check_close("corner of a solid that is spun up" + when,
-                norm(point(spun_up, {1e-3, 0., 0.}, t) -
-                     1e-3 * Vec3{std::cos(4. * t * t), 0., -std::sin(4. * t * t)}),
-                0., 1e-15);
-  }
+  const auto spun_up = motion({}, "0; 0; 0", "0; 8*t; 0");
+  check_close("corner of a solid that is spun up" + when,
+              norm(point(spun_up, {1e-3, 0., 0.}, t) -
+                   1e-3 * Vec3{std::cos(4. * t * t), 0., -std::sin(4. * t * t)}),
+              0., 1e-15);
+}
 
-  // An axis that itself turns about z with the rate p: as seen from a frame that turns with it, the
-  // solid turns about the fixed vector w(0) - p.
-  const double p = 5., w = 11., t = 0.6;
+/// An axis that itself turns about z with the rate p: as seen from a frame that turns with it, the
+/// solid turns about the fixed vector w(0) - p.
+Rotation nodded(const double t)
+{
+  const double p = 5., w = 11.;
+  return Rotation::by({w * t, 0., -p * t}).then(Rotation::by({0., 0., p * t}));
+}
+
+void examine_turning_axis()
+{
+  const double t = 0.6;
+  const Rotation expected = nodded(t);
   const auto nodding = motion({}, "0; 0; 0", "w*cos(p*t); w*sin(p*t); 0", "p=5, w=11");
-  const Rotation expected = Rotation::by({w * t, 0., -p * t}).then(Rotation::by({0., 0., p * t}));
   check_close("a turning axis",
               norm(nodding.at(t).rotation.x - expected.x) +
                   norm(nodding.at(t).rotation.y - expected.y),
@@ -107,7 +116,12 @@ int main()
               std::abs(norm(turned.x) - 1.) + std::abs(dot(turned.x, turned.y)) +
                   norm(cross(turned.x, turned.y) - turned.z),
               0., 1e-10);
+}
 
+void examine_order()
+{
+  const double t = 0.6;
+  const Rotation expected = nodded(t);
   // Halving the step divides an error of fourth order by 16.
   double path_error[2], turn_error[2];
   for (int k = 0; k < 2; ++k) {
@@ -119,7 +133,10 @@ int main()
   }
   check_close("order of the path", std::log2(path_error[0] / path_error[1]), 4., 0.1);
   check_close("order of the turn", std::log2(turn_error[0] / turn_error[1]), 4., 0.1);
+}
 
+void examine_questions()
+{
   const std::string velocity = "-20*y; 20*x + t; z*t", angular = "t; 3*x; -1";
   const auto asked_often = motion(start, velocity, angular);
   bool same = true;
@@ -132,7 +149,10 @@ int main()
         motion({}, "0;0;0", "0; 0; 1e-9").rotates() && motion({}, "0;0;0", "0; t; 0").rotates());
   check("does not turn",
         !motion({}, "1;t;0", "0; 0; 0").rotates() && !motion({}, "0;0;0", "0;0;0").rotates());
+}
 
+void examine_errors()
+{
   examine_error("0; 0", "", "'0; 0' does not hold three expressions");
   examine_error("0; 0; 0; 0", "", "'0; 0; 0; 0' does not hold three expressions");
   examine_error("0; 0; 2*(", "", "'0; 0; 2*(' is not understood");
@@ -140,4 +160,20 @@ int main()
   examine_error("0; 0; a*t", "a", "'a' is no constant 'name=value'");
   examine_error("0; 0; a*t", "a=two", "'a=two' is no constant 'name=value'");
   examine_error("0; 0; a*t", "a=1; b=2", "'a=1; b=2' is no constant 'name=value'");
+}
+
+} // namespace
+
+int main()
+{
+  // On a step and between two steps.
+  for (const double t : {0.7, 0.70003}) {
+    const std::string when = t == 0.7 ? "" : " between steps";
+    examine_paths(t, when);
+    examine_turns(t, when);
+  }
+  examine_turning_axis();
+  examine_order();
+  examine_questions();
+  examine_errors();
 }

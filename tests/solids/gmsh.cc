@@ -74,18 +74,18 @@ void examine_error(const std::string &name, const std::string &text, const std::
   check(name, answer == sentence, answer);
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void examine_closed()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine("closed surface, format 2.2", closed_22);
   examine("closed surface, format 4.1", closed_41);
   std::string windows;
   for (const char c : closed_22)
     windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
   examine("lines that end as under Windows", windows);
+}
 
+void examine_tee()
+{
   const TriangleMesh three =
       read("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n5\n1 0 0 0\n2 0 0 1\n3 1 0 0\n4 -1 0 0\n"
            "5 0 1 0\n$EndNodes\n$Elements\n3\n1 2 2 0 1 1 2 3\n2 2 2 0 2 1 2 4\n3 2 2 0 3 1 2 5\n"
@@ -95,7 +95,10 @@ int main(int argc, char **argv)
   const TriangulatedSurface tee(three);
   check("one contact below an edge of three", contacts(tee, {0., -0.09, 0.5}, 0.1).size() == 1);
   check("two contacts above an edge of three", contacts(tee, {0.08, 0.09, 0.3}, 0.1).size() == 2);
+}
 
+void examine_written()
+{
   const TriangleMesh mesh = uneven_plate({-1e-3, 2e-3, 0.1}, {1e-3, 0., 0.}, {0., 0., 3e-3}, 7, 4);
   write_gmsh(mesh, "surface.msh");
   const TriangleMesh again = read_gmsh("surface.msh", MPI_COMM_WORLD);
@@ -104,7 +107,10 @@ int main(int argc, char **argv)
     for (unsigned int c = 0; c < 3; ++c)
       same = same && again.vertices[again.triangles[t][c]] == mesh.vertices[mesh.triangles[t][c]];
   check("same bits written and read", same);
+}
 
+void examine_other_elements()
+{
   examine_error("quadrilateral, format 2.2",
                 replaced(closed_22, "7 2 3 7 4 0 2 30 4", "7 3 2 7 4 11 2 30 4"), no_triangle);
   examine_error("quadrilateral, format 4.1", replaced(closed_41, "2 1 2 4\n", "2 1 3 4\n"),
@@ -127,6 +133,10 @@ int main(int argc, char **argv)
                 no_surface);
   for (const std::string *text : {&closed_22, &closed_41})
     examine_error("half a file", text->substr(0, text->size() - 30), no_surface);
+}
+
+void examine_garbage()
+{
   std::string garbage;
   std::mt19937 generator(1);
   for (int k = 0; k < 5000; ++k)
@@ -135,7 +145,10 @@ int main(int argc, char **argv)
   examine_error("garbage after a good beginning", closed_22.substr(0, 40) + "$Nodes\n" + garbage,
                 no_surface);
   examine_error("empty file", "", no_surface);
+}
 
+void examine_missing()
+{
   std::string answer;
   try {
     read_gmsh("missing.msh", MPI_COMM_WORLD);
@@ -146,4 +159,17 @@ int main(int argc, char **argv)
         answer == "missing.msh cannot be read: No such file or directory. Check the name and the "
                   "permissions.",
         answer);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  examine_closed();
+  examine_tee();
+  examine_written();
+  examine_other_elements();
+  examine_garbage();
+  examine_missing();
 }

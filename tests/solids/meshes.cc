@@ -20,9 +20,7 @@ TriangleMesh triangle(const Vec3 &a, const Vec3 &b, const Vec3 &c)
   return mesh;
 }
 
-} // namespace
-
-int main()
+void examine_corners()
 {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   examine("nothing", TriangleMesh(), "it has no triangles");
@@ -41,7 +39,10 @@ int main()
       examine("a coordinate that is not finite", triangle({0., 0., 1.}, x, {0., 1., 1.}),
               "triangle 1 has a corner that is not a number");
     }
+}
 
+void examine_flat_triangles()
+{
   const std::string flat = "triangle 1 is degenerate: its corners lie on one line";
   examine("all corners in one place", triangle({1., 1., 1.}, {1., 1., 1.}, {1., 1., 1.}), flat);
   examine("two corners in one place", triangle({1., 1., 1.}, {1., 1., 1.}, {2., 1., 1.}), flat);
@@ -61,7 +62,10 @@ int main()
         return mesh;
       }(),
       "");
+}
 
+void examine_merging()
+{
   // The first three of those near the origin form a chain with links of 1 and 1.4 mm.
   TriangleMesh row;
   row.vertices = {{3., 0., 0.}, {0., 0., 0.},          {0., 0.5, 0.}, {1e-3, 0., 0.},
@@ -73,7 +77,10 @@ int main()
   check("corners within the tolerance are one", at(0, 1) == at(1, 2) || at(0, 1) == at(1, 0));
   check("corners apart stay apart", at(0, 2) != at(0, 1) && at(2, 1) != at(2, 2) &&
                                         at(2, 0) != at(2, 1) && at(0, 0) != at(0, 1));
+}
 
+void examine_seam()
+{
   // Two plates made one by one, whose common edge is equal to round-off only.
   const double R = 1e-4, gap = 1e-15;
   TriangleMesh plates = shapes::plane({-1e-3, 0., 0.}, {1e-3, 0., 0.}, {0., 0., 1e-3});
@@ -90,4 +97,14 @@ int main()
   }
   check("one contact over the seam", wrong == 0, std::to_string(wrong) + " have not");
   check("a step is no seam", steps > 0);
+}
+
+} // namespace
+
+int main()
+{
+  examine_corners();
+  examine_flat_triangles();
+  examine_merging();
+  examine_seam();
 }

@@ -49,65 +49,85 @@ std::vector<Vec3> places_over(const TriangleMesh &mesh)
   return places;
 }
 
-} // namespace
-
-int main()
+struct Findings
 {
-  const TriangleMesh mesh = uneven_plate(corner, u, v, 10, 6);
-  const TriangulatedSurface many(mesh), two(shapes::plane(corner, u, v));
-  const HalfSpace above(corner, {0., 1., 0.}), below(corner, {0., -1., 0.});
-
   int wrong_number = 0, wrong_side = 0, other_bits = 0, other_than_plane = 0, not_unit = 0;
   double worst_distance = 0., worst_normal = 0.;
   int in_surface = 0, over_rim = 0;
+};
+
+/// Whether a place is over the inside of the plate. Round-off decides whether one on the rim still
+/// belongs to it.
+bool is_over_inside(const Vec3 &x)
+{
+  const double margin = 1e-8 * R;
+  return x.x > corner.x + margin && x.x < corner.x + u.x - margin && x.z > corner.z + margin &&
+         x.z < corner.z + v.z - margin;
+}
+
+bool same_bits(const SurfaceContact &a, const SurfaceContact &b)
+{
+  return a.normal == b.normal && a.distance == b.distance;
+}
+
+Findings look_at(const TriangleMesh &mesh)
+{
+  const TriangulatedSurface many(mesh), two(shapes::plane(corner, u, v));
+  const HalfSpace above(corner, {0., 1., 0.}), below(corner, {0., -1., 0.});
+
+  Findings f;
   for (const Vec3 &x : places_over(mesh)) {
     const Vec3 offset = nearest(x) - x;
     const double distance = norm(offset);
     const auto found = contacts(many, x, R), plain = contacts(two, x, R);
     if (distance >= R) {
-      wrong_number += found.empty() && plain.empty() ? 0 : 1;
+      f.wrong_number += found.empty() && plain.empty() ? 0 : 1;
       continue;
     }
     if (found.size() != 1 || plain.size() != 1) {
-      ++wrong_number;
+      ++f.wrong_number;
       continue;
     }
     const SurfaceContact &contact = found[0];
-    not_unit += std::abs(norm(contact.normal) - 1.) < 1e-14 ? 0 : 1;
-    worst_distance = std::max(worst_distance, std::abs(contact.distance - distance) / R);
+    f.not_unit += std::abs(norm(contact.normal) - 1.) < 1e-14 ? 0 : 1;
+    f.worst_distance = std::max(f.worst_distance, std::abs(contact.distance - distance) / R);
     if (distance == 0.)
-      ++in_surface;
+      ++f.in_surface;
     else if (distance > 1e-3 * R)
-      worst_normal = std::max(worst_normal, norm(contact.normal - offset / distance));
-    over_rim += offset.x != 0. || offset.z != 0. ? 1 : 0;
-    // Round-off decides whether a place on the rim still belongs to the inside.
-    const double margin = 1e-8 * R;
-    const bool inside = x.x > corner.x + margin && x.x < corner.x + u.x - margin &&
-                        x.z > corner.z + margin && x.z < corner.z + v.z - margin;
-    if (inside && offset.y != 0.) {
-      wrong_side += contact.normal.y * offset.y > 0. ? 0 : 1;
-      other_bits +=
-          plain[0].normal == contact.normal && plain[0].distance == contact.distance ? 0 : 1;
+      f.worst_normal = std::max(f.worst_normal, norm(contact.normal - offset / distance));
+    f.over_rim += offset.x != 0. || offset.z != 0. ? 1 : 0;
+    if (is_over_inside(x) && offset.y != 0.) {
+      f.wrong_side += contact.normal.y * offset.y > 0. ? 0 : 1;
+      f.other_bits += same_bits(plain[0], contact) ? 0 : 1;
       const auto plane = contacts(offset.y < 0. ? above : below, x, R);
-      other_than_plane += plane.size() == 1 && plane[0].normal == contact.normal &&
-                                  plane[0].distance == contact.distance
-                              ? 0
-                              : 1;
+      f.other_than_plane += plane.size() == 1 && same_bits(plane[0], contact) ? 0 : 1;
     }
   }
-  check("there are places in the surface and beyond the rim", in_surface > 100 && over_rim > 100);
-  check("one contact with the plate", wrong_number == 0, std::to_string(wrong_number) + " are not");
-  check("every normal is a unit vector", not_unit == 0, std::to_string(not_unit) + " are not");
-  check("a sphere stays on its side", wrong_side == 0, std::to_string(wrong_side) + " do not");
-  check("same bits with two triangles", other_bits == 0, std::to_string(other_bits) + " differ");
-  check("same bits with an infinite plane", other_than_plane == 0,
-        std::to_string(other_than_plane) + " differ");
-  check_close("distance to the nearest point", worst_distance, 0., 1e-14);
+  return f;
+}
+
+void examine_flat(const TriangleMesh &mesh)
+{
+  const Findings f = look_at(mesh);
+  check("there are places in the surface and beyond the rim",
+        f.in_surface > 100 && f.over_rim > 100);
+  check("one contact with the plate", f.wrong_number == 0,
+        std::to_string(f.wrong_number) + " are not");
+  check("every normal is a unit vector", f.not_unit == 0, std::to_string(f.not_unit) + " are not");
+  check("a sphere stays on its side", f.wrong_side == 0, std::to_string(f.wrong_side) + " do not");
+  check("same bits with two triangles", f.other_bits == 0,
+        std::to_string(f.other_bits) + " differ");
+  check("same bits with an infinite plane", f.other_than_plane == 0,
+        std::to_string(f.other_than_plane) + " differ");
+  check_close("distance to the nearest point", f.worst_distance, 0., 1e-14);
   // Places whose distances differ by less than round-off cannot be told apart; at a height of 1e-3
   // radii they are up to 5e-7 radii apart, hence the normal.
-  check_close("normal to the nearest point", worst_normal, 0., 1e-6);
+  check_close("normal to the nearest point", f.worst_normal, 0., 1e-6);
+}
 
-  // A tilted plate has one normal, not one a triangle.
+/// A tilted plate has one normal, not one a triangle.
+void examine_tilted(const TriangleMesh &mesh)
+{
   TriangleMesh tilted = mesh;
   const Rotation turn = Rotation::by({0.3, -0.5, 0.2});
   for (Vec3 &x : tilted.vertices)
@@ -123,4 +143,13 @@ int main()
     }
   check("one normal all over a tilted plate", other_normal == 0,
         std::to_string(other_normal) + " others");
+}
+
+} // namespace
+
+int main()
+{
+  const TriangleMesh mesh = uneven_plate(corner, u, v, 10, 6);
+  examine_flat(mesh);
+  examine_tilted(mesh);
 }

@@ -38,17 +38,16 @@ void examine_error(const std::string &name, const std::string &text, const std::
   check("'" + text + "' for " + name, answer == sentence, answer);
 }
 
-} // namespace
-
-int main(int argc, char **argv)
+void examine_flat()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-
   examine("plane", "1e-3, 0, 2e-3 : 3e-3, 0, 4e-3 : 0, 2e-3, 0", 5e-3 * 2e-3, 2. * (5e-3 + 2e-3),
           {{1e-3, 0., 2e-3}, {4e-3, 2e-3, 6e-3}});
   examine("box", "-1e-3, 0, 1e-3 : 1e-3, 3e-3, 6e-3", 2. * (6e-6 + 10e-6 + 15e-6), 0.,
           {{-1e-3, 0., 1e-3}, {1e-3, 3e-3, 6e-3}});
+}
 
+void examine_round()
+{
   // A multiple of four facets has corners on all four sides.
   const double R = 2e-3, facet = 2. * R * std::sin(M_PI / 24.);
   examine("cylinder_shell", "1e-3, 2e-3, 3e-3 : 0, 0, 5e-3 : 2e-3 : 24", 24 * facet * 5e-3,
@@ -68,7 +67,10 @@ int main(int argc, char **argv)
   examine("disc", "1e-3, -1e-3, 3e-3 : 0, 1e-3, 0 : 2e-3 : 24",
           24 * facet * 1e-3 + 12. * R * R * std::sin(M_PI / 12.), 24 * facet,
           {{-1e-3, -1e-3, 1e-3}, {3e-3, 0., 5e-3}});
+}
 
+void examine_spreaders()
+{
   const double half_facet = 2. * 0.4e-3 * std::sin(M_PI / 2. / 32.), sides = 2. * (1e-3 - 0.4e-3);
   examine("half_round_bar", "1e-3, 0.1e-3, 0 : 2e-3 : 0.4e-3 : 1e-3 : 32",
           (32 * half_facet + sides) * 2e-3, 2. * (32 * half_facet + sides) + 2. * 2e-3,
@@ -77,7 +79,10 @@ int main(int argc, char **argv)
           2. * 32 * half_facet + 2. * 2e-3, {{-0.4e-3, 0., 0.}, {0.4e-3, 0.4e-3, 2e-3}});
   examine("flat_blade", "1e-3, 0.1e-3, 0 : 2e-3 : 0.3e-3 : 1e-3", (0.3e-3 + 2. * 1e-3) * 2e-3,
           2. * (0.3e-3 + 2. * 1e-3) + 2. * 2e-3, {{0.7e-3, 0.1e-3, 0.}, {1e-3, 1.1e-3, 2e-3}});
+}
 
+void examine_errors()
+{
   examine_error("plane", "0,0,0 : 1,0,x : 0,0,1", "'x' is not a number");
   examine_error("plane", "0,0,0 : 1,0, : 0,0,1", "'' is not a number");
   examine_error("plane", "0,0,0 : 1,0 : 0,0,1", "argument 2 has 2 values instead of 3");
@@ -87,7 +92,10 @@ int main(int argc, char **argv)
     examine_error("cylinder_shell", "0,0,0 : 0,0,1 : 1 : " + count,
                   "argument 4 is no positive whole number");
   examine_error("cylinder_shell", "0,0,0 : 0,0,1 : 1 : 1e9", "argument 4 is more than 100000");
+}
 
+void examine_message()
+{
   std::string message;
   try {
     Case test_case(box_input(
@@ -102,4 +110,16 @@ int main(int argc, char **argv)
             "subsection 'mesh': there are too few arguments. Correct the file, or 'grid arguments' "
             "as its text says.",
         message);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  examine_flat();
+  examine_round();
+  examine_spreaders();
+  examine_errors();
+  examine_message();
 }
