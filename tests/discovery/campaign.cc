@@ -65,7 +65,7 @@ const std::vector<RunRequest> requests = {{"box", {}, 1},
                                           {"box", {{"growth", 20.}}, 1}};
 
 /// Runs of effects differ from the plain one as they should.
-void check_effects(const Laboratory &simulator, const std::vector<RunResult> &results)
+void check_effects(const Simulator &simulator, const std::vector<RunResult> &results)
 {
   const auto value = [&simulator](const std::string &observable) {
     const auto &points = simulator.data_points("box");
