@@ -7,8 +7,6 @@
 
 #include <eunoe/simulation/simulation.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -56,6 +54,26 @@ inline void check_relative(const std::string &name, double value, double referen
 {
   check_close(name, value, reference, tolerance * std::abs(reference));
 }
+
+/// The rows of all ranks, those of the first rank first; the same on every rank.
+std::vector<std::vector<double>> of_all_ranks(MPI_Comm comm,
+                                              const std::vector<std::vector<double>> &mine);
+
+/// The test that a file holds, under the name of the file. All tests of a folder are linked to one
+/// program, which runs the one that it is asked for (tests/program.cc).
+class Registration
+{
+public:
+  Registration(const char *file, void (*test)(), bool with_mpi);
+};
+
+/// What stands in the place of main(), for a test without MPI and for one with it.
+#define EUNOE_TEST() EUNOE_TEST_WITH_MPI(false)
+#define EUNOE_MPI_TEST() EUNOE_TEST_WITH_MPI(true)
+#define EUNOE_TEST_WITH_MPI(with_mpi)                                                              \
+  static void the_test();                                                                          \
+  static const test::Registration the_registration(__FILE__, the_test, with_mpi);                  \
+  static void the_test()
 
 /// A case that a test runs in its own process: an input text, run quietly, with a look after every
 /// step.
@@ -105,14 +123,13 @@ enum Column
 inline std::vector<std::vector<double>> particle_table(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
-  std::vector<std::vector<double>> mine, all;
+  std::vector<std::vector<double>> mine;
   for (std::size_t k = 0; k < p.n_owned; ++k) {
     const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
     mine.push_back(
         {static_cast<double>(p.id[k]), x.x, x.y, x.z, p.radius(k), v.x, v.y, v.z, w.x, w.y, w.z});
   }
-  for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), mine))
-    all.insert(all.end(), part.begin(), part.end());
+  std::vector<std::vector<double>> all = of_all_ranks(simulation.communicator(), mine);
   std::sort(all.begin(), all.end());
   return all;
 }

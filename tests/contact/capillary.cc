@@ -85,7 +85,7 @@ std::vector<double> along(Laws &laws, const std::vector<double> &gaps)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_curve("two particles, share", 0., 1e-3, 0., 20e-6, false);
   check_curve("two particles, volume", 30., 1e-3, 1e-18, 20e-6, false);

@@ -56,7 +56,7 @@ void check_pair(const std::string &name, const Pair &pair)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_pair("alike", {20e-6, 20e-6, 1e-5, 1e-5});
   check_pair("of two sizes", {20e-6, 5e-6, -1e-5, -2e-5});

@@ -66,7 +66,7 @@ void check_powder(const Powder &powder)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_powder({"PS1", 35e-5, 8.25e-8, 3.89e-9, 12.3e-9});
   check_powder({"PS2", 25e-5, 5.89e-8, 4.61e-9, 14.6e-9});

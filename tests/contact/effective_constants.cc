@@ -81,7 +81,7 @@ void check_every_kind(const std::vector<Material> &materials, int n_types)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const Material steel = {210e9, 0.28, 0.9, 0.5, 0.01, 0.3, 1.2, 2e-19};
   const Material rubber = {2e6, 0.48, 0.4, 1.1, 0.2, 0.1, 0.03, 5e-20};

@@ -60,9 +60,8 @@ void clear(ParticleArrays &p)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   ContactModelNames names;
   names.cohesion = {"dmt"};
   names.rolling = "epsd";

@@ -181,7 +181,7 @@ void check_without_adhesion()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_curve("soft, large", 1e-3, 0.02);
   check_curve("powder", 10e-6, 2e-4);

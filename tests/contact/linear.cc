@@ -5,7 +5,7 @@
 
 using namespace test;
 
-int main()
+EUNOE_TEST()
 {
   Material a, b;
   a.young_modulus = 5e6;

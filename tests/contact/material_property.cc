@@ -19,7 +19,7 @@ const MaterialProperty humidity("humidity", MaterialProperty::Owner::particles, 
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   PhysicalProperties physics(2, 2);
   dealii::ParameterHandler prm;

@@ -53,7 +53,7 @@ void check_memory(const std::string &name, const std::string &tangential,
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_memory("limit overlap", "mindlin_limit_overlap", "none", 0);
   check_memory("limit force", "mindlin_limit_force", "none", 0);

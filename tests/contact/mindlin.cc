@@ -130,7 +130,7 @@ void check_sliding(const Variant &law)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   for (const Variant &law :
        {Variant{"limit_overlap", true, true}, Variant{"limit_force", false, true},

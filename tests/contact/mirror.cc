@@ -16,7 +16,7 @@ Vec3 mirrored(Vec3 v, unsigned int axis)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   Material material;
   material.surface_energy = 0.01;

@@ -141,7 +141,7 @@ void check_limit()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_constant();
   check_viscous();

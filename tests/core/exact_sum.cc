@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-int main()
+EUNOE_TEST()
 {
   using namespace test;
   ExactSum cancelling;

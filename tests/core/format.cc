@@ -2,7 +2,7 @@
 
 #include "../tests.h"
 
-int main()
+EUNOE_TEST()
 {
   using namespace test;
   const auto expect = [](const std::string &text, const std::string &wanted) {

@@ -5,7 +5,7 @@
 
 #include "../tests.h"
 
-int main()
+EUNOE_TEST()
 {
   using namespace test;
   using Four = std::array<std::uint32_t, 4>;

@@ -53,7 +53,7 @@ void check_end(const std::string &name, const End &end, const std::string &sente
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const auto hot = [] { return std::string("hot"); };
   const auto white = [] { return std::string("white"); };

@@ -4,7 +4,7 @@
 
 #include "../tests.h"
 
-int main()
+EUNOE_TEST()
 {
   using namespace test;
   check("empty", sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");

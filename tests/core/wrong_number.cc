@@ -3,7 +3,7 @@
 
 #include "../tests.h"
 
-int main()
+EUNOE_TEST()
 {
   test::print("force 1.00000000001e-9");
 }

@@ -150,9 +150,8 @@ void run_after_damage(const Setting &setting, const std::vector<RunResult> &firs
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const MPI_Comm comm = MPI_COMM_WORLD;
   Log log(comm, true);
   if (is_first_rank())

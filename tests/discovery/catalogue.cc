@@ -7,9 +7,8 @@
 
 #include "../tests.h"
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   using namespace test;
   using namespace eunoe::discovery;
   const std::string sources = source_folder();

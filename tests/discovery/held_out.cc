@@ -75,7 +75,7 @@ void check_level(const std::string &name, const Setting &setting, std::uint32_t 
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   check_level("a true model", {}, 1);
   check_level("with what another model's runs tell of the chaos", {0., 0., 0., true}, 1000);

@@ -4,7 +4,7 @@
 
 #include "../tests.h"
 
-int main()
+EUNOE_TEST()
 {
   using namespace test;
   using discovery::patched_value;

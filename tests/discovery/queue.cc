@@ -8,9 +8,8 @@
 
 #include <numeric>
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   using namespace test;
   using namespace eunoe::discovery;
   int size;

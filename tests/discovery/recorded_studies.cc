@@ -75,9 +75,8 @@ Answers interpolated(const RecordedTable &table, const StudyKind &kind, std::uin
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  MPI_Init(&argc, &argv);
   const RecordedTable table(std::string(DISCOVERY_TESTS) + "/recorded/micro.txt");
   check("runs of every experiment", table.of("spreading", "base").size() >= 8 &&
                                         table.of("heap", "base").size() >= 8 &&
@@ -110,5 +109,4 @@ int main(int argc, char **argv)
   // At least 97 % detected: 0.5 %; 6.8 % wrong names: 2.5 %.
   check("simulations of effects as data", simulated.detected >= 3 && simulated.wrong <= 1,
         simulated.text());
-  MPI_Finalize();
 }

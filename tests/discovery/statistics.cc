@@ -200,7 +200,7 @@ void modes_and_noise()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   quantiles();
   covariances();

@@ -312,9 +312,8 @@ void budget()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  MPI_Init(&argc, &argv);
   false_alarms();
   named_with_amplitude();
   steep_from_the_first_bit();
@@ -328,5 +327,4 @@ int main(int argc, char **argv)
   withdrawn();
   goes_on();
   budget();
-  MPI_Finalize();
 }

@@ -130,9 +130,8 @@ void examine_map()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const double angle : {20., 37.5, 60.})
     examine_cone(angle);
   examine_sphere();

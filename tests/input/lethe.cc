@@ -222,9 +222,8 @@ void print_problems(const std::string &text)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Problems of_old, of_present;
   const Parameters old = Parameters::read(old_words + common_words, "case.prm", {}, of_old);
   const Parameters present =
@@ -247,5 +246,4 @@ int main(int argc, char **argv)
       "  set number of solids = 0\n end\nend\n");
   print_problems("subsection mesh\n set type = cylinder\n set grid type = balanced\n"
                  " set grid arguments = 4 : 0.01 : 0.02\nend\n");
-  return 0;
 }

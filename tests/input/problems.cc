@@ -175,9 +175,8 @@ void test_domain()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_syntax();
   test_values();
   test_spreading();

@@ -143,9 +143,8 @@ void drum()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   shapes();
   bounces("16 facets", 2, Vec3(), "");
   bounces("32 facets", 3, Vec3(), "");

@@ -61,9 +61,8 @@ void fly(const std::string &name, const std::string &mesh, const std::string &sp
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double d = 0.5e-3;
   const Vec3 lower = {-8e-3, -8e-3, -8e-3}, upper = -lower;
   const auto in_ball = [](const Vec3 &x) { return norm(x) < 8e-3; };

@@ -157,9 +157,8 @@ void test_pouring()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_carried();
   test_time_end();
   test_turning();

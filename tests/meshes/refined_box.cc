@@ -75,9 +75,8 @@ std::uint64_t cells_for(double target_size)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Table plain;
   if (is_first_rank())
     plain = run("", MPI_COMM_SELF);

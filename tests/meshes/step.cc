@@ -143,9 +143,8 @@ void floor_of_two()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   write_step();
   for (const unsigned int refinement : {0, 2}) {
     Case test_case(control(1e-5, 1e-5) + gmsh_mesh("step.msh", refinement) +

@@ -151,9 +151,8 @@ void test_sides_of_one_id()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_packing();
   test_ranks();
   test_torque();

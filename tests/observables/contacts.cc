@@ -32,8 +32,7 @@ std::vector<std::vector<double>> all_contacts(Simulation &simulation)
       mine.push_back({double(p.id[c.first]), c.second < 0 ? -1. : double(p.id[c.second]),
                       double(c.solid), c.overlap, c.normal_force, end.x, end.y, end.z});
     }
-  for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), mine))
-    all.insert(all.end(), part.begin(), part.end());
+  std::vector<std::vector<double>> all = of_all_ranks(simulation.communicator(), mine);
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -118,7 +117,7 @@ void test_packing()
   left_alone.run();
   MPI_Allreduce(MPI_IN_PLACE, &n_contacts, 1, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
   check("many contacts", n_contacts > 500);
-  worst = dealii::Utilities::MPI::max(worst, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   check_close("their sum is the force on each particle", worst, 0., 1e-9);
   check("to look at them changes nothing", particle_table(*seen) == particle_table(*left_alone));
   same_on_one_rank("contacts", [](MPI_Comm comm) {
@@ -130,9 +129,8 @@ void test_packing()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_placed_spheres();
   test_packing();
 }

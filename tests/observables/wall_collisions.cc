@@ -94,9 +94,8 @@ void test_duration()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_restitution();
   test_duration();
 }

@@ -207,9 +207,8 @@ void test_errors()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_volume();
   test_list_and_file();
   test_single_particle();

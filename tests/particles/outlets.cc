@@ -45,9 +45,8 @@ const char *const rain_input = R"(
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Case rain(box_input(2e-5, 0.05, rain_input));
   rain.run();
 

@@ -184,9 +184,8 @@ void test_walls_and_solids()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_box();
   test_periods();
   test_acceptance();

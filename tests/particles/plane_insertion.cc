@@ -130,9 +130,8 @@ void test_touching()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_places();
   test_events();
   test_touching();

@@ -121,7 +121,7 @@ void test_turning(const std::string &name, const std::string &input, bool is_pro
   Table alone;
   if (is_first_rank())
     alone = first_particles(input, {general + "2"}, MPI_COMM_SELF);
-  alone = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, alone, 0);
+  alone = of_all_ranks(MPI_COMM_WORLD, alone);
   check(name + ": the same on any ranks", alone == two);
 }
 
@@ -160,9 +160,8 @@ void test_rule()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_turning("volume", grains(""), false);
   test_turning("packed", grains(" set insertion method = packed\n"), false);
   test_turning("plane",

@@ -204,7 +204,7 @@ void test_tables()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   test_classes();
   test_normal();

@@ -98,9 +98,8 @@ double gap_after_pull(double pull)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const bool floor : {false, true}) {
     const Scene plain;
     const Sphere sphere;

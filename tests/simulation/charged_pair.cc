@@ -6,9 +6,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double charge_density = 2e-5, permittivity = 8.8541878128e-12, cut_off = 0.8;
   Scene s;
   s.spheres.resize(2);

@@ -35,9 +35,8 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Log log(MPI_COMM_WORLD, true);
   if (is_first_rank())
     std::filesystem::remove_all(folder);

@@ -7,9 +7,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Clock clock(0.1, 5);
   check("a run of no step is at its end", Clock(0.1, 0).is_at_end());
   for (unsigned int step = 0; step < 3; ++step)

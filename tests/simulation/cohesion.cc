@@ -89,9 +89,8 @@ double gap_after_pull(double share)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_approach("pair: ", false);
   check_approach("wall: ", true);
   check("hangs on at 99.5 % of the pull-off force", gap_after_pull(0.995) < 0.);

@@ -49,9 +49,8 @@ double reynolds_of_fall(const std::string &name, double viscosity, double densit
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double viscosity = 1.8e-5;
   {
     Scene s = scene(viscosity, 0.);

@@ -85,9 +85,8 @@ void sphere_on_plane(const std::string &name, double young, double poisson, doub
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   two_spheres("glass", 48e9, 0.2, 2800., {274.1e-6, 10.70e3, 40.34e-6});
   two_spheres("limestone", 20e9, 0.25, 2500., {368.3e-6, 7.108e3, 54.20e-6});
   sphere_on_plane("aluminium alloy", 70e9, 0.3, 2699., {49.72e-6, 11.37e3, 731.7e-6});

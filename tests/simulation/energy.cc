@@ -111,9 +111,8 @@ void check_grazing(double friction)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Scene scene = box(1., 0.);
   const double rayleigh =
       PhysicalProperties::rayleigh_time(scene.spheres[1].radius(), scene.density, scene.particle);

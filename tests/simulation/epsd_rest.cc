@@ -75,9 +75,8 @@ void check_share()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_rest("contact point");
   check_rest("centre");
   check_share();

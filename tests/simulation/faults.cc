@@ -2,6 +2,8 @@
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 
+#include <deal.II/base/mpi.h>
+
 #include "../tests.h"
 
 #include <fstream>
@@ -177,9 +179,8 @@ void test_large_ids()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   expect("through the wall", failure(input("-3000")),
          {"particle 1 at (0, 0, -", "with a velocity of (0, 0, -3000) m/s, which touched nothing,",
           "has left the mesh, though not through an outlet.", "fault.checkpoint"});

@@ -25,9 +25,8 @@ std::vector<double> ways(unsigned int interval, const std::string &more)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   constexpr unsigned int interval = 20000;
   const std::vector<double> kept = ways(interval, "");
   const double once = kept[1] - kept[0];

@@ -64,9 +64,8 @@ Errors fly(const std::string &integration, double lag)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const bool verlet : {true, false}) {
     const std::string name = verlet ? "velocity Verlet: " : "explicit Euler: ";
     const Errors errors = fly(verlet ? "velocity_verlet" : "explicit_euler", verlet ? 0. : 1.);

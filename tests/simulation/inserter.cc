@@ -42,9 +42,8 @@ private:
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Case box(box_input(1e-6, 1e-6, ""));
   const Domain &domain = box->get_domain();
   ParticleArrays particles; // two owned ones and a ghost

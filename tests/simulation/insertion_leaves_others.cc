@@ -26,9 +26,8 @@ Scene collision()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const Scene scene = collision();
   const std::vector<Sphere> undisturbed = run(scene);
   const std::vector<Sphere> disturbed = run(scene, [&](Simulation &simulation) {

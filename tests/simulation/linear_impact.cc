@@ -5,9 +5,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const double e : {1., 0.5})
     for (const double speed : {0.01, 1.}) {
       Scene scene;

@@ -42,9 +42,8 @@ void expect(const std::string &name, const std::string &found, const std::string
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   LoadBalancingParameters parameters;
   expect("never", steps(parameters, 1.), "");
   parameters.method = "once";

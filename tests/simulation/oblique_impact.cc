@@ -149,9 +149,8 @@ void unlike_pair()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   oblique("alumina", 380e9, 0.23, 4000.);
   oblique("aluminium alloy", 70e9, 0.33, 2700.);
   spin_on_floor();

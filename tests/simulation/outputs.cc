@@ -48,9 +48,8 @@ void expect(const std::string &name, const std::string &found, const std::string
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   ControlParameters c = control();
   expect("none", pictures(c), "");
   c.output_frequency = 7;

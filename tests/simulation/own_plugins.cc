@@ -256,9 +256,8 @@ std::string moves(const std::string &entries, double time)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double dt = 1e-5;
   const unsigned int n = 20;
   Case test_case(box_input(dt, n * dt, input("0.5", "4e-3", "2e-3")));

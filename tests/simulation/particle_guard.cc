@@ -41,9 +41,8 @@ struct Trial
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Case box(box_input(1e-6, 1e-6, ""));
   Trial trial(box->get_domain());
   const bool is_last = trial.rank + 1 == trial.n_ranks;

@@ -51,9 +51,8 @@ double distance(Vec3 d, unsigned int axis)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (unsigned int axis = 0; axis < 3; ++axis) {
     const std::string name = "period along axis " + std::to_string(axis) + ": ";
     const std::vector<Sphere> middle = run(collision(0., axis));

@@ -7,9 +7,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Log log(MPI_COMM_WORLD, true);
   Progress progress(log, 10);
   check("every ten steps", progress.is_report_due(10, false) && !progress.is_report_due(11, false));

@@ -160,7 +160,7 @@ void compare(const std::string &laws, const std::vector<const char *> &balancing
   Result alone;
   if (is_first_rank())
     alone = run(laws, "set load balance method = none", MPI_COMM_SELF);
-  alone.particles = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, alone.particles, 0);
+  alone.particles = of_all_ranks(MPI_COMM_WORLD, alone.particles);
   for (const char *const balancing : balancings) {
     const Result together = run(laws, balancing, MPI_COMM_WORLD);
     if (!is_first_rank())
@@ -176,9 +176,8 @@ void compare(const std::string &laws, const std::vector<const char *> &balancing
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const char *const frequent = "set load balance method = frequent\n set frequency = 100";
   compare("", {"set load balance method = none", frequent,
                "set load balance method = dynamic\n set threshold = 0.1\n set dynamic check "

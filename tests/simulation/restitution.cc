@@ -63,9 +63,8 @@ void check_restitution(const std::string &name, Scene scene, const Impact &refer
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Scene scene;
   scene.density = 2500.;
   for (const double e : {0., 0.3, 0.6, 0.9, 1.}) {

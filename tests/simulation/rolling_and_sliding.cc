@@ -74,9 +74,8 @@ void incline(double friction, double degrees)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   slip_to_roll(0.1);
   slip_to_roll(0.4);
   incline(0.6, 10.);

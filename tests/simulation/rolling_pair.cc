@@ -103,9 +103,8 @@ void check_floor()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const Vec3 axes[] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}};
   for (unsigned int n = 0; n < 3; ++n)
     for (unsigned int t = 0; t < 3; ++t)

@@ -79,9 +79,8 @@ void check_incline(const std::string &rolling)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check_decay("constant");
   check_decay("epsd");
   check_viscous_decay();

@@ -32,9 +32,8 @@ bool is_due(const ContactDetectionParameters &parameters, double moved, double s
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   ContactDetectionParameters parameters;
   check_close("skin of a threshold of 1.3", parameters.skin(2.), 0.6, 1e-15);
   check_close("allowed share of the skin",

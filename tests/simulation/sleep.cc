@@ -304,9 +304,8 @@ void test_bed(const Story &story)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   test_stone();
   test_sinking_plate();
   test_blade();

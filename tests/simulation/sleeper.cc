@@ -60,9 +60,8 @@ std::string looks(unsigned long long restart)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const std::string found = looks(0);
   check("looks and what they find",
         found == " 0allfloorother 10 15floor 20floor 30allfloor 40floor", found);

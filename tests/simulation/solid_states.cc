@@ -9,9 +9,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   MovingSolids solids;
   solids.take({rising("slow", 1.), rising("fast", 3.)});
   check("found by name", solids.find("fast") == 1 && solids.find("none") == -1);

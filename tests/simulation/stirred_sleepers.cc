@@ -169,9 +169,8 @@ void test_support()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string integration : {"velocity_verlet", "explicit_euler"})
     test_drift(integration);
   test_restart();

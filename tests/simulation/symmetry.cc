@@ -58,9 +58,8 @@ Vec3 angular_momentum(const Scene &scene, const std::vector<Sphere> &spheres)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string rolling : {"none", "constant", "epsd"}) {
     const Scene scene = collision(rolling);
     double deepest = 0.;

@@ -22,9 +22,8 @@ double lost_twist(const std::string &rolling, const Vec3 &normal, bool floor)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string rolling : {"none", "constant", "epsd"}) {
     const Vec3 oblique = {0.48, 0.64, 0.6};
     check_close(rolling + ", along x", lost_twist(rolling, {1., 0., 0.}, false), 0., 1e-6);

@@ -95,9 +95,8 @@ void collide(const Scene &scene, const std::string &name, int upper, int lower,
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Material other;
   const Scene scene = make_scene(other);
   const double m0 = sphere_mass(radius, scene.density),

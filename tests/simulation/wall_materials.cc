@@ -21,9 +21,8 @@ double mean(double a, double b)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Scene s;
   s.floor = true;
   s.half_width = 8e-3;

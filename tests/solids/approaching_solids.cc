@@ -37,9 +37,8 @@ unsigned long long searches(const std::string &solid, int n_steps)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   check("a solid at rest asks for no search",
         searches(shape_input("plane", "-8e-3,-2e-3,-2e-3 : 0,4e-3,0 : 0,0,4e-3"), 100) == 0);
   // It moves by 1 mm; a search is due after 80 % of the skin of 0.3 mm.

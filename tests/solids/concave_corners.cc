@@ -55,7 +55,7 @@ void examine_corner()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const double degree = M_PI / 180.;
   for (const double angle : {30. * degree, 45. * degree, 60. * degree})

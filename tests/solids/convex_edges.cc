@@ -123,7 +123,7 @@ void examine(const std::string &name, const TriangleMesh &mesh)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   examine("the box", shapes::box(lower, upper));
   examine("a box of many triangles", fine_box());

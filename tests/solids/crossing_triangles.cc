@@ -61,9 +61,8 @@ int steps_without_one_contact(const Track &track)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Powder powder;
   powder.gravity = {0., -9.81, 0.};
   powder.friction = 0.2;

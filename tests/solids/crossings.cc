@@ -27,7 +27,7 @@ void expect(const std::string &name, const std::vector<Vec3> &a, const std::vect
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const std::vector<Vec3> cube = corners(shapes::box({0., 0., 0.}, {1., 1., 1.}));
   const auto moved = [](const Vec3 &shift) {

@@ -72,7 +72,7 @@ void examine(const std::string &where, double cylinder_radius, unsigned int n_fa
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   for (const unsigned int n_facets : {24u, 36u, 90u, 360u}) {
     examine("inside", 4e-4, n_facets, -1.);

@@ -20,7 +20,7 @@ void examine_velocity(const std::string &name, const Motion &motion, double t)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   auto pass = std::make_shared<PassMotion>(Vec3{0., 1e-3, 0.}, Vec3{0.1, 0., 0.}, 1.);
   pass->add(0.5);

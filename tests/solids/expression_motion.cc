@@ -164,7 +164,7 @@ void examine_errors()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   // On a step and between two steps.
   for (const double t : {0.7, 0.70003}) {

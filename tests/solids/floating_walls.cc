@@ -97,9 +97,8 @@ void be_pushed()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine_geometry();
   rest_and_fall();
   be_pushed();

@@ -7,7 +7,7 @@
 
 using namespace test;
 
-int main()
+EUNOE_TEST()
 {
   const TriangleMesh sphere = generate_surface("hyper_sphere", "1, 2, 3 : 0.5", 3);
   check("768 triangles", sphere.triangles.size() == 768);

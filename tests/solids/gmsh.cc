@@ -163,9 +163,8 @@ void examine_missing()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine_closed();
   examine_tee();
   examine_written();

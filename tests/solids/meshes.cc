@@ -101,7 +101,7 @@ void examine_seam()
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   examine_corners();
   examine_flat_triangles();

@@ -105,9 +105,8 @@ void drum()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   ride("belt", boundary_input(" set type = translational\n set speed x = 0.1\n"), -0.01);
   ride("plate",
        shape_input("plane", "-9e-3,-2e-3,-4e-3 : 14e-3,0,0 : 0,0,8e-3",

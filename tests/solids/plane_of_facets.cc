@@ -59,7 +59,7 @@ private:
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const TriangulatedSurface plate(folded_plate());
   Numbers numbers;

@@ -147,7 +147,7 @@ void examine_tilted(const TriangleMesh &mesh)
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const TriangleMesh mesh = uneven_plate(corner, u, v, 10, 6);
   examine_flat(mesh);

@@ -36,7 +36,7 @@ struct Path
 
 } // namespace
 
-int main()
+EUNOE_TEST()
 {
   const Vec3 start = {1e-3, 2e-3, 3e-3}, up = {0., 2e-3, 0.}, aside = {-1e-3, 0., 4e-3};
 

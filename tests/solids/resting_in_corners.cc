@@ -57,9 +57,8 @@ void compare(const std::string &name, const Powder &powder, const Start &start,
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double degree = M_PI / 180.;
   Powder powder;
   powder.friction = 0.;

@@ -77,9 +77,8 @@ Result run(const Powder &powder, const Way &way, double v0)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   Powder powder;
   powder.gravity = {0., -9.81, 0.};
   powder.restitution = 0.1;

@@ -114,9 +114,8 @@ void examine_message()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine_flat();
   examine_round();
   examine_spreaders();

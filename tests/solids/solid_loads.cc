@@ -107,9 +107,8 @@ void exchange_momentum(double plate_spin)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   weigh();
   exchange_momentum(0.);
   exchange_momentum(30.);

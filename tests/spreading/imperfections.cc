@@ -155,9 +155,8 @@ void examine_run()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine_clearance();
   examine_vibration();
   examine_run();

@@ -75,9 +75,8 @@ void examine(const std::string &name, const std::string &more)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine("periodic", "");
   examine("faults", R"(
   set spreader tilt                = 30e-6

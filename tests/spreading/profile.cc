@@ -40,9 +40,8 @@ PlateProfile profile_of(const std::vector<Vec3> &centres, bool is_periodic)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const double y = ground + r, middle = 0.5 * depth;
 
   const PlateProfile one = profile_of({{x0 + 0.1e-3, y, middle}}, true);

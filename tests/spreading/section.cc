@@ -83,9 +83,8 @@ void examine_handles()
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   examine_parameters();
   examine_handles();
 }

@@ -6,9 +6,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const ElasticBox::Outcome coarse = ElasticBox(1., 2e-6).run(7000, 100);
   const ElasticBox::Outcome fine = ElasticBox(1., 1e-6).run(14000, 200);
   check("twenty thousand collisions", coarse.collisions > 2e4 && fine.collisions > 2e4,

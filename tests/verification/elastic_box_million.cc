@@ -5,9 +5,8 @@
 
 using namespace test;
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const ElasticBox::Outcome outcome = ElasticBox(1., 1e-6).run(680000, 2000);
   check("a million collisions", outcome.collisions > 1e6, format(outcome.collisions));
   check_close("energy", outcome.drift, 0., 1e-4);

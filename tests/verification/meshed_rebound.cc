@@ -30,9 +30,8 @@ void expect_same(const std::string &name, const Sphere &a, const Sphere &b)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const Sphere plane = bounce(walls_input({{{}, {0., 0., 1.}}}));
   check("it rolls, far from where it started",
         plane.position.z < 0.51e-3 && norm(plane.position - start.position) > 5e-3,

@@ -69,9 +69,8 @@ std::vector<std::vector<double>> collide(unsigned int n_periodic, bool away, boo
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (unsigned int n_periodic = 1; n_periodic <= 3; ++n_periodic) {
     const std::string name = std::to_string(n_periodic) + " periodic: ";
     const auto middle = collide(n_periodic, false, true);

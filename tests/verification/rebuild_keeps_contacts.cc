@@ -59,9 +59,8 @@ Outcome meet(const std::string &laws, const std::string &search)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string laws : {"hertz_mindlin", "DMT", "JKR", "bridges"}) {
     const Outcome seldom = meet(laws, "dynamic"), always = meet(laws, "constant");
     double worst = 0.;

@@ -58,9 +58,8 @@ Errors rebound(unsigned int axis, double direction, const std::string &search)
 
 } // namespace
 
-int main(int argc, char **argv)
+EUNOE_MPI_TEST()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   for (const std::string search : {"dynamic", "constant"})
     for (unsigned int axis = 0; axis < 3; ++axis)
       for (const double direction : {-1., 1.}) {

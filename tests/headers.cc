@@ -1,2 +1,0 @@
-// The file that a library must have; the precompiled header beside it is what it is for.
-#include "tests.h"

@@ -1,0 +1,48 @@
+// The program of a folder: runs the test that is named on the command line, and lists all tests
+// where none is.
+
+#include <deal.II/base/mpi.h>
+
+#include "tests.h"
+
+#include <map>
+
+namespace {
+
+struct Test
+{
+  void (*run)();
+  bool with_mpi;
+};
+
+std::map<std::string, Test> &tests()
+{
+  static std::map<std::string, Test> all;
+  return all;
+}
+
+} // namespace
+
+test::Registration::Registration(const char *file, void (*run)(), bool with_mpi)
+{
+  const std::string path = file;
+  const std::size_t begin = path.rfind('/') + 1;
+  tests()[path.substr(begin, path.rfind('.') - begin)] = {run, with_mpi};
+}
+
+int main(int argc, char **argv)
+{
+  const auto found = argc == 2 ? tests().find(argv[1]) : tests().end();
+  if (found == tests().end()) {
+    std::cerr << "Usage: " << argv[0] << " test, where the tests are:\n";
+    for (const auto &[name, test] : tests())
+      std::cerr << "  " << name << "\n";
+    return 2;
+  }
+  if (!found->second.with_mpi) {
+    found->second.run();
+    return 0;
+  }
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  found->second.run();
+}

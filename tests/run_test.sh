@@ -1,0 +1,17 @@
+#!/bin/sh
+# Runs a test in the present folder and compares what it prints, character by character, with what it
+# must print. Tolerances belong into the tests, which know units and references.
+# Usage: run_test.sh expected command ...
+expected=$1
+shift
+export OMP_NUM_THREADS=2 OMPI_MCA_rmaps_base_oversubscribe=1
+"$@" >output 2>&1
+code=$?
+if [ $code -ne 0 ]; then
+  cat output
+  echo "The test has ended with code $code."
+  exit 1
+fi
+diff "$expected" output && exit 0
+echo "The output differs from $expected."
+exit 1
