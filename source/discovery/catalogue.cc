@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const std::string section = "effect";
+const std::string effect_section = "effect";
 
 /// `subsection effect` of an effect's file.
 struct EffectParameters : public ParameterSection
@@ -26,7 +26,7 @@ struct EffectParameters : public ParameterSection
 
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection(section);
+    prm.enter_subsection(effect_section);
     prm.add_parameter("mechanism", mechanism, "What happens in the powder or the machine.");
     prm.add_parameter("parameter", parameter, "What the amplitude is.");
     prm.add_parameter("unit", unit, "Unit of the amplitude.");
@@ -47,15 +47,15 @@ struct EffectParameters : public ParameterSection
   void check(const ParameterCheck &check) const override
   {
     for (const auto &[entry, text] : {std::pair("mechanism", &mechanism), {"source", &source}})
-      check.require(!text->empty(), {section}, entry, "is missing.",
+      check.require(!text->empty(), {effect_section}, entry, "is missing.",
                     "Say it in a few words: reports show it.");
-    check.require(range[0] < range[1], {section}, "range", "is empty.",
+    check.require(range[0] < range[1], {effect_section}, "range", "is empty.",
                   "Give the smallest and the largest amplitude.");
-    check.require(range[0] <= null_value && null_value <= range[1], {section}, "null value",
+    check.require(range[0] <= null_value && null_value <= range[1], {effect_section}, "null value",
                   "is outside of the range.", "Let the range begin or end with it.");
     const bool up = sign != "below" && null_value + scale <= range[1];
     const bool down = sign != "above" && null_value - scale >= range[0];
-    check.require(scale > 0. && (up || down), {section}, "scale",
+    check.require(scale > 0. && (up || down), {effect_section}, "scale",
                   "is " + format(scale) + ", which does not fit between null value and range.",
                   "Give a positive distance within the range.");
   }
@@ -83,7 +83,7 @@ Effect read_effect(const std::string &text, const std::string &file, Problems &p
   effect.file = file;
   std::vector<InputEntry> own;
   for (const InputEntry &entry : parse_input(text, file, problems, load))
-    (!entry.path.empty() && entry.path.front() == section ? own : effect.patch.entries)
+    (!entry.path.empty() && entry.path.front() == effect_section ? own : effect.patch.entries)
         .push_back(entry);
   EffectParameters parameters;
   dealii::ParameterHandler prm;

@@ -30,7 +30,7 @@ std::string text_of(const RunRequest &request)
   return text;
 }
 
-nlohmann::ordered_json describe(const RunRequest &request)
+nlohmann::ordered_json description(const RunRequest &request)
 {
   nlohmann::ordered_json about;
   about["experiment"] = request.experiment;
@@ -246,7 +246,7 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
                                  const bool was_cached)
 {
   const RunRecord &record = records.at(key);
-  nlohmann::ordered_json run = describe(request);
+  nlohmann::ordered_json run = description(request);
   run["key"] = key;
   run["cached"] = was_cached;
   run["core_seconds"] = record.core_seconds;
@@ -276,7 +276,7 @@ std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests
   for (const std::string &text : order) {
     const auto &[one, request] = unknown.at(text);
     if (records.count(one.key) == 0 && begun.insert(one.key).second)
-      missing.emplace_back(one, describe(request));
+      missing.emplace_back(one, description(request));
   }
   if (!missing.empty())
     simulate_all(missing);

@@ -15,14 +15,14 @@ namespace eunoe::discovery {
 
 namespace {
 
-const std::string section = "discovery";
+const std::string study_section = "discovery";
 using Path = std::vector<std::string>;
 
 const std::vector<RepeatedSections> &repeated_sections()
 {
   static const std::vector<RepeatedSections> list = {
-      {{section}, "number of experiments", "experiment", 20, 0},
-      {{section}, "number of nuisances", "nuisance", 20, 0}};
+      {{study_section}, "number of experiments", "experiment", 20, 0},
+      {{study_section}, "number of nuisances", "nuisance", 20, 0}};
   return list;
 }
 
@@ -160,7 +160,7 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file,
 {
   // Defaults first, so that what is written overrides them.
   InputEntry data, sealed;
-  data.path = {section};
+  data.path = {study_section};
   data.name = "measured data";
   data.value = StudyParameters().measured_data;
   sealed.path = {"twin"};
@@ -189,7 +189,7 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file,
 
 void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_synthetic_data)
 {
-  prm.enter_subsection(section);
+  prm.enter_subsection(study_section);
   prm.add_parameter("measured data", measured_data, "Table of what was measured.");
   prm.add_parameter("output path", output_path,
                     "Folder of all results; created if missing, and gone on with if it holds the "
@@ -256,11 +256,11 @@ std::string StudyParameters::cache_folder() const
 
 void StudyParameters::check(const ParameterCheck &check) const
 {
-  check.require(!experiments.empty(), {section}, "number of experiments", "is 0.",
+  check.require(!experiments.empty(), {study_section}, "number of experiments", "is 0.",
                 "Describe at least one experiment.");
   std::set<std::string> names;
   for (std::size_t k = 0; k < experiments.size(); ++k) {
-    const Path path = {section, "experiment " + std::to_string(k)};
+    const Path path = {study_section, "experiment " + std::to_string(k)};
     check_name(check, path, experiments[k].name, names);
     check.require(!experiments[k].case_file.empty(), path, "case file", "is missing.",
                   "Name an input file of eunoe-particles.");
@@ -268,11 +268,11 @@ void StudyParameters::check(const ParameterCheck &check) const
   check.require(std::any_of(experiments.begin(), experiments.end(),
                             [](const ExperimentParameters &e) { return !e.held_out; }) ||
                     experiments.empty(),
-                {section}, "", "has only experiments that are held out.",
+                {study_section}, "", "has only experiments that are held out.",
                 "Leave at least one to look at.");
   names.clear();
   for (std::size_t k = 0; k < nuisances.size(); ++k) {
-    const Path path = {section, "nuisance " + std::to_string(k)};
+    const Path path = {study_section, "nuisance " + std::to_string(k)};
     check_name(check, path, nuisances[k].name, names);
     check.require(!nuisances[k].entries.empty(), path, "entries", "is empty.",
                   "Name the entries of the case that are uncertain.");
