@@ -1,7 +1,7 @@
 """Every broken input of this folder is refused with its sentence: on one rank and on two, with exit
 code 2, soon, without a stack trace, and without a change to the results of an earlier run.
 
-Usage: bad_input.py path/to/eunoe-particles folder
+Usage: bad_input.py path/to/many-runs folder
 
 sentences.txt holds a line a case: its name, and a part of the sentence that it must give.
 """
@@ -9,16 +9,14 @@ sentences.txt holds a line a case: its name, and a part of the sentence that it 
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from eunoe.launch import SHARED, mpirun, overrides
+from eunoe.launch import overrides
 from forged import FORGERIES, assembled, forged
+from many_runs import ManyRuns
 
 HERE = Path(__file__).resolve().parent
-TWO_RANKS = mpirun(2, *SHARED)
 # Texts on which a reader may choke by their length alone, and their sentences.
 LONG = {
     "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
@@ -49,30 +47,24 @@ def contents(folder: Path) -> dict[str, bytes]:
             for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-def refuse(program: str, case: str, sentence: str, folder: Path, *settings: str,
+def refuse(programs: list[ManyRuns], case: str, sentence: str, folder: Path, *settings: str,
            codes: tuple[int, ...] = (2,)) -> None:
-    for launch in ([], TWO_RANKS):
-        place = f"{folder.name}/{case} on {2 if launch else 1} rank(s)"
-        try:
-            run = subprocess.run([*launch, program, f"{case}.prm", *overrides(settings)], cwd=folder, timeout=60,
-                                 capture_output=True, check=False)
-        except subprocess.TimeoutExpired:
-            fail(f"{place}: it hangs")
-            continue
-        errors = run.stderr.decode(errors="replace")
+    for program in programs:
+        place = f"{folder.name}/{case} on {program.n_ranks} rank(s)"
+        run = program(f"{case}.prm", *overrides(settings), cwd=folder)
         if run.returncode not in codes:
-            fail(f"{place}: exit code {run.returncode}\n{errors}")
-        elif errors.count(sentence) != 1:
-            fail(f"{place}: no '{sentence}' in\n{errors}")
-        elif max(len(line) for line in errors.splitlines()) > LONGEST_LINE:
+            fail(f"{place}: exit code {run.returncode}\n{run.stderr}")
+        elif run.stderr.count(sentence) != 1:
+            fail(f"{place}: no '{sentence}' in\n{run.stderr}")
+        elif max(len(line) for line in run.stderr.splitlines()) > LONGEST_LINE:
             fail(f"{place}: it quotes too much of the input")
-        elif "Stacktrace" in errors or "terminate called" in errors:
+        elif "Stacktrace" in run.stderr or "terminate called" in run.stderr:
             fail(f"{place}: a stack trace")
 
 
-def spoil_checkpoints(program: str, folder: Path) -> None:
+def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
     """Checkpoints that were cut short or damaged, and inputs that do not fit to them."""
-    subprocess.run([program, "checkpointed.prm", "--quiet"], cwd=folder, check=True)
+    programs[0]("checkpointed.prm", "--quiet", cwd=folder).check_returncode()
     data = next((folder / "checkpointed").glob("*.checkpoint")).read_bytes()
     again = "restart/restart = true"
 
@@ -87,7 +79,7 @@ def spoil_checkpoints(program: str, folder: Path) -> None:
             file.unlink()
         else:
             file.write_bytes(content)
-        refuse(program, "checkpointed", sentence, place, again, *settings, codes=codes)
+        refuse(programs, "checkpointed", sentence, place, again, *settings, codes=codes)
 
     # Some forgeries are found when the results are open already.
     work = [(("another time step", data,
@@ -107,25 +99,23 @@ def spoil_checkpoints(program: str, folder: Path) -> None:
                 ("no head", assembled(b"[]", b""), "is damaged: its head is not understood."),
                 ("no file", None, "cannot be read: No such file"))),
             *(((name, forged(data, change), sentence), (1, 2)) for name, change, sentence in FORGERIES)]
-    with ThreadPoolExecutor(8) as pool:
-        for waiting in [pool.submit(spoil, *what, codes=codes) for what, codes in work]:
-            waiting.result()
+    for what, codes in work:
+        spoil(*what, codes=codes)
 
 
-def accept_meshes(program: str) -> None:
+def accept_meshes(program: ManyRuns) -> None:
     """What the sentences advise is taken: hexahedra in the formats of Gmsh, also of cut tetrahedra."""
     meshes = sorted((HERE.parent / "meshes" / "gmsh").glob("*.msh"))
     settings = {"lagrangian physical properties/particle type 0/number of particles": 1,
                 "insertion info/insertion method": "list",
                 **{f"insertion info/list {axis}": 0.5 for axis in "xyz"}}
     for mesh in meshes:
-        command = [program, "mesh_of_tetrahedra.prm", "--check", *overrides({**settings, "mesh/file name": mesh})]
-        run = subprocess.run(command, cwd=HERE, timeout=60, capture_output=True, text=True, check=False)
+        run = program("mesh_of_tetrahedra.prm", "--check", *overrides({**settings, "mesh/file name": mesh}), cwd=HERE)
         if run.returncode != 0:
             fail(f"{mesh.name}: {run.stderr}")
 
 
-def main(program: str, folder: Path) -> int:
+def main(many_runs: str, folder: Path) -> int:
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(HERE, folder)
     # The spreading cases include files of the project.
@@ -143,18 +133,18 @@ def main(program: str, folder: Path) -> int:
     results.mkdir()
     (results / "summary.json").write_text("of an earlier run")
     before = contents(folder)
-    # A launcher takes seconds to notice that its ranks have failed, in which the others can work.
-    with ThreadPoolExecutor(8) as pool:
-        for waiting in [pool.submit(refuse, program, case, sentence, folder)
-                        for case, sentence in sentences.items()]:
-            waiting.result()
+    programs = [ManyRuns(many_runs, folder.with_name(f"{folder.name}_on_{n}"), n) for n in (1, 2)]
+    for case, sentence in sentences.items():
+        refuse(programs, case, sentence, folder)
     if contents(folder) != before:
         fail(f"files have changed: {set(contents(folder)) ^ set(before)}")
-    spoil_checkpoints(program, folder)
-    accept_meshes(program)
+    spoil_checkpoints(programs, folder)
+    accept_meshes(programs[0])
+    for program in programs:
+        program.close()
     print(f"{len(sentences) + len(FORGERIES) + 9} broken inputs")
     return 1 if failures else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
+    sys.exit(main(sys.argv[1], Path(sys.argv[2]).resolve()))

@@ -1,19 +1,19 @@
 """The catalogue of effects: every file of prm/effects says all that it must, and its patch is accepted
 by the program in the micro experiments, at its scale and at both ends of its range.
 
-Usage: check_effects.py path/to/eunoe-particles
+Usage: check_effects.py path/to/many-runs
 """
 
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+import tempfile
 from pathlib import Path
 
 from eunoe.launch import overrides
 from eunoe.prm_file import parse_prm
+from many_runs import ManyRuns
 
 PRM = Path(__file__).resolve().parents[2] / "prm"
 CASES = {"spreading": PRM / "discovery" / "micro_spreading.prm",
@@ -50,7 +50,7 @@ def defects(name: str, about: dict[str, str], names: set[str]) -> list[str]:
     return wrong
 
 
-def check(program: str, file: Path, names: set[str], bases: dict[str, dict[str, str]]) -> list[str]:
+def check(program: ManyRuns, file: Path, names: set[str], bases: dict[str, dict[str, str]]) -> list[str]:
     values = parse_prm(file.read_text(encoding="utf-8")).flat()
     about = {key.partition("/")[2]: v for key, v in values.items() if key.startswith("effect/")}
     wrong = defects(file.stem, about, names)
@@ -65,21 +65,21 @@ def check(program: str, file: Path, names: set[str], bases: dict[str, dict[str, 
         for amplitude in sorted(amplitudes - {null}):
             settings = {key: patched(value, bases[kind].get(key, "0"), amplitude)
                         for key, value in patch.items()}
-            done = subprocess.run([program, str(case), "--check", *overrides(settings)], capture_output=True,
-                                  text=True, check=False)
+            done = program(case, "--check", *overrides(settings), cwd=PRM)
             if done.returncode != 0:
                 wrong.append(f"at {amplitude:g} {case.name} is refused: {done.stderr.strip()}")
     return [f"{file.name}: {text}." for text in wrong]
 
 
-def main(program: str) -> int:
+def main(many_runs: str) -> int:
     files = sorted((PRM / "effects").glob("*.prm"))
     names = {file.stem for file in files}
-    bases = {kind: parse_prm(subprocess.run([program, str(case), "--print-parameters"], check=True,
-                                            capture_output=True, text=True).stdout).flat()
-             for kind, case in CASES.items()}
-    with ThreadPoolExecutor(2) as pool:
-        wrong = sum(pool.map(lambda file: check(program, file, names, bases), files), [])
+    with tempfile.TemporaryDirectory() as folder:
+        program = ManyRuns(many_runs, Path(folder))
+        bases = {kind: parse_prm(program(case, "--print-parameters", cwd=PRM).stdout).flat()
+                 for kind, case in CASES.items()}
+        wrong = sum((check(program, file, names, bases) for file in files), [])
+        program.close()
     if len(files) < 14:
         wrong.append(f"There are only {len(files)} effects.")
     print("\n".join(wrong) if wrong else "ok")

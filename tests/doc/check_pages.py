@@ -2,17 +2,18 @@
 of doc/ is reached from its index, the examples marked as complete (```prm complete) and the cases of
 prm/examples and prm/verification are accepted by the program, and the sample of --check is what it prints.
 
-Usage: check_pages.py path/to/eunoe-particles
+Usage: check_pages.py path/to/many-runs
 """
 
 from __future__ import annotations
 
 import re
 import shlex
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from many_runs import ManyRuns
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -58,7 +59,7 @@ def check_links() -> list[str]:
     return wrong
 
 
-def check_examples(program: str) -> list[str]:
+def check_examples(program: ManyRuns) -> list[str]:
     """Each example runs through --check in the folder prm/examples, where includes are found."""
     wrong = []
     count = 0
@@ -69,8 +70,7 @@ def check_examples(program: str) -> list[str]:
             with tempfile.NamedTemporaryFile("w", suffix=".prm") as file:
                 file.write(example.replace("include ", f"include {ROOT}/prm/examples/"))
                 file.flush()
-                done = subprocess.run([program, file.name, "--check"], capture_output=True,
-                                      text=True, check=False)
+                done = program(file.name, "--check", cwd=ROOT)
             if done.returncode != 0:
                 place = page.relative_to(ROOT)
                 wrong.append(f"{place}: example {count} is refused:\n{done.stdout}{done.stderr}")
@@ -80,8 +80,7 @@ def check_examples(program: str) -> list[str]:
              for case in sorted((ROOT / "prm" / folder).glob("*.prm"))]
     for case in cases:
         # Files that a case names are relative to the folder where the program starts.
-        done = subprocess.run([program, str(case), "--check"], capture_output=True, text=True,
-                              check=False, cwd=ROOT)
+        done = program(case, "--check", cwd=ROOT)
         if done.returncode != 0:
             wrong.append(f"{case.relative_to(ROOT)} is refused:\n{done.stdout}{done.stderr}")
     case = ROOT / "prm" / "examples" / "falling_particles.prm"
@@ -90,7 +89,7 @@ def check_examples(program: str) -> list[str]:
     return wrong
 
 
-def check_sample(program: str) -> list[str]:
+def check_sample(program: ManyRuns) -> list[str]:
     """The command above the sample of --check in doc/input.md prints its lines in this order; of a line with
     '...', what stands before."""
     text = (ROOT / "doc" / "input.md").read_text(encoding="utf-8")
@@ -98,8 +97,7 @@ def check_sample(program: str) -> list[str]:
                        flags=re.M | re.S)
     if not sample:
         return ["doc/input.md has no sample of --check below its command."]
-    done = subprocess.run([program, *shlex.split(sample[1])], capture_output=True, text=True, check=False,
-                          cwd=ROOT)
+    done = program(*shlex.split(sample[1]), cwd=ROOT)
     said, printed = sample[2].splitlines(), done.stdout.splitlines()
     same = len(said) == len(printed) and all(
         line.startswith(says.removesuffix("...")) if says.endswith("...") else line == says
@@ -108,7 +106,10 @@ def check_sample(program: str) -> list[str]:
 
 
 def main() -> int:
-    wrong = check_links() + check_examples(sys.argv[1]) + check_sample(sys.argv[1])
+    with tempfile.TemporaryDirectory() as folder:
+        program = ManyRuns(sys.argv[1], Path(folder))
+        wrong = check_links() + check_examples(program) + check_sample(program)
+        program.close()
     print("\n".join(wrong) if wrong else "ok")
     return 1 if wrong else 0
 

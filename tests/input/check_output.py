@@ -1,19 +1,19 @@
 """What --check says of doubtful cases, that the run says the same words at its start, and what is refused.
 
-Usage: check_output.py path/to/eunoe-particles folder
+Usage: check_output.py path/to/many-runs folder
 """
 
 from __future__ import annotations
 
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 from eunoe.launch import overrides
+from many_runs import ManyRuns
 
 ROOT = Path(__file__).resolve().parents[2]
-HANG = 120
+
 ENTRY = "simulation control/time step"
 # One glass sphere of 1 mm, two steps.
 BASE = """\
@@ -147,12 +147,8 @@ def fail(name: str, text: str) -> None:
     print(f"{name}: {text}", flush=True)
 
 
-def call(program: str, file: Path | str, *options: str, settings: list[str], cwd: Path) -> tuple[int, str, str]:
-    try:
-        done = subprocess.run([program, str(file), *options, *overrides(settings)], cwd=cwd, text=True,
-                              capture_output=True, check=False, timeout=HANG)
-    except subprocess.TimeoutExpired:
-        return -1, "", "it hangs"
+def call(program: ManyRuns, file: Path | str, *options: str, settings: list[str], cwd: Path) -> tuple[int, str, str]:
+    done = program(file, *options, *overrides(settings), cwd=cwd)
     return done.returncode, done.stdout, done.stderr
 
 
@@ -167,7 +163,7 @@ def last_line(n_warnings: int) -> str:
     return f"The case can be run. {count}: see above."
 
 
-def check_doubtful(program: str, folder: Path) -> None:
+def check_doubtful(program: ManyRuns, folder: Path) -> None:
     for name, (settings, expected) in DOUBTFUL.items():
         code, out, errors = call(program, "case.prm", "--check", settings=settings, cwd=folder)
         found = warnings(out)
@@ -186,7 +182,7 @@ def check_doubtful(program: str, folder: Path) -> None:
             shutil.rmtree(folder / "results", ignore_errors=True)
 
 
-def check_facts(program: str, folder: Path) -> None:
+def check_facts(program: ManyRuns, folder: Path) -> None:
     for name, (settings, expected) in FACTS.items():
         code, out, errors = call(program, "case.prm", "--check", settings=settings, cwd=folder)
         for start in expected:
@@ -194,7 +190,7 @@ def check_facts(program: str, folder: Path) -> None:
                 fail(name, f"exit code {code}, no line '{start}' in\n{out}{errors}")
 
 
-def check_refused(program: str, folder: Path) -> None:
+def check_refused(program: ManyRuns, folder: Path) -> None:
     for name, (settings, sentence) in REFUSED.items():
         for options in (["--check"], []):
             code, out, errors = call(program, "case.prm", *options, settings=settings, cwd=folder)
@@ -206,16 +202,17 @@ def check_refused(program: str, folder: Path) -> None:
         fail("an empty file", f"exit code {code}\n{out}{errors}")
 
 
-def check_processes(program: str, folder: Path) -> None:
+def check_processes(program: ManyRuns, folder: Path) -> None:
     for name, file, settings, sentence, number in PROCESSES:
         code, out, errors = call(program, ROOT / file, "--check", settings=settings, cwd=folder)
         if code != 0 or sentence not in out or out.splitlines()[-1] != last_line(number):
             fail(name, f"exit code {code}, no '{sentence}' in\n{out}{errors}")
 
 
-def main(program: str, folder: Path) -> int:
+def main(many_runs: str, folder: Path) -> int:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    program = ManyRuns(many_runs, folder / "printed")
     (folder / "case.prm").write_text(BASE)
     check_doubtful(program, folder)
     check_facts(program, folder)
@@ -230,9 +227,10 @@ def main(program: str, folder: Path) -> int:
                      settings=["lagrangian physical properties/g = 0, 0, 0"])
     if warnings(out):
         fail("no gravity, and it is meant", out)
+    program.close()
     print(f"{len(DOUBTFUL)} doubtful, {len(REFUSED)} refused cases")
     return 1 if failures else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
+    sys.exit(main(sys.argv[1], Path(sys.argv[2])))

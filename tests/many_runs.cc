@@ -1,0 +1,81 @@
+// Runs eunoe-particles many times in one process, for tests with hundreds of inputs: to start the
+// program takes longer than to check an input. A line of the input is a run: a folder and the words
+// of the command line, between tabs. The answer is a line with the exit code, or -1 where ranks
+// differ. Meanwhile rank r has written what is printed to the files r.out and r.err.
+// tests/many_runs.py speaks to it.
+//
+// Usage: many-runs folder
+
+#include <eunoe/simulation/application.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <fcntl.h>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+namespace {
+
+/// Sends one of the standard streams to a file, until it is destroyed.
+class Redirection
+{
+public:
+  Redirection(int stream, const std::string &name) : stream(stream), before(::dup(stream))
+  {
+    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    ::dup2(file, stream);
+    ::close(file);
+  }
+  ~Redirection()
+  {
+    std::cout.flush();
+    ::dup2(before, stream);
+    ::close(before);
+  }
+
+private:
+  const int stream, before;
+};
+
+/// @return exit code
+int run(const std::string &line, const std::string &files)
+{
+  std::vector<std::string> words(1);
+  for (const char c : line)
+    if (c == '\t')
+      words.emplace_back();
+    else
+      words.back() += c;
+  std::filesystem::current_path(words[0]);
+  words[0] = "eunoe-particles";
+  std::vector<char *> arguments;
+  for (std::string &word : words)
+    arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  const Redirection out(STDOUT_FILENO, files + ".out"), err(STDERR_FILENO, files + ".err");
+  return eunoe::run_particles(static_cast<int>(words.size()), arguments.data(), MPI_COMM_WORLD);
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  using namespace dealii::Utilities;
+  const MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const unsigned int rank = MPI::this_mpi_process(MPI_COMM_WORLD);
+  const std::string files = std::filesystem::absolute(argv[1]) / std::to_string(rank);
+  for (std::string line;;) {
+    if (rank == 0 && !std::getline(std::cin, line))
+      line.clear();
+    line = MPI::broadcast(MPI_COMM_WORLD, line, 0);
+    if (line.empty())
+      return 0;
+    const int code = run(line, files);
+    const int least = MPI::min(code, MPI_COMM_WORLD), most = MPI::max(code, MPI_COMM_WORLD);
+    if (rank == 0)
+      std::cout << (least == most ? code : -1) << std::endl;
+  }
+}
