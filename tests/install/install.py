@@ -1,0 +1,80 @@
+"""An installed Eunoe serves a project of its own: cmake --install into an empty folder, then that
+project, which finds the package, adds the observable of CONTRIBUTING.md to the program and runs a case.
+
+Usage: install.py path/to/cmake path/to/build folder
+"""
+
+from __future__ import annotations
+
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+CASE = """
+subsection simulation control
+  set time step = 1e-6
+  set time end = 1e-6
+  set log frequency = 0
+  set output path = results
+end
+subsection mesh
+  set grid type = subdivided_hyper_rectangle
+  set grid arguments = 2, 2, 2 : -0.01, -0.01, -0.01 : 0.01, 0.01, 0.01 : true
+end
+subsection insertion info
+  set insertion method = list
+  set list x = 0, 4e-3
+  set list y = 0, 0
+  set list z = 0, 0
+  set list diameters = 1e-3, 2e-3
+end
+subsection post-processing
+  subsection centre of mass
+    set calculation = true
+    set output frequency = 1
+  end
+end
+"""
+
+
+def call(*command: str | Path, **options) -> None:
+    run = subprocess.run([str(word) for word in command], stdout=subprocess.PIPE,
+                         stderr=subprocess.STDOUT, text=True, check=False, **options)
+    if run.returncode != 0:
+        sys.exit(f"{' '.join(str(word) for word in command)}\n{run.stdout}")
+
+
+def main(cmake: str, build: Path, folder: Path) -> int:
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    prefix, own = folder / "prefix", folder / "build"
+    call(cmake, "--install", build, "--prefix", prefix)
+    page = (HERE.parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    code = re.search(r"`source/observables/\w+\.cc`:\s+```cpp\n(.*?)^```$", page, re.M | re.S)
+    assert code, "CONTRIBUTING.md shows no observable"
+    observable = folder / "centre_of_mass.cc"
+    observable.write_text(code[1], encoding="utf-8")
+    call(cmake, "-S", HERE / "project", "-B", own, "-DCMAKE_BUILD_TYPE=Release",
+         f"-DCMAKE_PREFIX_PATH={prefix}", f"-DOBSERVABLE={observable}")
+    call(cmake, "--build", own)
+    # Nothing of the tree is used.
+    libraries = subprocess.run(["ldd", own / "own-particles"], check=True, capture_output=True, text=True)
+    used = [Path(path) for path in re.findall(r"libeunoe\.so => (\S+)", libraries.stdout)]
+    assert used and all(prefix in path.parents for path in used), libraries.stdout
+    (folder / "case.prm").write_text(CASE, encoding="utf-8")
+    call(own / "own-particles", "case.prm", "--quiet", cwd=folder, env=os.environ)
+    with open(folder / "results" / "centre_of_mass.csv", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    # Masses as 1 to 8.
+    assert len(rows) == 2 and abs(float(rows[1]["x"]) - 32e-3 / 9.) < 1e-12, rows
+    call(prefix / "bin" / "eunoe-particles", "--version")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1], Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()))
