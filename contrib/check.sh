@@ -4,15 +4,27 @@
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
+
+# Says at the end how long each part took.
+parts=""
+part() {
+  local start=$SECONDS
+  "${@:2}"
+  parts+="$1: $((SECONDS - start)) s"$'\n'
+}
+trap 'printf "%s" "$parts"' EXIT
+
 contrib/install_dependencies.sh
-contrib/check_format.sh
-contrib/check_floors.py
-/usr/bin/python3 -m pyflakes contrib tests
-contrib/build.sh Release all test-programs
+part "format" contrib/check_format.sh
+part "floors" contrib/check_floors.py
+part "names in Python" /usr/bin/python3 -m pyflakes contrib tests
+part "build" contrib/build.sh Release all test-programs
 if [ "$(id -u)" -eq 0 ]; then
   # As in a container; Open MPI wants to be asked twice.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
 # Tests start the programs some hundred times: without a search for fast networks for each.
 export OMPI_MCA_pml=ob1
-ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"
+# A rank that waits for another gives its core to other tests.
+export OMPI_MCA_mpi_yield_when_idle=1
+part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"
