@@ -23,8 +23,4 @@ if [ "$(id -u)" -eq 0 ]; then
   # As in a container; Open MPI wants to be asked twice.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-# Tests start the programs some hundred times: without a search for fast networks for each.
-export OMPI_MCA_pml=ob1
-# A rank that waits for another gives its core to other tests.
-export OMPI_MCA_mpi_yield_when_idle=1
 part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"

@@ -4,7 +4,6 @@
 # Usage: run_test.sh expected command ...
 expected=$1
 shift
-export OMP_NUM_THREADS=2 OMPI_MCA_rmaps_base_oversubscribe=1
 "$@" >output 2>&1
 code=$?
 if [ $code -ne 0 ]; then
