@@ -54,7 +54,7 @@ EUNOE_MPI_TEST()
   expect("none", pictures(c), "");
   c.output_frequency = 7;
   expect("by steps", pictures(c), " 0 7 14");
-  c.output_window = {0.65, 1.35};
+  c.output_window = {0.74, 1.33};
   expect("within the window, half a step wider", pictures(c), " 7");
   c = control();
   c.output_control = "time";
