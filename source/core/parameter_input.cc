@@ -39,6 +39,12 @@ boost::property_tree::ptree tree_of(
   return tree;
 }
 
+/// Whether a node is an entry; a section may have one with the name 'value'.
+bool is_entry(const boost::property_tree::ptree &node)
+{
+  return node.count("default_value") > 0;
+}
+
 Level look_at(const boost::property_tree::ptree &tree, const Path &path)
 {
   const boost::property_tree::ptree *node = &tree;
@@ -50,7 +56,7 @@ Level look_at(const boost::property_tree::ptree &tree, const Path &path)
       }
   Level level;
   for (const auto &[name, child] : *node)
-    (child.count("value") + child.count("alias") > 0 ? level.entries : level.subsections)
+    (is_entry(child) || child.count("alias") > 0 ? level.entries : level.subsections)
         .push_back(name);
   return level;
 }
@@ -187,7 +193,7 @@ nlohmann::ordered_json description_of(const boost::property_tree::ptree &section
   nlohmann::ordered_json description = {{"entries", nlohmann::ordered_json::object()},
                                         {"subsections", nlohmann::ordered_json::object()}};
   for (const auto &[name, child] : section)
-    if (child.count("value") > 0)
+    if (is_entry(child))
       description["entries"][name] = {
           {"default", child.get<std::string>("default_value")},
           {"value", in_words(child.get<std::string>("pattern_description"))},
