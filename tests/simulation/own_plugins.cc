@@ -189,7 +189,12 @@ class Flicker : public Motion
 public:
   explicit Flicker(const Vec3 &centre) : centre(centre) {}
 
-  RigidState at(double time) const override { return {time > 1. ? -1. * centre : centre}; }
+  RigidState at(double time) const override
+  {
+    RigidState state;
+    state.centre = time > 1. ? -1. * centre : centre;
+    return state;
+  }
 
 private:
   const Vec3 centre;

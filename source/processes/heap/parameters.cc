@@ -5,8 +5,6 @@ namespace eunoe::heap {
 
 namespace {
 
-const std::string section = "heap";
-
 void declare_powder(dealii::ParameterHandler &prm, HeapParameters &p)
 {
   using declare::not_negative;

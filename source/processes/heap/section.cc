@@ -9,9 +9,7 @@ namespace eunoe::heap {
 
 namespace {
 
-const std::string section = "heap";
-
-const ProcessRegistry::Registration registration(process_kinds(), section,
+const ProcessRegistry::Registration registration(process_kinds(), "heap",
                                                  [] { return std::make_unique<HeapParameters>(); });
 
 } // namespace

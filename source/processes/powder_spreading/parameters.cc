@@ -5,8 +5,6 @@ namespace eunoe::spreading {
 
 namespace {
 
-const std::string section = "powder spreading";
-
 void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
   using declare::not_negative;

@@ -10,9 +10,7 @@ namespace eunoe::spreading {
 
 namespace {
 
-const std::string section = "powder spreading";
-
-const ProcessRegistry::Registration registration(process_kinds(), section, [] {
+const ProcessRegistry::Registration registration(process_kinds(), "powder spreading", [] {
   return std::make_unique<SpreadingParameters>();
 });
 

@@ -5,6 +5,9 @@
 
 namespace eunoe::heap {
 
+/// The subsection of the process.
+inline const std::string section = "heap";
+
 /// `subsection heap`: the heap instrument and what it does. SI units.
 struct HeapParameters : public ProcessSection
 {

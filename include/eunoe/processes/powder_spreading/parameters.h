@@ -7,6 +7,9 @@
 
 namespace eunoe::spreading {
 
+/// The subsection of the process.
+inline const std::string section = "powder spreading";
+
 /// `subsection powder spreading`: the apparatus and the procedure of Gaboriault et al. (2025), in
 /// the symbols of that paper. SI units.
 struct SpreadingParameters : public ProcessSection
