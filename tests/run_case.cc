@@ -3,6 +3,8 @@
 
 #include <eunoe/core/files.h>
 
+#include <deal.II/base/mpi.h>
+
 #include "tests.h"
 
 int main(int argc, char **argv)

@@ -68,7 +68,7 @@ EUNOE_MPI_TEST()
   Material material;
   material.friction = 0.3;
   material.surface_energy = 1e-3;
-  const ContactModel model(Materials({material}, 1), names);
+  const ContactModel model(Materials({material}, 1), names, ContactLawSections(), radius);
   PairForces forces(model, PeriodicBox());
 
   ParticleArrays p = row_of_spheres();

@@ -13,8 +13,6 @@ EUNOE_MPI_TEST()
 {
   MovingSolids solids;
   solids.take({rising("slow", 1.), rising("fast", 3.)});
-  check("found by name", solids.find("fast") == 1 && solids.find("none") == -1);
-
   solids.move_to(2.);
   solids.note_search();
   check_close("nothing has moved since the search", solids.moved_since_search(), 0., 0.);

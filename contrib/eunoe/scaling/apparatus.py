@@ -1,6 +1,6 @@
 """The mesh and the powder of the spreading process, from its lengths alone.
 
-The same formulas as in source/processes/powder_spreading (apparatus.cc, powder_spreading.cc).
+The same formulas as in source/processes/powder_spreading (apparatus.cc, section.cc).
 """
 
 from __future__ import annotations
