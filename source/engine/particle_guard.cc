@@ -116,8 +116,8 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
   }
 }
 
-Verdict ParticleGuard::judge(const Faults &faults, const ParticleArrays &particles,
-                             const std::function<std::string(std::size_t)> &describe) const
+InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays &particles,
+                                      const std::function<std::string(std::size_t)> &describe) const
 {
   MPI_Comm comm = domain.communicator();
   std::vector<Fault> grave = faults.squeezed;
@@ -125,7 +125,7 @@ Verdict ParticleGuard::judge(const Faults &faults, const ParticleArrays &particl
     grave.insert(grave.end(), faults.lost.begin(), faults.lost.end());
   std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
   MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
-  Verdict verdict;
+  InspectionResult verdict;
   if (numbers[0] + numbers[1] == 0)
     return verdict;
   verdict.stops = numbers[0] > 0;

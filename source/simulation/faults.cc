@@ -8,7 +8,7 @@ std::vector<std::size_t> Simulation::inspect()
 {
   const Faults faults = system.inspect(guard, solids.list());
   const auto describe = [this](std::size_t row) { return system.describe(row, solids.list()); };
-  const Verdict verdict = guard.judge(faults, system.particles, describe);
+  const InspectionResult verdict = guard.judge(faults, system.particles, describe);
   if (const auto half_period = guard.newly_too_short(faults.stiffest))
     get_log().warning("at t = " + format(time()) + " s the stiffest contact takes " +
                       format(*half_period) + " s, no more than " +
@@ -23,7 +23,7 @@ std::vector<std::size_t> Simulation::inspect()
   return verdict.lost;
 }
 
-void Simulation::stop_for(const Verdict &verdict)
+void Simulation::stop_for(const InspectionResult &verdict)
 {
   std::string place;
   if (outputs.folder.is_open()) {

@@ -25,7 +25,7 @@ double hertz(double radius, double overlap)
 std::vector<std::vector<double>> all_contacts(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
-  std::vector<std::vector<double>> mine, all;
+  std::vector<std::vector<double>> mine;
   for (const ContactForce &c : simulation.contact_forces())
     if (static_cast<std::size_t>(c.first) < p.n_owned) {
       const Vec3 end = p.position[c.first].vec() + c.distance * c.normal;

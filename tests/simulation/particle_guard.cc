@@ -12,7 +12,7 @@ namespace {
 
 constexpr double dt = 1e-3;
 
-/// Verdict on the particles 10, 11, ... of the first rank and 20, 21, ... of the second.
+/// What is found of the particles 10, 11, ... of the first rank and 20, 21, ... of the second.
 struct Trial
 {
   explicit Trial(const Domain &domain) : domain(domain), materials({Material()}, 1)
@@ -25,7 +25,7 @@ struct Trial
   }
 
   ParticleGuard guard() const { return {parameters, domain, materials, 1., dt}; }
-  Verdict judge(const Faults &faults) const
+  InspectionResult judge(const Faults &faults) const
   {
     return guard().judge(faults, particles, [this](std::size_t row) {
       return "particle " + std::to_string(particles.id[row]);
@@ -48,7 +48,7 @@ EUNOE_MPI_TEST()
   const bool is_last = trial.rank + 1 == trial.n_ranks;
   const std::string last = std::to_string(10 * trial.n_ranks);
 
-  Verdict verdict = trial.judge({});
+  InspectionResult verdict = trial.judge({});
   check("nothing is wrong", !verdict.stops && !verdict.warns && verdict.number == 0);
 
   // On the last rank only, where the smaller id stands behind the larger.

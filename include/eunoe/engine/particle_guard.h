@@ -39,7 +39,7 @@ struct Faults
 };
 
 /// What is done about the faults of all ranks; but for the rows the same on every rank.
-struct Verdict
+struct InspectionResult
 {
   bool stops = false;       ///< the run
   bool warns = false;       ///< of particles that are taken out
@@ -66,8 +66,8 @@ public:
 
   /// What is to be done about it; collective.
   /// @param describe names the particle of a row in words
-  Verdict judge(const Faults &faults, const ParticleArrays &particles,
-                const std::function<std::string(std::size_t)> &describe) const;
+  InspectionResult judge(const Faults &faults, const ParticleArrays &particles,
+                         const std::function<std::string(std::size_t)> &describe) const;
 
   /// Half period of the stiffest contact of all ranks (s) where it is too short for the time step
   /// and has not been before; collective.
