@@ -64,7 +64,7 @@ void examine_checkpoints()
   check("the fault comes after checkpoints", step > 100 && step < 150, std::to_string(step));
 
   const Checkpoint fault("results/restart_fault.checkpoint", MPI_COMM_WORLD);
-  check("step of the fault", fault.head.at("step") == step);
+  check("step of the fault", fault.head.at("clock").at("step") == step);
   const Rows rows = fault.rows("particles");
   std::vector<std::string> named;
   constexpr unsigned int place = 7; // of the position in a row, behind what does not change
