@@ -19,6 +19,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from contributing import CENTRE_OF_MASS, shown_files
+
 ROOT = Path(__file__).resolve().parents[2]
 
 CASE = """
@@ -27,10 +29,6 @@ subsection simulation control
   set time end = 1e-9
   set log frequency = 0
   set output path = {folder}/results
-end
-subsection mesh
-  set grid type = subdivided_hyper_rectangle
-  set grid arguments = 2, 2, 2 : -0.01, -0.01, -0.01 : 0.01, 0.01, 0.01 : true
 end
 subsection floating walls
   set number of floating walls = 1
@@ -64,18 +62,12 @@ subsection model parameters
   end
 end
 subsection insertion info
-  set insertion method = list
   set list x = 0, 4e-3
   set list y = 0, 1e-3
   set list z = 0.499e-3, 5e-3
   set list velocity x = 0, 300
-  set list diameters = 1e-3, 2e-3
 end
 subsection post-processing
-  subsection centre of mass
-    set calculation = true
-    set output frequency = 1
-  end
   subsection final state
     set calculation = true
     set filename = state
@@ -88,13 +80,9 @@ class Page:
     """The files that CONTRIBUTING.md adds, each of which it shows as a whole behind its name."""
 
     def __init__(self) -> None:
-        text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-        self.files = dict(re.findall(r"`([\w/]+\.cc)`:\s+```cpp\n(.*?)^```$", text, re.M | re.S))
+        self.files = shown_files()
         for name in self.files:
             assert not (ROOT / name).exists(), f"CONTRIBUTING.md adds {name}, which exists"
-        # That of a test is indented, as it belongs to a list.
-        shown = len(re.findall(r"^```cpp$", text, re.M))
-        assert len(self.files) == shown == 3, "three additions, each one file"
 
     def file_in(self, folder: str) -> str:
         return next(name for name in self.files if name.startswith(folder))
@@ -151,7 +139,7 @@ def close(what: str, value: float, reference: float, relative: float) -> None:
 
 
 def check_case(program: Path, folder: Path) -> None:
-    (folder / "case.prm").write_text(CASE.format(folder=folder), encoding="utf-8")
+    (folder / "case.prm").write_text(CENTRE_OF_MASS + CASE.format(folder=folder), encoding="utf-8")
     subprocess.run([program, folder / "case.prm", "--quiet"], check=True)
     radius, overlap, step = 0.5e-3, 1e-6, 1e-9
     young = 1e7 / (2. * (1. - 0.3**2))

@@ -14,6 +14,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from contributing import CENTRE_OF_MASS, shown_files
+
 HERE = Path(__file__).resolve().parent
 CASE = """
 subsection simulation control
@@ -22,22 +24,10 @@ subsection simulation control
   set log frequency = 0
   set output path = results
 end
-subsection mesh
-  set grid type = subdivided_hyper_rectangle
-  set grid arguments = 2, 2, 2 : -0.01, -0.01, -0.01 : 0.01, 0.01, 0.01 : true
-end
 subsection insertion info
-  set insertion method = list
   set list x = 0, 4e-3
   set list y = 0, 0
   set list z = 0, 0
-  set list diameters = 1e-3, 2e-3
-end
-subsection post-processing
-  subsection centre of mass
-    set calculation = true
-    set output frequency = 1
-  end
 end
 """
 
@@ -54,11 +44,9 @@ def main(cmake: str, build: Path, folder: Path) -> int:
     folder.mkdir(parents=True)
     prefix, own = folder / "prefix", folder / "build"
     call(cmake, "--install", build, "--prefix", prefix)
-    page = (HERE.parents[1] / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    code = re.search(r"`source/observables/\w+\.cc`:\s+```cpp\n(.*?)^```$", page, re.M | re.S)
-    assert code, "CONTRIBUTING.md shows no observable"
+    code = next(text for name, text in shown_files().items() if name.startswith("source/observables"))
     observable = folder / "centre_of_mass.cc"
-    observable.write_text(code[1], encoding="utf-8")
+    observable.write_text(code, encoding="utf-8")
     call(cmake, "-S", HERE / "project", "-B", own, "-DCMAKE_BUILD_TYPE=Release",
          f"-DCMAKE_PREFIX_PATH={prefix}", f"-DOBSERVABLE={observable}")
     call(cmake, "--build", own)
@@ -66,7 +54,7 @@ def main(cmake: str, build: Path, folder: Path) -> int:
     libraries = subprocess.run(["ldd", own / "own-particles"], check=True, capture_output=True, text=True)
     used = [Path(path) for path in re.findall(r"libeunoe\.so => (\S+)", libraries.stdout)]
     assert used and all(prefix in path.parents for path in used), libraries.stdout
-    (folder / "case.prm").write_text(CASE, encoding="utf-8")
+    (folder / "case.prm").write_text(CENTRE_OF_MASS + CASE, encoding="utf-8")
     call(own / "own-particles", "case.prm", "--quiet", cwd=folder, env=os.environ)
     with open(folder / "results" / "centre_of_mass.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
