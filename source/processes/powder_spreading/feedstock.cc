@@ -88,7 +88,9 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
   MPI_Allreduce(MPI_IN_PLACE, &n_above, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
                 simulation.communicator());
   constexpr unsigned int most_fillings = 20;
-  if (phase == Phase::settling_bed && n_above == 0 && n_fillings < most_fillings) {
+  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  if (phase == Phase::settling_bed && !apparatus.is_full(type, n_above) &&
+      n_fillings < most_fillings) {
     insert_loose_bed(simulation);
     return;
   }

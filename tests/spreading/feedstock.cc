@@ -1,0 +1,73 @@
+// The bed that later feeds are copied from reaches its level all over: grains that stand or fly
+// over a lower surface do not end its filling.
+
+#include <eunoe/processes/powder_spreading/apparatus.h>
+
+#include "small_case.h"
+#include "tests.h"
+
+using namespace test;
+
+namespace {
+
+constexpr double largest = 80e-6, column = 2. * largest, reservoir = 1.2e-3;
+
+const char *const long_reservoir = "  set feedstock platform length W1 = 1.2e-3\n"
+                                   "  set first feedstock stroke = 0.25e-3\n";
+
+struct Seen
+{
+};
+
+/// The particles when what stood above the bed's level has just been taken away.
+std::vector<std::vector<double>> with_levelled_bed()
+{
+  Case bed(small_spreading("results", long_reservoir));
+  std::vector<std::vector<double>> table;
+  try {
+    bed.run([&](Simulation &simulation) {
+      if (simulation.get_ledger().taken_out.number == 0)
+        return;
+      table = particle_table(simulation);
+      throw Seen();
+    });
+  } catch (const Seen &) {
+  }
+  return table;
+}
+
+void examine_surface()
+{
+  std::vector<double> surface(static_cast<std::size_t>(reservoir / column), -1.);
+  for (const std::vector<double> &grain : with_levelled_bed()) {
+    const auto k = static_cast<std::size_t>(grain[c_x] / column);
+    if (k < surface.size())
+      surface[k] = std::max(surface[k], grain[c_y] + grain[c_radius]);
+  }
+  const auto [lowest, highest] = std::minmax_element(surface.begin(), surface.end());
+  check("none above the level", *highest <= 0., std::to_string(*highest));
+  check("the level is reached all over", *lowest > -largest, std::to_string(*lowest));
+}
+
+void examine_when_full()
+{
+  spreading::SpreadingParameters p;
+  p.w1 = reservoir;
+  p.depth = 0.3e-3;
+  const spreading::Apparatus apparatus(p, largest);
+  ParticleType grains;
+  grains.sizes.average_diameter = largest;
+  const auto layer = static_cast<unsigned long long>(
+      std::ceil(spreading::bed_fraction * 6. / M_PI * reservoir * p.depth / (largest * largest)));
+  check("one grain above the level does not fill the bed", !apparatus.is_full(grains, 1));
+  check("almost a layer does not", !apparatus.is_full(grains, layer - 1));
+  check("a layer does", apparatus.is_full(grains, layer));
+}
+
+} // namespace
+
+EUNOE_MPI_TEST()
+{
+  examine_when_full();
+  examine_surface();
+}
