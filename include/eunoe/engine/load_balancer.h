@@ -27,8 +27,6 @@ public:
     return imbalance > LoadBalancingParameters::threshold_at_start ? &parameters : nullptr;
   }
 
-  const LoadBalancingParameters &get_parameters() const { return parameters; }
-
   nlohmann::ordered_json save() const;
   void load(const nlohmann::ordered_json &saved);
 
