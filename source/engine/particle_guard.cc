@@ -125,22 +125,22 @@ InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays
     grave.insert(grave.end(), faults.lost.begin(), faults.lost.end());
   std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
   MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
-  InspectionResult verdict;
+  InspectionResult result;
   if (numbers[0] + numbers[1] == 0)
-    return verdict;
-  verdict.stops = numbers[0] > 0;
-  verdict.warns = !verdict.stops && parameters.lost_particles == "remove";
-  verdict.number = verdict.stops ? numbers[0] : numbers[1];
+    return result;
+  result.stops = numbers[0] > 0;
+  result.warns = !result.stops && parameters.lost_particles == "remove";
+  result.number = result.stops ? numbers[0] : numbers[1];
   for (const Fault &fault : faults.lost)
-    verdict.lost.push_back(fault.row);
+    result.lost.push_back(fault.row);
 
   // The one with the smallest id is named, whichever rank it is on.
   ParticleId mine = std::numeric_limits<ParticleId>::max();
-  for (const Fault &fault : verdict.stops ? grave : faults.lost) {
+  for (const Fault &fault : result.stops ? grave : faults.lost) {
     const ParticleId id = particles.id[fault.row];
     if (id < mine) {
       mine = id;
-      verdict.first = describe(fault.row) + " " + fault.what;
+      result.first = describe(fault.row) + " " + fault.what;
     }
   }
   ParticleId smallest = mine;
@@ -149,11 +149,11 @@ InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays
   if (mine == smallest)
     MPI_Comm_rank(comm, &rank);
   MPI_Allreduce(MPI_IN_PLACE, &rank, 1, MPI_INT, MPI_MIN, comm);
-  int length = static_cast<int>(verdict.first.size());
+  int length = static_cast<int>(result.first.size());
   MPI_Bcast(&length, 1, MPI_INT, rank, comm);
-  verdict.first.resize(length);
-  MPI_Bcast(verdict.first.data(), length, MPI_CHAR, rank, comm);
-  return verdict;
+  result.first.resize(length);
+  MPI_Bcast(result.first.data(), length, MPI_CHAR, rank, comm);
+  return result;
 }
 
 std::optional<double> ParticleGuard::newly_too_short(double stiffest)

@@ -48,31 +48,31 @@ EUNOE_MPI_TEST()
   const bool is_last = trial.rank + 1 == trial.n_ranks;
   const std::string last = std::to_string(10 * trial.n_ranks);
 
-  InspectionResult verdict = trial.judge({});
-  check("nothing is wrong", !verdict.stops && !verdict.warns && verdict.number == 0);
+  InspectionResult result = trial.judge({});
+  check("nothing is wrong", !result.stops && !result.warns && result.number == 0);
 
   // On the last rank only, where the smaller id stands behind the larger.
   Faults lost;
   if (is_last)
     lost.lost = {{2, "is lost"}, {0, "is lost, too"}};
-  verdict = trial.judge(lost);
-  check("lost ones stop the run", verdict.stops && !verdict.warns && verdict.number == 2);
-  check("the smallest id is named", verdict.first == "particle " + last + " is lost, too",
-        verdict.first);
+  result = trial.judge(lost);
+  check("lost ones stop the run", result.stops && !result.warns && result.number == 2);
+  check("the smallest id is named", result.first == "particle " + last + " is lost, too",
+        result.first);
   trial.parameters.lost_particles = "remove";
-  verdict = trial.judge(lost);
-  check("or are taken out with a warning", !verdict.stops && verdict.warns && verdict.number == 2);
-  check("where they are", verdict.lost.size() == (is_last ? 2u : 0u));
+  result = trial.judge(lost);
+  check("or are taken out with a warning", !result.stops && result.warns && result.number == 2);
+  check("where they are", result.lost.size() == (is_last ? 2u : 0u));
   trial.parameters.lost_particles = "ignore";
-  verdict = trial.judge(lost);
-  check("or without", !verdict.stops && !verdict.warns);
+  result = trial.judge(lost);
+  check("or without", !result.stops && !result.warns);
 
   Faults squeezed = lost;
   if (trial.rank == 0)
     squeezed.squeezed = {{1, "is squeezed"}};
-  verdict = trial.judge(squeezed);
-  check("squeezed ones stop the run in any case", verdict.stops && verdict.number == 1);
-  check("and are named", verdict.first == "particle 11 is squeezed", verdict.first);
+  result = trial.judge(squeezed);
+  check("squeezed ones stop the run in any case", result.stops && result.number == 1);
+  check("and are named", result.first == "particle 11 is squeezed", result.first);
 
   // Ten steps a half period, and a little less, on one rank.
   ParticleGuard guard = trial.guard();

@@ -121,7 +121,7 @@ private:
   /// Looks for particles with something wrong before they are shared out anew; stops the run on all
   /// ranks, or returns the rows of those to take out.
   std::vector<std::size_t> inspect();
-  [[noreturn]] void stop_for(const InspectionResult &verdict);
+  [[noreturn]] void stop_for(const InspectionResult &result);
   /// Looks at who sleeps from now on.
   void update_sleep(bool wake_all);
   void compute_forces();
