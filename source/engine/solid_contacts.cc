@@ -185,6 +185,7 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
 {
   const std::vector<double> way = ways(solids);
   std::array<SurfaceContact, Shape::max_contacts> found;
+  Candidate asleep = {}; // a copy, from which contacts may be taken
   batch->n = 0;
   for (Candidate &candidate : candidates) {
     // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
@@ -198,7 +199,8 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
         solid.is_active(time) ? find(candidate, solid, position, radius, found.data()) : 0;
     if (is_awake)
       go_on(candidate, found.data(), n_found);
-    Candidate asleep = candidate; // a copy, from which contacts may be taken
+    else
+      asleep = candidate;
     for (unsigned int k = 0; k < n_found; ++k) {
       const std::int32_t record =
           is_awake ? candidate.living[k] : take_living(asleep, found[k].normal);
