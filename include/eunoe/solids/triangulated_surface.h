@@ -46,6 +46,9 @@ public:
   std::vector<Vec3> triangles() const override;
 
 private:
+  /// Of the smooth angle, with room for round-off.
+  static const double smooth_cosine;
+
   struct Facet
   {
     std::array<Vec3, 3> corner;
