@@ -7,7 +7,12 @@
 /// picks one when the program starts. All of them round every operation alike (the project is built
 /// without contraction of multiply-add), so the choice changes the speed of a run and never its
 /// bits; tests/instruction_sets compares them.
-#if defined(__x86_64__) && defined(EUNOE_INSTRUCTION_SETS)
+#if defined(EUNOE_NO_KERNELS)
+#define EUNOE_MULTIVERSION                                                                         \
+  _Pragma("GCC error \"Kernels are compiled for several instruction sets in source/contact and "   \
+          "source/engine/integrators alone: move the file there, or add its folder to "            \
+          "EUNOE_VECTOR_SOURCES in CMakeLists.txt.\"")
+#elif defined(__x86_64__) && defined(EUNOE_INSTRUCTION_SETS)
 #define EUNOE_MULTIVERSION __attribute__((noinline, target_clones(EUNOE_INSTRUCTION_SETS)))
 #else
 #define EUNOE_MULTIVERSION
