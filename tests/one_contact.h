@@ -6,8 +6,6 @@
 
 #include <eunoe/contact/contact_model.h>
 
-#include <deal.II/base/parameter_handler.h>
-
 #include "tests.h"
 
 #include <array>
@@ -99,9 +97,8 @@ private:
   static ContactLawSections sections_of(const std::string &entries)
   {
     ContactLawSections sections;
-    dealii::ParameterHandler prm;
-    sections.declare(prm);
-    prm.parse_input_from_string("subsection model parameters\n" + entries + "\nend\n");
+    test::read_entries([&](dealii::ParameterHandler &prm) { sections.declare(prm); },
+                       "subsection model parameters\n" + entries + "\nend\n");
     return sections;
   }
 

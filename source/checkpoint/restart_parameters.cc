@@ -10,19 +10,19 @@ const std::string section = "restart";
 
 void RestartParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
-  prm.add_parameter("checkpoint", checkpoint,
-                    "Whether checkpoints are written: at intervals, and when the run is asked to "
-                    "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
+  declare::enter(prm, section);
+  declare::entry(prm, "checkpoint", checkpoint,
+                 "Whether checkpoints are written: at intervals, and when the run is asked to "
+                 "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
   declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
   declare::not_negative(prm, "wall time interval", minutes,
                         "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
   declare::count(prm, "number of checkpoints", keep, "Number of checkpoints that stay.", 1);
-  prm.add_parameter("filename", filename,
-                    "Beginning of the names of the checkpoints in the output folder.");
+  declare::entry(prm, "filename", filename,
+                 "Beginning of the names of the checkpoints in the output folder.");
   declare::choice(prm, "restart", restart, "false|true|auto",
                   "Whether the run continues from the last checkpoint; auto: if there is one.");
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void RestartParameters::check(const ParameterCheck &check) const

@@ -25,7 +25,7 @@ std::string names_for_walls()
 
 void ContactParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   declare::choice(prm, "particle particle contact force method", method, contact_models().names(),
                   "Laws of a contact of two particles. All but 'linear', which has springs of "
                   "constant stiffness, are Hertz's elastic force with Tsuji's damping and "
@@ -41,7 +41,7 @@ void ContactParameters::declare(dealii::ParameterHandler &prm)
                   "Resistance against rolling: none, a torque of constant magnitude, one in "
                   "proportion to the speed of rolling, or the elastic-plastic spring-dashpot of Ai "
                   "et al. (2011).");
-  prm.leave_subsection();
+  declare::leave(prm);
   laws.declare(prm);
 }
 

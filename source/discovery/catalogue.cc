@@ -5,6 +5,8 @@
 #include <eunoe/discovery/catalogue.h>
 #include <eunoe/simulation/process.h>
 
+#include <deal.II/base/parameter_handler.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -26,22 +28,21 @@ struct EffectParameters : public ParameterSection
 
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection(effect_section);
-    prm.add_parameter("mechanism", mechanism, "What happens in the powder or the machine.");
-    prm.add_parameter("parameter", parameter, "What the amplitude is.");
-    prm.add_parameter("unit", unit, "Unit of the amplitude.");
-    prm.add_parameter("null value", null_value, "Amplitude at which the effect is absent.");
-    prm.add_parameter("scale", scale, "Distance from the null value that changes results clearly.",
-                      declare::Patterns::Double(0.));
-    prm.add_parameter("range", range, "Smallest and largest amplitude that make sense.",
-                      declare::Patterns::List(declare::Patterns::Double(), 2, 2));
+    declare::enter(prm, effect_section);
+    declare::entry(prm, "mechanism", mechanism, "What happens in the powder or the machine.");
+    declare::entry(prm, "parameter", parameter, "What the amplitude is.");
+    declare::entry(prm, "unit", unit, "Unit of the amplitude.");
+    declare::entry(prm, "null value", null_value, "Amplitude at which the effect is absent.");
+    declare::not_negative(prm, "scale", scale,
+                          "Distance from the null value that changes results clearly.");
+    declare::list(prm, "range", range, {2, 2}, "Smallest and largest amplitude that make sense.");
     declare::choice(prm, "sign", sign, "above|below|both",
                     "Side of the null value that physics allows.");
-    prm.add_parameter("confounders", confounders, "Effects that are likely to look alike.");
-    prm.add_parameter("source", source, "Where the mechanism or its size is described.");
+    declare::entry(prm, "confounders", confounders, "Effects that are likely to look alike.");
+    declare::entry(prm, "source", source, "Where the mechanism or its size is described.");
     declare::choice(prm, "experiments", experiments, "all|spreading|heap",
                     "Kind of process that can have the effect.");
-    prm.leave_subsection();
+    declare::leave(prm);
   }
 
   void check(const ParameterCheck &check) const override

@@ -3,9 +3,9 @@
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/discovery/study_parameters.h>
 
-#include <deal.II/base/utilities.h>
+#include <deal.II/base/parameter_handler.h>
 
-#include <boost/algorithm/string.hpp>
+#include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -26,48 +26,35 @@ const std::vector<RepeatedSections> &repeated_sections()
   return list;
 }
 
-/// A list separated by @p separator; an empty text is an empty list.
-void declare_list(dealii::ParameterHandler &prm, const std::string &entry,
-                  std::vector<std::string> &list, const char separator,
-                  const std::string &documentation)
-{
-  const std::string joint = separator == ';' ? "; " : ", ";
-  prm.declare_entry(entry, boost::join(list, joint), declare::Patterns::Anything(), documentation);
-  prm.add_action(entry, [&list, separator](const std::string &text) {
-    list = dealii::Utilities::split_string_list(text, separator);
-  });
-}
-
 void declare_experiment(dealii::ParameterHandler &prm, ExperimentParameters &experiment)
 {
-  prm.add_parameter("name", experiment.name,
-                    "Name by which the measured data call the experiment.");
-  prm.add_parameter("case file", experiment.case_file,
-                    "Base model: an input file of eunoe-particles with a process.");
-  declare_list(prm, "overrides", experiment.overrides, ';',
-               "Entries that differ from the case file: 'subsection/entry = value; ...'.");
-  prm.add_parameter("held out", experiment.held_out,
-                    "Whether the experiment only serves to test the answer: its data are not "
-                    "looked at before.");
+  declare::entry(prm, "name", experiment.name,
+                 "Name by which the measured data call the experiment.");
+  declare::entry(prm, "case file", experiment.case_file,
+                 "Base model: an input file of eunoe-particles with a process.");
+  declare::list(prm, "overrides", experiment.overrides, ';',
+                "Entries that differ from the case file: 'subsection/entry = value; ...'.");
+  declare::entry(prm, "held out", experiment.held_out,
+                 "Whether the experiment only serves to test the answer: its data are not "
+                 "looked at before.");
 }
 
 void declare_nuisance(dealii::ParameterHandler &prm, NuisanceParameters &nuisance)
 {
-  prm.add_parameter("name", nuisance.name, "Name of the uncertain number.");
-  declare_list(prm, "entries", nuisance.entries, ';',
-               "Entries of the case that get the value: 'subsection/entry; ...'.");
-  prm.add_parameter("value", nuisance.value,
-                    "Their value, with 'amplitude', which is 0 on average, and 'base', the value "
-                    "in the case.");
+  declare::entry(prm, "name", nuisance.name, "Name of the uncertain number.");
+  declare::list(prm, "entries", nuisance.entries, ';',
+                "Entries of the case that get the value: 'subsection/entry; ...'.");
+  declare::entry(prm, "value", nuisance.value,
+                 "Their value, with 'amplitude', which is 0 on average, and 'base', the value "
+                 "in the case.");
   declare::not_negative(prm, "standard deviation", nuisance.standard_deviation,
                         "Standard deviation of the amplitude.");
 }
 
 void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
 {
-  prm.add_parameter("level", options.level,
-                    "Accepted probability that something is said to be missing while nothing is.",
-                    declare::Patterns::Double(1e-4, 0.5));
+  declare::between(prm, "level", options.level, 1e-4, 0.5,
+                   "Accepted probability that something is said to be missing while nothing is.");
   declare::count(prm, "budget of runs", options.budget, "Most simulations of a study; 0: no limit.",
                  0);
   declare::count(prm, "null runs", options.null_runs,
@@ -76,9 +63,9 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
                  "null: runs on either side of each nuisance.", 2);
   declare::count(prm, "screen runs", options.screen_runs,
                  "screen: runs at each of the two amplitudes of an effect.", 1);
-  prm.add_parameter("second look", options.second_look,
-                    "null and screen: whether two and a half times as many runs are made where the "
-                    "first leave in doubt if anything is missing.");
+  declare::entry(prm, "second look", options.second_look,
+                 "null and screen: whether two and a half times as many runs are made where the "
+                 "first leave in doubt if anything is missing.");
   declare::count(prm, "confirm runs", options.confirm_runs,
                  "confirm: further runs for each leading effect, in each round.", 1);
   declare::count(prm, "confirm rounds", options.confirm_rounds, "confirm: most rounds.", 0);
@@ -94,38 +81,37 @@ void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
   declare::not_negative(prm, "model tolerance", options.model_tolerance,
                         "Relative deviation that is forgiven to every value of the base model, for "
                         "what its step or depth leaves out.");
-  prm.add_parameter("common random numbers", options.common_random_numbers,
-                    "Whether effects are compared with the base model at equal seeds where that "
-                    "pays.");
-  prm.add_parameter("confirm", options.confirm, "Whether leading effects get more runs.");
-  prm.add_parameter("bootstrap", options.bootstrap,
-                    "Whether thresholds take into account that the scatter is estimated; false "
-                    "for comparison only.");
+  declare::entry(prm, "common random numbers", options.common_random_numbers,
+                 "Whether effects are compared with the base model at equal seeds where that "
+                 "pays.");
+  declare::entry(prm, "confirm", options.confirm, "Whether leading effects get more runs.");
+  declare::entry(prm, "bootstrap", options.bootstrap,
+                 "Whether thresholds take into account that the scatter is estimated; false "
+                 "for comparison only.");
 }
 
 void declare_synthetic_data(dealii::ParameterHandler &prm, SyntheticDataParameters &synthetic)
 {
-  prm.enter_subsection("twin");
-  declare_list(prm, "effects", synthetic.effects, ',',
-               "The truth: 'name: amplitude, ...'; empty: nothing is missing.");
-  declare_list(prm, "overrides", synthetic.overrides, ';',
-               "Entries in which the truth's simulations differ from the model's without being "
-               "effects, such as the depth: 'subsection/entry = value; ...'.");
-  declare_list(prm, "observables", synthetic.observables, ',',
-               "Observables that are measured: 'all', or names.");
-  prm.add_parameter("time step factor", synthetic.time_step_factor,
-                    "Time step of the truth, in terms of the model's.",
-                    declare::Patterns::Double(0.05, 2.));
-  prm.add_parameter("jitter nuisances", synthetic.jitter_nuisances,
-                    "Whether the truth's nuisances are drawn from their distributions.");
+  declare::enter(prm, "twin");
+  declare::list(prm, "effects", synthetic.effects, ',',
+                "The truth: 'name: amplitude, ...'; empty: nothing is missing.");
+  declare::list(prm, "overrides", synthetic.overrides, ';',
+                "Entries in which the truth's simulations differ from the model's without being "
+                "effects, such as the depth: 'subsection/entry = value; ...'.");
+  declare::list(prm, "observables", synthetic.observables, ',',
+                "Observables that are measured: 'all', or names.");
+  declare::between(prm, "time step factor", synthetic.time_step_factor, 0.05, 2.,
+                   "Time step of the truth, in terms of the model's.");
+  declare::entry(prm, "jitter nuisances", synthetic.jitter_nuisances,
+                 "Whether the truth's nuisances are drawn from their distributions.");
   declare::not_negative(prm, "noise", synthetic.noise,
                         "Standard deviation of the measurement, relative to the observable's root "
                         "mean square over its cells.");
   declare::count(prm, "repeats", synthetic.repeats, "Number of repeated measurements.", 2);
   declare::count(prm, "seed", synthetic.seed,
                  "Seed of the truth: powder, packing, noise, nuisances.", 0);
-  prm.add_parameter("sealed file", synthetic.sealed_file, "File that keeps the truth.");
-  prm.leave_subsection();
+  declare::entry(prm, "sealed file", synthetic.sealed_file, "File that keeps the truth.");
+  declare::leave(prm);
 }
 
 bool is_plain_word(const std::string &name)
@@ -189,44 +175,43 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file,
 
 void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_synthetic_data)
 {
-  prm.enter_subsection(study_section);
-  prm.add_parameter("measured data", measured_data, "Table of what was measured.");
-  prm.add_parameter("output path", output_path,
-                    "Folder of all results; created if missing, and gone on with if it holds the "
-                    "same study.");
-  prm.add_parameter("cache path", cache_path,
-                    "Folder in which simulations are kept; several studies may share it. Empty: "
-                    "the output path with '_cache' behind it, so that deleting the results loses "
-                    "no simulation.");
-  declare_list(prm, "effects", effects, ',',
-               "Effects that may be missing: 'all' of the catalogue, or names.");
-  declare_list(prm, "excluded effects", excluded_effects, ',', "Effects that are left out.");
-  declare_list(prm, "effect folders", effect_folders, ',',
-               "Folders of effects, one file each; empty: the catalogue that comes with the "
-               "program, which may also be named 'standard' beside others.");
+  declare::enter(prm, study_section);
+  declare::entry(prm, "measured data", measured_data, "Table of what was measured.");
+  declare::entry(prm, "output path", output_path,
+                 "Folder of all results; created if missing, and gone on with if it holds the "
+                 "same study.");
+  declare::entry(prm, "cache path", cache_path,
+                 "Folder in which simulations are kept; several studies may share it. Empty: "
+                 "the output path with '_cache' behind it, so that deleting the results loses "
+                 "no simulation.");
+  declare::list(prm, "effects", effects, ',',
+                "Effects that may be missing: 'all' of the catalogue, or names.");
+  declare::list(prm, "excluded effects", excluded_effects, ',', "Effects that are left out.");
+  declare::list(prm, "effect folders", effect_folders, ',',
+                "Folders of effects, one file each; empty: the catalogue that comes with the "
+                "program, which may also be named 'standard' beside others.");
   declare_stages(prm, options);
   declare::count(prm, "ranks per run", ranks_per_run, "MPI ranks that share a simulation.", 1);
-  prm.add_parameter("write page", write_page,
-                    "Whether discovery.html is written; needs Python with Matplotlib.");
+  declare::entry(prm, "write page", write_page,
+                 "Whether discovery.html is written; needs Python with Matplotlib.");
   for (const RepeatedSections &repeated : repeated_sections()) {
     // Read before all others, as it decides what there is to be declared.
-    prm.declare_entry(
-        repeated.entry,
-        std::to_string(repeated.prefix == "experiment" ? experiments.size() : nuisances.size()),
-        declare::Patterns::Integer(0, static_cast<int>(repeated.largest)),
-        "How many subsections '" + repeated.prefix + " 0', ... there are.");
+    declare::number_of(prm, repeated.entry,
+                       repeated.prefix == "experiment" ? experiments.size() : nuisances.size(), 0,
+                       static_cast<int>(repeated.largest),
+                       "How many subsections '" + repeated.prefix + " 0', ... there are.");
   }
   for (std::size_t k = 0; k < experiments.size(); ++k) {
-    prm.enter_subsection("experiment " + std::to_string(k));
+    declare::enter(prm, "experiment " + std::to_string(k));
     declare_experiment(prm, experiments[k]);
-    prm.leave_subsection();
+    declare::leave(prm);
   }
   for (std::size_t k = 0; k < nuisances.size(); ++k) {
-    prm.enter_subsection("nuisance " + std::to_string(k));
+    declare::enter(prm, "nuisance " + std::to_string(k));
     declare_nuisance(prm, nuisances[k]);
-    prm.leave_subsection();
+    declare::leave(prm);
   }
-  prm.leave_subsection();
+  declare::leave(prm);
   if (with_synthetic_data)
     declare_synthetic_data(prm, synthetic);
 }

@@ -22,29 +22,28 @@ std::string condition_section(std::size_t k)
 void MeshParameters::declare(dealii::ParameterHandler &prm)
 {
   for (const std::string &name : path)
-    prm.enter_subsection(name);
+    declare::enter(prm, name);
   declare::choice(prm, "type", type, "dealii|gmsh|lethe",
                   "Origin of the background mesh: a generator of deal.II, a Gmsh file of "
                   "hexahedra, or one of Lethe's own cylinders.");
-  prm.add_parameter("file name", file, "gmsh: the file.");
-  prm.add_parameter("grid type", grid_type,
-                    "dealii: name of the generator, for example subdivided_hyper_rectangle; lethe: "
-                    "cylinder_classic, cylinder_balanced, cylinder_squared or "
-                    "cylinder_regularized.");
-  prm.add_parameter("grid arguments", grid_arguments,
-                    "dealii: arguments of the generator, separated by ':'; lethe: layers of cells "
-                    "along x : radius : half the length (m).");
-  prm.add_parameter("initial refinement", refinement,
-                    "Number of times that every cell is cut into eight.",
-                    declare::Patterns::Integer(0, 12));
-  prm.add_parameter("enable target size", has_target,
-                    "Whether the mesh is refined by 'target size' instead.");
-  prm.add_parameter("target size", target_size,
-                    "Cells are cut until one more cut would make the diagonal of the smallest less "
-                    "than this (m).");
+  declare::entry(prm, "file name", file, "gmsh: the file.");
+  declare::entry(prm, "grid type", grid_type,
+                 "dealii: name of the generator, for example subdivided_hyper_rectangle; lethe: "
+                 "cylinder_classic, cylinder_balanced, cylinder_squared or "
+                 "cylinder_regularized.");
+  declare::entry(prm, "grid arguments", grid_arguments,
+                 "dealii: arguments of the generator, separated by ':'; lethe: layers of cells "
+                 "along x : radius : half the length (m).");
+  declare::between(prm, "initial refinement", refinement, 0, 12,
+                   "Number of times that every cell is cut into eight.");
+  declare::entry(prm, "enable target size", has_target,
+                 "Whether the mesh is refined by 'target size' instead.");
+  declare::entry(prm, "target size", target_size,
+                 "Cells are cut until one more cut would make the diagonal of the smallest less "
+                 "than this (m).");
   placement.declare(prm);
   for (std::size_t k = 0; k < path.size(); ++k)
-    prm.leave_subsection();
+    declare::leave(prm);
 }
 
 void MeshParameters::check(const ParameterCheck &check) const
@@ -65,21 +64,19 @@ RefinementParameters::RefinementParameters(const unsigned int n)
 
 void RefinementParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(refinement_section);
-  prm.declare_entry("number of refinement boxes", std::to_string(regions.size()),
-                    declare::Patterns::Integer(0, 20),
-                    "Number of the subsections 'box 0', ..., in which the mesh is finer.");
-  prm.leave_subsection();
+  declare::enter(prm, refinement_section);
+  declare::number_of(prm, "number of refinement boxes", regions.size(), 0, 20,
+                     "Number of the subsections 'box 0', ..., in which the mesh is finer.");
+  declare::leave(prm);
   for (Region &region : regions) {
     region.mesh.declare(prm);
-    prm.enter_subsection(refinement_section);
-    prm.enter_subsection(region.mesh.path[1]);
-    prm.add_parameter("additional refinement", region.additional,
-                      "Number of times that every cell of the background mesh that meets the box "
-                      "around this mesh is cut into eight.",
-                      declare::Patterns::Integer(0, 12));
-    prm.leave_subsection();
-    prm.leave_subsection();
+    declare::enter(prm, refinement_section);
+    declare::enter(prm, region.mesh.path[1]);
+    declare::between(prm, "additional refinement", region.additional, 0, 12,
+                     "Number of times that every cell of the background mesh that meets the box "
+                     "around this mesh is cut into eight.");
+    declare::leave(prm);
+    declare::leave(prm);
   }
 }
 
@@ -91,17 +88,16 @@ void RefinementParameters::check(const ParameterCheck &check) const
 
 void GridMotionParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(motion_section);
+  declare::enter(prm, motion_section);
   declare::choice(prm, "motion type", type, "none|translational|rotational",
                   "How the background mesh moves, with all its walls and outlets.");
   for (unsigned int d = 0; d < 3; ++d)
-    prm.add_parameter(std::string("grid translational velocity ") + "xyz"[d], velocity[d],
-                      "translational: velocity (m/s).");
-  prm.add_parameter("grid rotational speed", speed, "rotational: angular velocity (rad/s).");
-  prm.add_parameter("grid rotational axis", axis,
-                    "rotational: the coordinate axis about which it turns, 0, 1 or 2.",
-                    declare::Patterns::Integer(0, 2));
-  prm.leave_subsection();
+    declare::entry(prm, std::string("grid translational velocity ") + "xyz"[d], velocity[d],
+                   "translational: velocity (m/s).");
+  declare::entry(prm, "grid rotational speed", speed, "rotational: angular velocity (rad/s).");
+  declare::between(prm, "grid rotational axis", axis, 0, 2,
+                   "rotational: the coordinate axis about which it turns, 0, 1 or 2.");
+  declare::leave(prm);
 }
 
 void GridMotionParameters::check(const ParameterCheck &check) const
@@ -123,34 +119,32 @@ std::shared_ptr<const Motion> GridMotionParameters::make() const
 
 void BoundaryParameters::declare(dealii::ParameterHandler &prm)
 {
-  using declare::Patterns::Integer;
-  prm.enter_subsection(boundary_section);
-  prm.declare_entry("number of boundary conditions", std::to_string(conditions.size()),
-                    Integer(0, 10),
-                    "Number of the subsections 'boundary condition 0', ... Boundaries without one "
-                    "are fixed walls.");
+  declare::enter(prm, boundary_section);
+  declare::number_of(prm, "number of boundary conditions", conditions.size(), 0, 10,
+                     "Number of the subsections 'boundary condition 0', ... Boundaries without one "
+                     "are fixed walls.");
   for (std::size_t k = 0; k < conditions.size(); ++k) {
     BoundaryCondition &c = conditions[k];
-    prm.enter_subsection(condition_section(k));
+    declare::enter(prm, condition_section(k));
     declare::count(prm, "boundary id", c.id, "The boundary (not for periodic ones).");
     declare::choice(prm, "type", c.type, "fixed_wall|outlet|translational|rotational|periodic",
                     "outlet: particles leave and are counted; translational and rotational: a wall "
                     "whose surface moves in place.");
-    prm.add_parameter("speed x", c.speed.x, "translational: velocity of the surface (m/s).");
-    prm.add_parameter("speed y", c.speed.y, "translational: velocity of the surface (m/s).");
-    prm.add_parameter("speed z", c.speed.z, "translational: velocity of the surface (m/s).");
-    prm.add_parameter("rotational speed", c.rotational_speed, "rotational: speed (rad/s).");
+    declare::entry(prm, "speed x", c.speed.x, "translational: velocity of the surface (m/s).");
+    declare::entry(prm, "speed y", c.speed.y, "translational: velocity of the surface (m/s).");
+    declare::entry(prm, "speed z", c.speed.z, "translational: velocity of the surface (m/s).");
+    declare::entry(prm, "rotational speed", c.rotational_speed, "rotational: speed (rad/s).");
     declare::vector(prm, "rotational vector", c.rotation_axis,
                     "rotational: direction of the axis.");
     declare::vector(prm, "point on rotational vector", c.rotation_point,
                     "rotational: a point of the axis (m).");
     declare::count(prm, "periodic id 0", c.periodic_ids[0], "periodic: one boundary ...");
     declare::count(prm, "periodic id 1", c.periodic_ids[1], "periodic: ... and its partner.");
-    prm.add_parameter("periodic direction", c.periodic_direction,
-                      "periodic: axis from one to the other, 0, 1 or 2.", Integer(0, 2));
-    prm.leave_subsection();
+    declare::between(prm, "periodic direction", c.periodic_direction, 0, 2,
+                     "periodic: axis from one to the other, 0, 1 or 2.");
+    declare::leave(prm);
   }
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void BoundaryParameters::check(const ParameterCheck &check) const

@@ -5,14 +5,14 @@ namespace eunoe {
 
 void ContactHistoryParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
-  prm.enter_subsection("contact history");
+  declare::enter(prm, "model parameters");
+  declare::enter(prm, "contact history");
   declare::count(prm, "forget interval", forget_interval,
                  "Steps after which every contact loses its memory (slip, rolling, bridges), as "
                  "in programs that lose it at every load balancing: for studies of the "
                  "consequences. 0: never.");
-  prm.leave_subsection();
-  prm.leave_subsection();
+  declare::leave(prm);
+  declare::leave(prm);
 }
 
 } // namespace eunoe

@@ -13,9 +13,9 @@ IntegratorParameters::IntegratorParameters() : sections(integrators().make_all()
 
 void IntegratorParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
+  declare::enter(prm, "model parameters");
   declare::choice(prm, "integration method", method, integrators().names(), "Time integration.");
-  prm.leave_subsection();
+  declare::leave(prm);
   for (auto &[name, section] : sections)
     section->declare(prm);
 }

@@ -6,17 +6,17 @@ namespace eunoe {
 
 void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
-  prm.enter_subsection("load balancing");
+  declare::enter(prm, "model parameters");
+  declare::enter(prm, "load balancing");
   declare::choice(prm, "load balance method", method, "none|once|frequent|dynamic",
                   "When the mesh is divided among the ranks anew. It happens at the next contact "
                   "search and never changes a result.");
   declare::count(prm, "step", step, "once: the step.");
   declare::count(prm, "frequency", frequency, "frequent: steps between balances.", 1);
-  prm.add_parameter("threshold", threshold,
-                    "dynamic: balance if the largest load less the smallest exceeds this share of "
-                    "the mean.",
-                    declare::Patterns::Double(0.));
+  declare::not_negative(
+      prm, "threshold", threshold,
+      "dynamic: balance if the largest load less the smallest exceeds this share of "
+      "the mean.");
   declare::count(prm, "dynamic check frequency", check_frequency,
                  "dynamic: steps between checks of the loads.", 1);
   declare::count(prm, "particle weight", particle_weight,
@@ -27,15 +27,15 @@ void LoadBalancingParameters::declare(dealii::ParameterHandler &prm)
                         "contacts').");
   declare::not_negative(prm, "inactive weight factor", inactive_factor,
                         "Factor on the weight of particles that sleep.");
-  prm.enter_subsection("cell weight function");
-  prm.add_parameter("Function expression", cell_weight_expression,
-                    "Cost of a cell as an expression in x, y, z, its centre (m); empty: 'cell "
-                    "weight'. Below 1 counts as 1.");
-  prm.add_parameter("Function constants", cell_weight_constants,
-                    "Constants of the expression, 'a=1, b=2'.");
-  prm.leave_subsection();
-  prm.leave_subsection();
-  prm.leave_subsection();
+  declare::enter(prm, "cell weight function");
+  declare::entry(prm, "Function expression", cell_weight_expression,
+                 "Cost of a cell as an expression in x, y, z, its centre (m); empty: 'cell "
+                 "weight'. Below 1 counts as 1.");
+  declare::entry(prm, "Function constants", cell_weight_constants,
+                 "Constants of the expression, 'a=1, b=2'.");
+  declare::leave(prm);
+  declare::leave(prm);
+  declare::leave(prm);
 }
 
 void LoadBalancingParameters::check(const ParameterCheck &check) const

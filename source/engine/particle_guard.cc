@@ -23,7 +23,7 @@ std::string format(const Vec3 &v)
 
 void FaultParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
+  declare::enter(prm, "model parameters");
   declare::choice(prm, "lost particles", lost_particles, "stop|remove|ignore",
                   "What happens when a particle has left the mesh other than through an outlet, "
                   "or has a position that is not a number: the run stops, or the particle is "
@@ -32,7 +32,7 @@ void FaultParameters::declare(dealii::ParameterHandler &prm)
       prm, "largest overlap", largest_overlap,
       "Overlap over the radius of the smaller particle above which the run stops, as "
       "no contact law holds there; 0: never.");
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 ParticleGuard::ParticleGuard(const FaultParameters &parameters, const Domain &domain,

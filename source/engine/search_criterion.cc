@@ -9,23 +9,21 @@ namespace eunoe {
 
 void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
-  prm.enter_subsection("contact detection");
+  declare::enter(prm, "model parameters");
+  declare::enter(prm, "contact detection");
   declare::choice(prm, "contact detection method", method, "constant|dynamic",
                   "Search for pairs every so many steps, or when a particle has moved too far.");
   declare::count(prm, "frequency", frequency,
                  "Steps between searches (constant) or between checks of the displacement "
                  "(dynamic).",
                  1);
-  prm.add_parameter("dynamic contact search size coefficient", displacement_share,
-                    "Share of the safe displacement after which the search is repeated.",
-                    declare::Patterns::Double(1e-3, 1.));
-  prm.add_parameter("neighborhood threshold", neighborhood_threshold,
+  declare::between(prm, "dynamic contact search size coefficient", displacement_share, 1e-3, 1.,
+                   "Share of the safe displacement after which the search is repeated.");
+  declare::at_least(prm, "neighborhood threshold", neighborhood_threshold, 1.,
                     "The search lists pairs with separations up to the skin, (threshold - 1) times "
-                    "the largest diameter. Larger: longer lists, fewer searches.",
-                    declare::Patterns::Double(1.));
-  prm.leave_subsection();
-  prm.leave_subsection();
+                    "the largest diameter. Larger: longer lists, fewer searches.");
+  declare::leave(prm);
+  declare::leave(prm);
 }
 
 void ContactDetectionParameters::check(const ParameterCheck &check) const

@@ -32,12 +32,12 @@ void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
 
 void SparseContactParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("model parameters");
-  prm.enter_subsection("adaptive sparse contacts");
-  prm.add_parameter("enable adaptive sparse contacts", enabled,
-                    "Whether particles that are at rest, and whose neighbours are, sleep: they do "
-                    "not move and their contacts with each other are not computed, until something "
-                    "moves near them.");
+  declare::enter(prm, "model parameters");
+  declare::enter(prm, "adaptive sparse contacts");
+  declare::entry(prm, "enable adaptive sparse contacts", enabled,
+                 "Whether particles that are at rest, and whose neighbours are, sleep: they do "
+                 "not move and their contacts with each other are not computed, until something "
+                 "moves near them.");
   declare::not_negative(prm, "granular temperature threshold", temperature,
                         "Square of the speed below which a particle is at rest (m2/s2).");
   declare::not_negative(
@@ -47,8 +47,8 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
                  "Steps between two checks which particles may sleep and which must wake; every "
                  "search for contacts checks as well.",
                  1);
-  prm.leave_subsection();
-  prm.leave_subsection();
+  declare::leave(prm);
+  declare::leave(prm);
 }
 
 SparseContacts::SparseContacts(const SparseContactParameters &parameters, const double time_step)

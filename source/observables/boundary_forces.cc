@@ -22,13 +22,13 @@ public:
   void declare(dealii::ParameterHandler &prm) override
   {
     RecordSection::declare(prm);
-    prm.enter_subsection("boundary forces");
-    prm.enter_subsection("center of mass coordinate");
+    declare::enter(prm, "boundary forces");
+    declare::enter(prm, "center of mass coordinate");
     for (unsigned int d = 0; d < 3; ++d)
-      prm.add_parameter(std::string(1, "xyz"[d]), centre[d],
-                        "Point about which the torques are (m).");
-    prm.leave_subsection();
-    prm.leave_subsection();
+      declare::entry(prm, std::string(1, "xyz"[d]), centre[d],
+                     "Point about which the torques are (m).");
+    declare::leave(prm);
+    declare::leave(prm);
   }
 
   Vec3 centre;

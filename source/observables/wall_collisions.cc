@@ -18,18 +18,18 @@ public:
   void declare(dealii::ParameterHandler &prm) override
   {
     for (const std::string &name : path)
-      prm.enter_subsection(name);
-    prm.add_parameter("enable particle wall collision statistics", calculation,
-                      "Whether beginning and end of every collision of a particle with a wall of "
-                      "the mesh are recorded.");
-    prm.add_parameter("log collisions with all walls", all_walls,
-                      "Whether all walls of the mesh count, or those of 'wall boundary ids'.");
-    prm.add_parameter("wall boundary ids", ids, "Boundaries that count if not all do.",
-                      declare::Patterns::List(declare::Patterns::Integer(0)));
-    prm.add_parameter("collision statistics file", file,
-                      "Name of the file; its values are separated by commas.");
+      declare::enter(prm, name);
+    declare::entry(prm, "enable particle wall collision statistics", calculation,
+                   "Whether beginning and end of every collision of a particle with a wall of "
+                   "the mesh are recorded.");
+    declare::entry(prm, "log collisions with all walls", all_walls,
+                   "Whether all walls of the mesh count, or those of 'wall boundary ids'.");
+    declare::list(prm, "wall boundary ids", ids, {0, std::numeric_limits<unsigned int>::max(), 0},
+                  "Boundaries that count if not all do.");
+    declare::entry(prm, "collision statistics file", file,
+                   "Name of the file; its values are separated by commas.");
     for (std::size_t k = 0; k < path.size(); ++k)
-      prm.leave_subsection();
+      declare::leave(prm);
   }
 
   void check(const ParameterCheck &check) const override

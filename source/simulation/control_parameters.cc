@@ -13,32 +13,31 @@ const std::string section = "simulation control";
 
 void ControlParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   declare::not_negative(prm, "time step", time_step, "Time step (s).");
   declare::choice(prm, "end control", end_control, "time|iteration",
                   "Whether 'time end' or 'iteration end' ends the run. A process may end it "
                   "earlier, when all its work is done.");
   declare::not_negative(prm, "time end", time_end, "Simulated time at which the run ends (s).");
   declare::count(prm, "iteration end", iteration_end, "Number of steps of the run.");
-  prm.add_parameter("output path", output_path, "Folder of all results; created if missing.");
-  prm.add_parameter("output name", output_name,
-                    "Beginning of the names of the .pvd and .vtu files.");
+  declare::entry(prm, "output path", output_path, "Folder of all results; created if missing.");
+  declare::entry(prm, "output name", output_name,
+                 "Beginning of the names of the .pvd and .vtu files.");
   declare::choice(prm, "output control", output_control, "iteration|time",
                   "Whether 'output frequency' or 'output time' rules the files for pictures.");
   declare::count(prm, "output frequency", output_frequency,
                  "Steps between files for pictures; 0: none.");
   declare::not_negative(prm, "output time", output_time,
                         "Simulated time between files for pictures (s).");
-  prm.add_parameter("output time interval", output_window,
-                    "Simulated times between which files for pictures are written (s).",
-                    declare::Patterns::List(declare::Patterns::Double(), 2, 2));
+  declare::list(prm, "output time interval", output_window, {2, 2},
+                "Simulated times between which files for pictures are written (s).");
   declare::count(prm, "log frequency", log_frequency,
                  "Steps between lines of a log that is not on a terminal; 0: none.");
   declare::count(prm, "seed", seed,
                  "Seed of all random numbers, in the place of every other entry for a seed; -1: "
                  "each entry's own. The option --seed gives it, too.",
                  -1);
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void ControlParameters::check(const ParameterCheck &check) const

@@ -18,13 +18,13 @@ std::vector<PictureField> Observable::fields(Simulation &) const
 void RecordSection::declare(dealii::ParameterHandler &prm)
 {
   for (const std::string &name : path)
-    prm.enter_subsection(name);
-  prm.add_parameter("calculation", calculation, texts.what);
-  prm.add_parameter("filename", file, texts.naming);
+    declare::enter(prm, name);
+  declare::entry(prm, "calculation", calculation, texts.what);
+  declare::entry(prm, "filename", file, texts.naming);
   if (frequency > 0)
     declare::count(prm, "output frequency", frequency, "Steps between two rows.", 1);
   for (std::size_t k = 0; k < path.size(); ++k)
-    prm.leave_subsection();
+    declare::leave(prm);
 }
 
 void RecordSection::check(const ParameterCheck &check) const
@@ -35,9 +35,9 @@ void RecordSection::check(const ParameterCheck &check) const
 
 void SwitchSection::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection("post-processing");
-  prm.add_parameter(entry, calculation, what);
-  prm.leave_subsection();
+  declare::enter(prm, "post-processing");
+  declare::entry(prm, entry, calculation, what);
+  declare::leave(prm);
 }
 
 } // namespace eunoe

@@ -3,6 +3,8 @@
 #include <eunoe/simulation/lethe_spellings.h>
 #include <eunoe/simulation/parameters.h>
 
+#include <deal.II/base/parameter_handler.h>
+
 #include "general_seed.h"
 
 #include <algorithm>

@@ -17,20 +17,19 @@ std::string wall_section(std::size_t k)
 
 void FloatingWallParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
-  prm.declare_entry("number of floating walls", std::to_string(walls.size()),
-                    declare::Patterns::Integer(0, 50),
-                    "Number of the subsections 'wall 0', 'wall 1', ...: infinite planes.");
+  declare::enter(prm, section);
+  declare::number_of(prm, "number of floating walls", walls.size(), 0, 50,
+                     "Number of the subsections 'wall 0', 'wall 1', ...: infinite planes.");
   for (std::size_t k = 0; k < walls.size(); ++k) {
-    prm.enter_subsection(wall_section(k));
+    declare::enter(prm, wall_section(k));
     declare::vector(prm, "point on wall", walls[k].point, "A point of the plane (m).");
     declare::vector(prm, "normal vector", walls[k].normal,
                     "Direction from the plane towards the particles, of any length.");
-    prm.add_parameter("start time", walls[k].start, "The wall acts from here (s) ...");
-    prm.add_parameter("end time", walls[k].end, "... to here (s).");
-    prm.leave_subsection();
+    declare::entry(prm, "start time", walls[k].start, "The wall acts from here (s) ...");
+    declare::entry(prm, "end time", walls[k].end, "... to here (s).");
+    declare::leave(prm);
   }
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void FloatingWallParameters::check(const ParameterCheck &check) const

@@ -5,10 +5,10 @@ namespace eunoe {
 
 void Placement::declare(dealii::ParameterHandler &prm)
 {
-  prm.add_parameter("scale", scale, "Factor on all coordinates.", declare::Patterns::Double(0.));
+  declare::not_negative(prm, "scale", scale, "Factor on all coordinates.");
   declare::vector(prm, "initial rotation axis", axis,
                   "Axis through the origin about which the scaled mesh is turned.");
-  prm.add_parameter("initial rotation angle", angle, "Angle of that turn (rad).");
+  declare::entry(prm, "initial rotation angle", angle, "Angle of that turn (rad).");
   declare::vector(prm, "initial translation", translation, "Shift after the turn (m).");
 }
 

@@ -7,7 +7,7 @@ namespace eunoe {
 
 namespace {
 
-const ParameterCheck::Path section = {"solid objects", "solid surfaces"};
+const ParameterCheck::Path surfaces_section = {"solid objects", "solid surfaces"};
 
 std::string object_section(std::size_t k)
 {
@@ -16,7 +16,7 @@ std::string object_section(std::size_t k)
 
 ParameterCheck::Path path_of(std::size_t k, const std::string &subsection = "")
 {
-  ParameterCheck::Path path = section;
+  ParameterCheck::Path path = surfaces_section;
   path.push_back(object_section(k));
   if (!subsection.empty())
     path.push_back(subsection);
@@ -68,44 +68,42 @@ std::shared_ptr<const Motion> SolidObject::make_motion(const double time_step) c
 
 void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section[0]);
-  prm.enter_subsection(section[1]);
-  prm.declare_entry("number of solids", std::to_string(objects.size()),
-                    declare::Patterns::Integer(0, 50),
-                    "Number of the subsections 'solid object 0', 'solid object 1', ...");
+  declare::enter(prm, surfaces_section[0]);
+  declare::enter(prm, surfaces_section[1]);
+  declare::number_of(prm, "number of solids", objects.size(), 0, 50,
+                     "Number of the subsections 'solid object 0', 'solid object 1', ...");
   for (std::size_t k = 0; k < objects.size(); ++k) {
     SolidObject &object = objects[k];
-    prm.enter_subsection(object_section(k));
-    prm.enter_subsection("mesh");
+    declare::enter(prm, object_section(k));
+    declare::enter(prm, "mesh");
     declare::choice(prm, "type", object.type, "gmsh|shape|dealii",
                     "Origin of the surface: a Gmsh file of triangles, a shape made in code, or a "
                     "generator of deal.II, in the plane z = 0 or hyper_sphere.");
-    prm.add_parameter("file name", object.file, "gmsh: the file.");
-    prm.add_parameter("grid type", object.shape,
-                      "shape: which one (see 'grid arguments'). dealii: name of the generator.");
-    prm.add_parameter(
-        "grid arguments", object.arguments,
+    declare::entry(prm, "file name", object.file, "gmsh: the file.");
+    declare::entry(prm, "grid type", object.shape,
+                   "shape: which one (see 'grid arguments'). dealii: name of the generator.");
+    declare::entry(
+        prm, "grid arguments", object.arguments,
         "shape: its arguments (m). plane: corner : edge : edge. box: lower : upper. "
         "cylinder_shell: centre of one end : axis : radius : facets. disc: centre of the "
         "lower end of the rim : axis to the face : radius : facets. half_round_bar: "
         "start of the lowest line : length in z : radius : height : facets. "
         "flat_blade: start of the front lower edge : length in z : thickness : "
         "height. dealii: those of the generator.");
-    prm.add_parameter("initial refinement", object.refinement,
-                      "dealii: number of times that every cell is cut into four.",
-                      declare::Patterns::Integer(0, 8));
-    prm.add_parameter("simplex", object.simplex, "Must be true: surfaces are made of triangles.");
+    declare::between(prm, "initial refinement", object.refinement, 0, 8,
+                     "dealii: number of times that every cell is cut into four.");
+    declare::entry(prm, "simplex", object.simplex, "Must be true: surfaces are made of triangles.");
     object.placement.declare(prm);
-    prm.leave_subsection();
+    declare::leave(prm);
     declare::vector(prm, "center of rotation", object.centre,
                     "Centre of rotation at the start, which moves with the solid (m).");
-    prm.add_parameter("output solid object", object.output, "Whether the solid is drawn.");
+    declare::entry(prm, "output solid object", object.output, "Whether the solid is drawn.");
     for (auto &[name, motion] : object.motions)
       motion->declare(prm);
-    prm.leave_subsection();
+    declare::leave(prm);
   }
-  prm.leave_subsection();
-  prm.leave_subsection();
+  declare::leave(prm);
+  declare::leave(prm);
 }
 
 void SolidObjectParameters::check(const ParameterCheck &check) const

@@ -3,6 +3,8 @@
 #include <eunoe/state/new_particle.h>
 #include <eunoe/state/physical_properties.h>
 
+#include <deal.II/base/parameter_handler.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -20,10 +22,10 @@ std::string type_section(unsigned int t)
 const char *const common = "common";
 
 /// A number, or the word 'common'.
-class OwnOrCommon : public declare::Patterns::PatternBase
+class OwnOrCommon : public dealii::Patterns::PatternBase
 {
 public:
-  explicit OwnOrCommon(const declare::Patterns::Double &number) : number(number) {}
+  explicit OwnOrCommon(const dealii::Patterns::Double &number) : number(number) {}
 
   bool match(const std::string &text) const override
   {
@@ -39,7 +41,7 @@ public:
   }
 
 private:
-  const declare::Patterns::Double number;
+  const dealii::Patterns::Double number;
 };
 
 std::string wall_section(std::size_t k)
@@ -93,22 +95,20 @@ std::map<std::string, MaterialEntry> wall_properties()
 void declare_material(dealii::ParameterHandler &prm, Material &m, const std::string &of)
 {
   for (const auto &[name, p] : of == "wall" ? wall_properties() : material_entries().make_all())
-    prm.add_parameter(name + " " + of, p.value(m), p.documentation,
-                      declare::Patterns::Double(p.smallest, p.largest));
+    declare::between(prm, name + " " + of, p.value(m), p.smallest, p.largest, p.documentation);
 }
 
 /// The same entries of a material that takes those which it lacks from the common one of walls.
 void declare_wall_material(dealii::ParameterHandler &prm, WallMaterial &material)
 {
-  prm.add_parameter(
-      "surfaces", material.surfaces,
-      "Names of the walls and solids of this material, separated by commas: 'boundary "
-      "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
-      "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
-      "that have one.");
+  declare::entry(prm, "surfaces", material.surfaces,
+                 "Names of the walls and solids of this material, separated by commas: 'boundary "
+                 "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
+                 "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
+                 "that have one.");
   for (const auto &[name, p] : wall_properties()) {
     const std::string entry = name + " wall";
-    prm.declare_entry(entry, common, OwnOrCommon(declare::Patterns::Double(p.smallest, p.largest)),
+    prm.declare_entry(entry, common, OwnOrCommon(dealii::Patterns::Double(p.smallest, p.largest)),
                       p.documentation + " 'common': that of all other walls.");
     prm.add_action(entry, [&material, name = name](const std::string &value) {
       material.own.erase(name);
@@ -193,34 +193,32 @@ double PhysicalProperties::largest_diameter() const
 
 void PhysicalProperties::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   declare::vector(prm, "g", gravity, "Acceleration of gravity (m/s2).");
-  prm.declare_entry("number of particle types", std::to_string(types.size()),
-                    declare::Patterns::Integer(1, 5),
-                    "Number of the subsections 'particle type 0', 'particle type 1', ...");
+  declare::number_of(prm, "number of particle types", types.size(), 1, 5,
+                     "Number of the subsections 'particle type 0', 'particle type 1', ...");
   for (unsigned int t = 0; t < types.size(); ++t) {
     ParticleType &type = types[t];
-    prm.enter_subsection(type_section(t));
+    declare::enter(prm, type_section(t));
     type.sizes.declare(prm);
     declare::count(prm, "number of particles", type.number,
                    "Number of particles of this type to insert.");
-    prm.declare_alias("number of particles", "number");
+    declare::alias(prm, "number of particles", "number");
     declare::not_negative(prm, "density particles", type.density, "Density (kg/m3).");
     declare_material(prm, type.material, "particles");
-    prm.leave_subsection();
+    declare::leave(prm);
   }
   declare_material(prm, wall, "wall");
-  prm.declare_entry(
-      "number of wall materials", std::to_string(wall_materials.size()),
-      declare::Patterns::Integer(0, 20),
+  declare::number_of(
+      prm, "number of wall materials", wall_materials.size(), 0, 20,
       "Number of the subsections 'wall material 0', ...: walls and solids that differ "
       "from the common ones.");
   for (std::size_t k = 0; k < wall_materials.size(); ++k) {
-    prm.enter_subsection(wall_section(k));
+    declare::enter(prm, wall_section(k));
     declare_wall_material(prm, wall_materials[k]);
-    prm.leave_subsection();
+    declare::leave(prm);
   }
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void PhysicalProperties::check(const ParameterCheck &check) const

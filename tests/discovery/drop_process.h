@@ -23,13 +23,13 @@ class DropSection : public ProcessSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("drop");
+    declare::enter(prm, "drop");
     declare::count(prm, "number", n_particles, "Number of particles.", 1);
     declare::count(prm, "seed", seed, "Seed of their places.");
     declare::not_negative(prm, "duration", duration, "Time at which all is measured (s).");
     declare::not_negative(prm, "largest speed", largest_speed,
                           "Above it the run breaks off (m/s).");
-    prm.leave_subsection();
+    declare::leave(prm);
   }
   void check_with(const Parameters &, const ParameterCheck &check) const override
   {

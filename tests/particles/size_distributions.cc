@@ -2,8 +2,6 @@
 
 #include <eunoe/core/random.h>
 
-#include <deal.II/base/parameter_handler.h>
-
 #include "../tests.h"
 
 #include <fstream>
@@ -18,9 +16,7 @@ constexpr unsigned int n = 200000;
 /// Reads further entries, as an input file has them.
 void set(SizeDistributionParameters &parameters, const std::string &entries)
 {
-  dealii::ParameterHandler prm;
-  parameters.declare(prm);
-  prm.parse_input_from_string(entries);
+  read_entries([&](dealii::ParameterHandler &prm) { parameters.declare(prm); }, entries);
 }
 
 std::vector<double> draw(const SizeDistributionParameters &parameters)

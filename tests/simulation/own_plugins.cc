@@ -2,7 +2,7 @@
 // an entry of its own and each in one piece of code, which names nothing outside of itself: here
 // they all stand in the test. A particle that they make and move is where it must be.
 
-#include <deal.II/base/parameter_handler.h>
+#include <eunoe/core/declare.h>
 
 #include "../tests.h"
 
@@ -30,9 +30,9 @@ class WindSection : public LoadSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.add_parameter("wind", acceleration, "Acceleration along x (m/s2).");
-    prm.leave_subsection();
+    declare::enter(prm, "model parameters");
+    declare::entry(prm, "wind", acceleration, "Acceleration along x (m/s2).");
+    declare::leave(prm);
   }
   std::unique_ptr<Load> make(const PhysicalProperties &) const override
   {
@@ -72,9 +72,9 @@ class SyrupSection : public IntegratorSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.add_parameter("syrup share", share, "Share of the velocity.");
-    prm.leave_subsection();
+    declare::enter(prm, "model parameters");
+    declare::entry(prm, "syrup share", share, "Share of the velocity.");
+    declare::leave(prm);
   }
   void check(const ParameterCheck &check) const override
   {
@@ -121,7 +121,7 @@ class SingleSection : public InsertionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.add_parameter("single height", height, "Place on the z-axis (m).");
+    declare::entry(prm, "single height", height, "Place on the z-axis (m).");
   }
   void check(const InsertionSettings &, const ParameterCheck &check) const override
   {
@@ -164,7 +164,7 @@ class PairSection : public SizeDistributionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.add_parameter("other diameter", other, "Diameter of half the particles (m).");
+    declare::entry(prm, "other diameter", other, "Diameter of half the particles (m).");
   }
   void check(const SizeDistributionParameters &, const ParameterCheck &check,
              const ParameterCheck::Path &path) const override
@@ -205,7 +205,7 @@ class FlickerSection : public MotionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.add_parameter("flickers", flickers, "Whether the solid flickers.");
+    declare::entry(prm, "flickers", flickers, "Whether the solid flickers.");
   }
   std::unique_ptr<Motion> make(const Vec3 &centre, double) const override
   {
@@ -247,11 +247,10 @@ std::string problems_of(const std::string &text)
 std::string moves(const std::string &entries, double time)
 {
   SolidObjectParameters solids(1);
-  dealii::ParameterHandler prm;
-  solids.declare(prm);
-  prm.parse_input_from_string("subsection solid objects\n subsection solid surfaces\n"
-                              "  subsection solid object 0\n   set center of rotation = 1, 0, 0\n" +
-                              entries + "  end\n end\nend\n");
+  read_entries([&](dealii::ParameterHandler &prm) { solids.declare(prm); },
+               "subsection solid objects\n subsection solid surfaces\n"
+               "  subsection solid object 0\n   set center of rotation = 1, 0, 0\n" +
+                   entries + "  end\n end\nend\n");
   try {
     return format(solids.objects[0].make_motion(1e-3)->at(time).centre.x);
   } catch (const std::invalid_argument &error) {

@@ -99,8 +99,8 @@ class CapillarySection : public ContactLawSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection(path[0]);
-    prm.enter_subsection(path[1]);
+    declare::enter(prm, path[0]);
+    declare::enter(prm, path[1]);
     declare::not_negative(prm, "surface tension", liquid.surface_tension,
                           "Surface tension of the liquid that forms a bridge where two bodies "
                           "touch and holds it until they are too far apart (N/m); 0: no bridges.");
@@ -110,8 +110,8 @@ public:
                           "Volume of a bridge over that of a particle.");
     declare::not_negative(prm, "bridge volume", liquid.bridge_volume,
                           "Volume of every bridge (m3); 0: 'volume share' rules.");
-    prm.leave_subsection();
-    prm.leave_subsection();
+    declare::leave(prm);
+    declare::leave(prm);
   }
 
   void check(const ParameterCheck &check) const override

@@ -77,14 +77,14 @@ class ChargeSection : public ContactLawSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.enter_subsection("electrostatic charge");
+    declare::enter(prm, "model parameters");
+    declare::enter(prm, "electrostatic charge");
     declare::not_negative(
         prm, "cut-off share", cut_off_share,
         "Separation at which the force between two charged particles has fallen to "
         "zero, over the largest radius. The larger, the longer the neighbour lists.");
-    prm.leave_subsection();
-    prm.leave_subsection();
+    declare::leave(prm);
+    declare::leave(prm);
   }
 
   std::unique_ptr<ContactLaw> make(const Materials &materials,

@@ -65,12 +65,11 @@ class DmtSection : public ContactLawSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.add_parameter("dmt cut-off threshold", cut_off_share,
-                      "Share of the pull-off force below which the long-range attraction is "
-                      "dropped.",
-                      declare::Patterns::Double(1e-6, 1.));
-    prm.leave_subsection();
+    declare::enter(prm, "model parameters");
+    declare::between(prm, "dmt cut-off threshold", cut_off_share, 1e-6, 1.,
+                     "Share of the pull-off force below which the long-range attraction is "
+                     "dropped.");
+    declare::leave(prm);
   }
 
   std::unique_ptr<ContactLaw> make(const Materials &materials, double) const override

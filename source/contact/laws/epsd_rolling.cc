@@ -86,14 +86,13 @@ class EpsdSection : public ContactLawSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.add_parameter("f coefficient", f,
-                      "EPSD: share of the viscous torque left once the spring is fully mobilised.",
-                      declare::Patterns::Double(0., 1.));
+    declare::enter(prm, "model parameters");
+    declare::between(prm, "f coefficient", f, 0., 1.,
+                     "EPSD: share of the viscous torque left once the spring is fully mobilised.");
     declare::choice(prm, "epsd inertia", inertia, "contact point|centre",
                     "EPSD: point about which the moments of inertia in the damping are taken. Ai "
                     "et al. (2011) use the contact point.");
-    prm.leave_subsection();
+    declare::leave(prm);
   }
 
   std::unique_ptr<ContactLaw> make(const Materials &materials, double) const override

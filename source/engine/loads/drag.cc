@@ -44,8 +44,8 @@ class DragSection : public LoadSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.enter_subsection("model parameters");
-    prm.enter_subsection("drag");
+    declare::enter(prm, "model parameters");
+    declare::enter(prm, "drag");
     declare::not_negative(
         prm, "dynamic viscosity", viscosity,
         "Dynamic viscosity of the still gas around the particles (Pa s), 1.8e-5 for "
@@ -54,8 +54,8 @@ public:
         prm, "density", density,
         "Density of that gas (kg/m3), 1.2 for air. 0: Stokes's drag; else that of "
         "Schiller and Naumann.");
-    prm.leave_subsection();
-    prm.leave_subsection();
+    declare::leave(prm);
+    declare::leave(prm);
   }
 
   std::unique_ptr<Load> make(const PhysicalProperties &) const override

@@ -29,9 +29,8 @@ void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
       prm, "rest energy share", p.rest_energy_share,
       "A particle is calm when its kinetic energy of translation is below this share of m g d, "
       "the energy that lifts it by its diameter.");
-  prm.add_parameter("moving share", p.moving_share,
-                    "Share of the particles that may still move in powder at rest.",
-                    declare::Patterns::Double(0., 1.));
+  declare::between(prm, "moving share", p.moving_share, 0., 1.,
+                   "Share of the particles that may still move in powder at rest.");
   declare::count(prm, "rest check frequency", p.rest_check_frequency,
                  "Steps between two checks of the energies.", 1);
   not_negative(
@@ -48,8 +47,7 @@ void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
 void HeapParameters::declare(dealii::ParameterHandler &prm)
 {
   using declare::not_negative;
-  using declare::Patterns::Integer;
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   not_negative(prm, "tube inner diameter", tube_diameter, "Inner diameter of the tube (m).");
   not_negative(prm, "disc diameter", disc_diameter,
                "Diameter of the disc on which the heap stands (m), at least that of the tube.");
@@ -61,27 +59,23 @@ void HeapParameters::declare(dealii::ParameterHandler &prm)
       prm, "disc rim height", rim_height,
       "Height of the disc's vertical rim, below which powder falls freely (m); 0: five of the "
       "largest diameters.");
-  prm.add_parameter("facets", n_facets, "Number of flat facets around the tube and the disc.",
-                    Integer(25, 1000));
+  declare::between(prm, "facets", n_facets, 25, 1000,
+                   "Number of flat facets around the tube and the disc.");
   not_negative(prm, "lifting velocity", lifting_velocity,
                "Velocity at which the tube rises (m/s).");
   declare_powder(prm, *this);
   declare_rest(prm, *this);
-  prm.add_parameter("number of views", n_views,
-                    "Number of directions, evenly spread over 180 degrees, in which the heap is "
-                    "seen.",
-                    Integer(1, 1000));
-  prm.add_parameter("profile bins", n_bins,
-                    "Number of bins of the mean profile across the disc's diameter.",
-                    Integer(10, 10000));
-  prm.add_parameter(
-      "measured profile", measured_profile,
-      "File with a measured profile to compare with: a table with the columns 'x' and "
-      "'height' (m), x from the centre of the disc; empty: none.");
-  prm.add_parameter(
-      "heap picture", picture,
-      "Whether the particles are written when the heap is measured (<name>_heap.pvd).");
-  prm.leave_subsection();
+  declare::between(prm, "number of views", n_views, 1, 1000,
+                   "Number of directions, evenly spread over 180 degrees, in which the heap is "
+                   "seen.");
+  declare::between(prm, "profile bins", n_bins, 10, 10000,
+                   "Number of bins of the mean profile across the disc's diameter.");
+  declare::entry(prm, "measured profile", measured_profile,
+                 "File with a measured profile to compare with: a table with the columns 'x' and "
+                 "'height' (m), x from the centre of the disc; empty: none.");
+  declare::entry(prm, "heap picture", picture,
+                 "Whether the particles are written when the heap is measured (<name>_heap.pvd).");
+  declare::leave(prm);
 }
 
 void HeapParameters::check(const ParameterCheck &check) const

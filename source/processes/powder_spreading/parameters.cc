@@ -28,7 +28,6 @@ void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
 void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
   using declare::not_negative;
-  using declare::Patterns::Integer;
   declare::choice(prm, "spreader", p.spreader, "half round|flat blade", "Shape of the spreader.");
   not_negative(prm, "spreader radius R_s", p.spreader_radius, "half round: radius (m).");
   not_negative(prm, "spreader thickness", p.spreader_thickness, "flat blade: thickness in x (m).");
@@ -36,18 +35,17 @@ void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)
       prm, "spreader height", p.spreader_height,
       "Height of the spreader over its lowest line (m); 0: as high as the powder before it "
       "can pile up.");
-  prm.add_parameter("spreader facets", p.spreader_facets,
-                    "half round: number of facets of the half circle.", Integer(4, 1000));
-  prm.add_parameter("spreader clearance delta_s", p.clearance,
-                    "Height of the spreader's lowest line over the transfer plate (m).");
+  declare::between(prm, "spreader facets", p.spreader_facets, 4, 1000,
+                   "half round: number of facets of the half circle.");
+  declare::entry(prm, "spreader clearance delta_s", p.clearance,
+                 "Height of the spreader's lowest line over the transfer plate (m).");
 }
 
 void declare_passes(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
   using declare::not_negative;
-  using declare::Patterns::Integer;
-  prm.add_parameter("number of layers", p.n_layers,
-                    "Number of passes; the layers are numbered from 0.", Integer(0, 10000));
+  declare::between(prm, "number of layers", p.n_layers, 0, 10000,
+                   "Number of passes; the layers are numbered from 0.");
   not_negative(prm, "layer thickness delta_l", p.layer_thickness,
                "Stroke of the measuring plate after every pass (m).");
   not_negative(prm, "spreading velocity v_s", p.velocity, "Velocity of the spreader (m/s).");
@@ -60,10 +58,9 @@ void declare_passes(dealii::ParameterHandler &prm, SpreadingParameters &p)
       "Mean velocity of the measuring plate's strokes, which start and end smoothly (m/s).");
   not_negative(prm, "feedstock platform velocity", p.platform_velocity,
                "Mean velocity of the feedstock platform's strokes (m/s).");
-  prm.add_parameter("pass overlap", p.overlap,
-                    "Share of a pass after which the next may start, as far as the plates' strokes "
-                    "allow it; 1: one after the other.",
-                    declare::Patterns::Double(0.05, 1.));
+  declare::between(prm, "pass overlap", p.overlap, 0.05, 1.,
+                   "Share of a pass after which the next may start, as far as the plates' strokes "
+                   "allow it; 1: one after the other.");
   not_negative(
       prm, "rest before weighing", p.rest_before_weighing,
       "Time between the passing of the spreader's rear over the end of the measuring plate "
@@ -93,9 +90,8 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
 void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
   using declare::not_negative;
-  using declare::Patterns::Double;
-  prm.add_parameter("spreader clearance offset", p.clearance_offset,
-                    "Error of the clearance: the spreader is higher by this (m).", Double());
+  declare::entry(prm, "spreader clearance offset", p.clearance_offset,
+                 "Error of the clearance: the spreader is higher by this (m).");
   not_negative(
       prm, "spreader tilt", p.spreader_tilt,
       "Difference between the largest and the smallest clearance over the depth (m), about "
@@ -105,21 +101,19 @@ void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p
                "Amplitude of a vertical vibration of the spreader (m).");
   not_negative(prm, "spreader vibration frequency", p.vibration_frequency,
                "Frequency of that vibration (Hz).");
-  prm.add_parameter("layer thickness error", p.plate_stroke_error,
-                    "Relative error of the measuring plate's stroke: it falls by delta_l (1 + "
-                    "error), while the relative densities are computed with delta_l.",
-                    Double());
-  prm.add_parameter("feedstock stroke error", p.stroke_error,
-                    "Relative error of the feedstock platform's strokes.", Double());
+  declare::entry(prm, "layer thickness error", p.plate_stroke_error,
+                 "Relative error of the measuring plate's stroke: it falls by delta_l (1 + "
+                 "error), while the relative densities are computed with delta_l.");
+  declare::entry(prm, "feedstock stroke error", p.stroke_error,
+                 "Relative error of the feedstock platform's strokes.");
   not_negative(prm, "plate recoil", p.plate_recoil,
                "Distance by which the measuring plate yields while the spreader passes over it "
                "(m): a squared sine of the time between the spreader's arrival and its "
                "leaving.");
-  prm.add_parameter("side walls", p.side_walls,
-                    "Whether the slice ends at two walls in z, instead of being periodic.");
-  prm.add_parameter("side wall friction", p.side_wall_friction,
-                    "Sliding friction coefficient of the side walls; -1: that of all walls.",
-                    Double(-1.));
+  declare::entry(prm, "side walls", p.side_walls,
+                 "Whether the slice ends at two walls in z, instead of being periodic.");
+  declare::at_least(prm, "side wall friction", p.side_wall_friction, -1.,
+                    "Sliding friction coefficient of the side walls; -1: that of all walls.");
 }
 
 void declare_measurement(dealii::ParameterHandler &prm, SpreadingParameters &p)
@@ -128,8 +122,8 @@ void declare_measurement(dealii::ParameterHandler &prm, SpreadingParameters &p)
                  "Number of bins along the plate in which the surface's height and the mean "
                  "diameter are measured after the last layer.",
                  1);
-  prm.add_parameter("layer pictures", p.layer_pictures,
-                    "Whether the particles are written at every weighing (<name>_layers.pvd).");
+  declare::entry(prm, "layer pictures", p.layer_pictures,
+                 "Whether the particles are written at every weighing (<name>_layers.pvd).");
   declare::count(prm, "spreader force sampling", p.force_sampling,
                  "Steps between two readings of the force on the spreader.", 1);
 }
@@ -138,14 +132,14 @@ void declare_measurement(dealii::ParameterHandler &prm, SpreadingParameters &p)
 
 void SpreadingParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   declare_apparatus(prm, *this);
   declare_spreader(prm, *this);
   declare_passes(prm, *this);
   declare_feedstock(prm, *this);
   declare_imperfections(prm, *this);
   declare_measurement(prm, *this);
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void SpreadingParameters::check(const ParameterCheck &check) const

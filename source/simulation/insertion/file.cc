@@ -136,10 +136,9 @@ class FileSection : public InsertionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    prm.add_parameter(
-        "list of input files", files,
-        "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
-        "w_x; w_y; w_z; diameters'; after the last the first is used again.");
+    declare::entry(prm, "list of input files", files,
+                   "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
+                   "w_x; w_y; w_z; diameters'; after the last the first is used again.");
   }
 
   void check(const InsertionSettings &, const ParameterCheck &check) const override

@@ -20,7 +20,7 @@ std::pair<std::size_t, std::size_t> share_of(const std::size_t n, MPI_Comm comm)
 
 void InsertionParameters::declare(dealii::ParameterHandler &prm)
 {
-  prm.enter_subsection(section);
+  declare::enter(prm, section);
   declare::choice(
       prm, "insertion method", method, insertion_methods().names(),
       "Where the particles come from: a random grid in a box (volume), the lists of "
@@ -30,21 +30,21 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
                  "Steps between events, the first of which is at the start; 0: a single event.");
   declare::corners(prm, "insertion box points coordinates", box_lower, box_upper,
                    "volume, packed: two opposite corners of the box (m).");
-  prm.add_parameter("insertion maximum offset", maximum_offset,
-                    "volume: largest random shift of a particle over the largest diameter; plane: "
-                    "likewise, as far as the particle stays in its cell.",
-                    declare::Patterns::Double(0.));
+  declare::not_negative(
+      prm, "insertion maximum offset", maximum_offset,
+      "volume: largest random shift of a particle over the largest diameter; plane: "
+      "likewise, as far as the particle stays in its cell.");
   declare::count(prm, "insertion prn seed", seed,
                  "Seed of the random shifts (volume, plane) or places (packed).");
-  prm.enter_subsection("insertion acceptance function");
-  prm.add_parameter("Function expression", acceptance,
-                    "Expression in x, y, z: volume uses points of the grid, and packed places, "
-                    "where it is positive.");
-  prm.add_parameter("Function constants", acceptance_constants,
-                    "Constants of the expression, 'a=1, b=2'.");
-  prm.leave_subsection();
-  prm.add_parameter("remove particles", removes,
-                    "Whether the removal box is emptied before every event.");
+  declare::enter(prm, "insertion acceptance function");
+  declare::entry(prm, "Function expression", acceptance,
+                 "Expression in x, y, z: volume uses points of the grid, and packed places, "
+                 "where it is positive.");
+  declare::entry(prm, "Function constants", acceptance_constants,
+                 "Constants of the expression, 'a=1, b=2'.");
+  declare::leave(prm);
+  declare::entry(prm, "remove particles", removes,
+                 "Whether the removal box is emptied before every event.");
   declare::corners(prm, "removal box points coordinates", removal_lower, removal_upper,
                    "Two opposite corners of the removal box (m).");
   declare::vector(prm, "initial velocity", velocity,
@@ -53,7 +53,7 @@ void InsertionParameters::declare(dealii::ParameterHandler &prm)
                   "volume, plane, packed: angular velocity of the particles (rad/s).");
   for (auto &[name, entries] : methods)
     entries->declare(prm);
-  prm.leave_subsection();
+  declare::leave(prm);
 }
 
 void InsertionParameters::check(const ParameterCheck &check) const

@@ -99,10 +99,9 @@ public:
         {"list omega x", &lists.wx},    {"list omega y", &lists.wy},
         {"list omega z", &lists.wz},    {"list diameters", &lists.diameters}};
     for (const auto &[name, values] : entries)
-      prm.add_parameter(name, *values,
-                        "list: one value a particle (SI units)" +
-                            std::string(name.size() > 6 ? "; empty: 0, or the type's sizes." : "."),
-                        declare::Patterns::List(declare::Patterns::Double()));
+      declare::list(prm, name, *values, {},
+                    "list: one value a particle (SI units)" +
+                        std::string(name.size() > 6 ? "; empty: 0, or the type's sizes." : "."));
   }
 
   void check(const InsertionSettings &, const ParameterCheck &check) const override

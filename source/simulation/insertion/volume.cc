@@ -205,15 +205,12 @@ class VolumeSection : public InsertionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    using declare::Patterns::Integer;
     declare::count(prm, "inserted number of particles at each time step", filling.per_event,
                    "volume: number of particles of an event.");
-    prm.add_parameter("insertion direction sequence", filling.directions,
-                      "volume: axes in the order in which the box is filled.",
-                      declare::Patterns::List(Integer(0, 2), 3, 3));
-    prm.add_parameter("insertion distance threshold", filling.distance_threshold,
-                      "volume: distance of the grid points over the largest diameter.",
-                      declare::Patterns::Double(0.5));
+    declare::list(prm, "insertion direction sequence", filling.directions, {3, 3, 0, 2},
+                  "volume: axes in the order in which the box is filled.");
+    declare::at_least(prm, "insertion distance threshold", filling.distance_threshold, 0.5,
+                      "volume: distance of the grid points over the largest diameter.");
   }
 
   void check(const InsertionSettings &settings, const ParameterCheck &check) const override

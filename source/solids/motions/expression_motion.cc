@@ -104,12 +104,13 @@ struct VelocityEntries
 
   void declare(dealii::ParameterHandler &prm, const std::string &name, const std::string &what)
   {
-    prm.enter_subsection(name);
-    prm.add_parameter("Function expression", expression,
-                      what + ": three expressions in x, y, z (the centre of rotation) and t, "
-                             "separated by ';'.");
-    prm.add_parameter("Function constants", constants, "Constants of the expressions, 'a=1, b=2'.");
-    prm.leave_subsection();
+    declare::enter(prm, name);
+    declare::entry(prm, "Function expression", expression,
+                   what + ": three expressions in x, y, z (the centre of rotation) and t, "
+                          "separated by ';'.");
+    declare::entry(prm, "Function constants", constants,
+                   "Constants of the expressions, 'a=1, b=2'.");
+    declare::leave(prm);
   }
 };
 

@@ -191,24 +191,24 @@ private:
 
 void Custom::declare(dealii::ParameterHandler &prm)
 {
-  prm.add_parameter("custom distribution diameters values", diameters,
-                    "Diameters of the classes of a custom distribution (m).",
-                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
-  prm.declare_alias("custom distribution diameters values", "custom diameters");
-  prm.add_parameter("custom distribution diameters probabilities", fractions,
-                    "Share of each class of a custom distribution, which sum to 1; of a CDF, the "
-                    "share up to each diameter.",
-                    declare::Patterns::List(declare::Patterns::Double(0.), 1));
-  prm.add_parameter("custom distribution from file", from_file,
-                    "Whether diameters and probabilities of a custom distribution are in a file.");
-  prm.add_parameter("custom distribution filename", file,
-                    "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
-                    "space.");
+  declare::list(prm, "custom distribution diameters values", diameters,
+                {1, std::numeric_limits<unsigned int>::max(), 0.},
+                "Diameters of the classes of a custom distribution (m).");
+  declare::alias(prm, "custom distribution diameters values", "custom diameters");
+  declare::list(prm, "custom distribution diameters probabilities", fractions,
+                {1, std::numeric_limits<unsigned int>::max(), 0.},
+                "Share of each class of a custom distribution, which sum to 1; of a CDF, the "
+                "share up to each diameter.");
+  declare::entry(prm, "custom distribution from file", from_file,
+                 "Whether diameters and probabilities of a custom distribution are in a file.");
+  declare::entry(prm, "custom distribution filename", file,
+                 "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
+                 "space.");
   declare::choice(prm, "custom distribution probability function type", function_type, "PDF|CDF",
                   "Whether probabilities are those of each diameter or of all up to it.");
-  prm.add_parameter("custom distribution interpolation", interpolates,
-                    "Whether each share is spread evenly between its diameter and the one before, "
-                    "instead of belonging to its diameter alone.");
+  declare::entry(prm, "custom distribution interpolation", interpolates,
+                 "Whether each share is spread evenly between its diameter and the one before, "
+                 "instead of belonging to its diameter alone.");
 }
 
 SizeTable Custom::table() const

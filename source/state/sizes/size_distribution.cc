@@ -28,21 +28,19 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
   declare::not_negative(
       prm, "average diameter", average_diameter,
       "Diameter of a uniform distribution, mean of a normal or lognormal one (m).");
-  prm.declare_alias("average diameter", "diameter");
+  declare::alias(prm, "average diameter", "diameter");
   declare::not_negative(prm, "standard deviation", standard_deviation,
                         "Standard deviation of the diameter itself, normal and lognormal (m).");
-  prm.add_parameter(
-      "minimum diameter cutoff", smallest,
-      "Smallest diameter drawn (m); -1: 2.5 standard deviations below the mean (of the "
-      "logarithm for lognormal), none for custom.");
-  prm.add_parameter("maximum diameter cutoff", largest, "Largest diameter drawn, likewise (m).");
+  declare::entry(prm, "minimum diameter cutoff", smallest,
+                 "Smallest diameter drawn (m); -1: 2.5 standard deviations below the mean (of the "
+                 "logarithm for lognormal), none for custom.");
+  declare::entry(prm, "maximum diameter cutoff", largest, "Largest diameter drawn, likewise (m).");
   declare::choice(prm, "distribution weighting basis", basis, "number|volume",
                   "Whether the distribution counts particles or volume.");
-  prm.add_parameter("size weighting exponent", weighting_exponent,
-                    "Every share of the distribution is weighted with this power of its diameter: "
-                    "below 0 for more fines, above 0 for more coarse grains, between the same "
-                    "smallest and largest diameters.",
-                    declare::Patterns::Double(-50., 50.));
+  declare::between(prm, "size weighting exponent", weighting_exponent, -50., 50.,
+                   "Every share of the distribution is weighted with this power of its diameter: "
+                   "below 0 for more fines, above 0 for more coarse grains, between the same "
+                   "smallest and largest diameters.");
   declare::count(prm, "distribution prn seed", seed, "Seed of the random draws of the diameters.");
   for (auto &[name, section] : kinds)
     section->declare(prm);
