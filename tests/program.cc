@@ -1,7 +1,7 @@
 // The program of a folder: runs the test that is named on the command line, and lists all tests
 // where none is.
 
-#include <deal.II/base/mpi.h>
+#include <eunoe/core/mpi_session.h>
 
 #include "tests.h"
 
@@ -43,6 +43,6 @@ int main(int argc, char **argv)
     found->second.run();
     return 0;
   }
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const eunoe::MpiSession mpi(argc, argv);
   found->second.run();
 }

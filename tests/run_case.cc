@@ -2,14 +2,13 @@
 // per second so that small differences show; the target of the tests that consist of a .prm file.
 
 #include <eunoe/core/files.h>
-
-#include <deal.II/base/mpi.h>
+#include <eunoe/core/mpi_session.h>
 
 #include "tests.h"
 
 int main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const eunoe::MpiSession mpi(argc, argv);
   try {
     test::Case test_case(eunoe::read_file(argv[1], MPI_COMM_WORLD));
     test_case.run();

@@ -1,9 +1,8 @@
+#include <eunoe/core/mpi_session.h>
 #include <eunoe/simulation/application.h>
-
-#include <deal.II/base/mpi.h>
 
 int main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const eunoe::MpiSession mpi(argc, argv);
   return eunoe::run_particles(argc, argv, MPI_COMM_WORLD);
 }

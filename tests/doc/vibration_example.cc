@@ -2,9 +2,9 @@
 // centre + A sin(2 pi f t) and its derivative. Built by contributing_examples.py with the code of
 // CONTRIBUTING.md.
 
+#include <eunoe/core/mpi_session.h>
 #include <eunoe/solids/solid_parameters.h>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/parameter_handler.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 int main(int argc, char **argv)
 {
   using namespace eunoe;
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const eunoe::MpiSession mpi(argc, argv);
   SolidObjectParameters parameters(1);
   dealii::ParameterHandler prm;
   parameters.declare(prm);
