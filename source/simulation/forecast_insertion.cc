@@ -14,7 +14,7 @@ namespace eunoe {
 
 namespace {
 
-const std::string section = "subsection 'insertion info'";
+const std::string insertion_info = "subsection 'insertion info'";
 
 /// Overlap over the radius from which particles are shot off.
 constexpr double doubtful_overlap = 0.1;
@@ -130,9 +130,9 @@ void judge_overlap(const Overlap &overlap, const std::string &what, const double
                            format(x.y) + ", " + format(x.z) + ") m, and would be shot off.";
   const std::string mend = "Correct its place or its diameter.";
   if (largest_allowed > 0. && overlap.share > largest_allowed)
-    problems.add(section + ":", text, mend);
+    problems.add(insertion_info + ":", text, mend);
   else
-    problems.warn(section + ":", text, mend);
+    problems.warn(insertion_info + ":", text, mend);
 }
 
 /// Whether the particles of one event are out of the way before the next comes into the same box.
@@ -142,7 +142,7 @@ void judge_interval(const Parameters &parameters, const double largest_diameter,
   const double time = p.frequency * parameters.control.time_step;
   const double way = norm(p.velocity) * time + 0.5 * norm(parameters.physics.gravity) * time * time;
   if (way < largest_diameter)
-    problems.warn(section + " / entry 'insertion frequency':",
+    problems.warn(insertion_info + " / entry 'insertion frequency':",
                   "between two events, the particles move by no more than " + format(way) +
                       " m, less than their diameter, so that those of the next come to lie in "
                       "them.",
@@ -160,17 +160,17 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
   const std::string number = "subsection 'lagrangian physical properties' / subsection 'particle "
                              "type 0' / entry 'number of particles':";
   if (coming > most_particles)
-    problems.add(section + ":", format(coming) + " particles would come into the run.",
+    problems.add(insertion_info + ":", format(coming) + " particles would come into the run.",
                  "At most " + format(most_particles) + " are possible.");
   else if (coming == 0. && parameters.solids.objects.empty())
-    problems.add(counts ? number : section + ":",
+    problems.add(counts ? number : insertion_info + ":",
                  "no particles come into the run, and there are no solids to be seen.",
                  "Give a number of particles and an 'insertion info', or name a process.");
   else if (coming == 0.)
-    problems.warn(counts ? number : section + ":", "no particles come into the run.",
+    problems.warn(counts ? number : insertion_info + ":", "no particles come into the run.",
                   "Give a number of particles and an 'insertion info'.");
   else if (counts && coming < wanted)
-    problems.warn(section + ":",
+    problems.warn(insertion_info + ":",
                   "only " + format_whole(coming) + " of " + format_whole(wanted) +
                       " particles come until the run ends, in " +
                       format_count(static_cast<double>(n_events), "event", "events") + ".",
@@ -186,7 +186,7 @@ void judge_speed(const std::vector<NewParticle> &event, const double time_step, 
     share = std::max(share, norm(particle.velocity) * time_step / particle.radius);
   MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_MAX, comm);
   if (share > largest_way)
-    problems.warn(section + ":",
+    problems.warn(insertion_info + ":",
                   "a particle is inserted so fast that it moves by " + format(share) +
                       " of its radius in a time step and would jump into others.",
                   "Lower its velocity or the time step.");

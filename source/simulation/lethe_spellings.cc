@@ -9,10 +9,10 @@ namespace eunoe {
 
 namespace {
 
-using Path = std::vector<std::string>;
+using EntryPath = std::vector<std::string>;
 
 /// Whether a path is the one of a rule, in which a name may end in '*'.
-bool fits(const Path &path, const Path &rule)
+bool fits(const EntryPath &path, const EntryPath &rule)
 {
   return path.size() == rule.size() &&
          std::equal(path.begin(), path.end(), rule.begin(),
@@ -24,15 +24,15 @@ bool fits(const Path &path, const Path &rule)
                     });
 }
 
-const Path properties = {"lagrangian physical properties"},
-           type = {"lagrangian physical properties", "particle type *"},
-           insertion = {"insertion info"}, model = {"model parameters"},
-           control = {"simulation control"}, mesh = {"mesh"}, no_section = {};
+const EntryPath properties = {"lagrangian physical properties"},
+                type = {"lagrangian physical properties", "particle type *"},
+                insertion = {"insertion info"}, model = {"model parameters"},
+                control = {"simulation control"}, mesh = {"mesh"}, no_section = {};
 
 /// An entry with another name.
 struct Renamed
 {
-  Path path;
+  EntryPath path;
   std::string from, to;
 };
 const std::vector<Renamed> &renamed()
@@ -55,7 +55,7 @@ const std::vector<Renamed> &renamed()
 /// A word with another spelling; without a new one the entry is not needed.
 struct Word
 {
-  Path path;
+  EntryPath path;
   std::string entry, from, to;
 };
 const std::vector<Word> &words()
@@ -82,9 +82,9 @@ const std::vector<Word> &words()
 /// Numbers that have become components of one entry.
 struct Components
 {
-  Path path;
-  Path from; ///< three numbers, or six for two corners
-  Path to_path;
+  EntryPath path;
+  EntryPath from; ///< three numbers, or six for two corners
+  EntryPath to_path;
   std::string to;
 };
 const std::vector<Components> &components()
@@ -112,7 +112,7 @@ const std::vector<Components> &components()
 /// Entries that change nothing here.
 struct Ignored
 {
-  Path path, entries; ///< no entries: all of the subsection
+  EntryPath path, entries; ///< no entries: all of the subsection
   std::string why;
 };
 
@@ -190,7 +190,7 @@ const std::vector<Ignored> &ignored()
 /// What is out of scope or has moved, if it asks for more than nothing.
 struct Refused
 {
-  Path path;
+  EntryPath path;
   std::string entry, harmless, why;
 };
 const std::vector<Refused> &refused()
@@ -246,10 +246,10 @@ private:
   /// Solids stood directly in 'solid objects'; 'adaptive sparse contacts' had another name.
   void move(InputEntry &entry)
   {
-    Path &path = entry.path;
+    EntryPath &path = entry.path;
     const bool is_solid = path.size() >= 2 && path[0] == "solid objects" &&
                           path[1].compare(0, 13, "solid object ") == 0;
-    const bool is_number = path == Path{"solid objects"} && entry.name == "number of solids";
+    const bool is_number = path == EntryPath{"solid objects"} && entry.name == "number of solids";
     if (is_solid || is_number) {
       if (is_number)
         problems.warn(place(entry), "stands in the subsection 'solid surfaces' now.", "");
@@ -266,7 +266,7 @@ private:
   /// 'box refinement' held one box without a number.
   void number_the_box()
   {
-    const Path section = {"box refinement"};
+    const EntryPath section = {"box refinement"};
     const auto is_count = [&](const InputEntry &entry) {
       return entry.path == section && entry.name == "initial refinement";
     };
@@ -295,7 +295,7 @@ private:
   /// Makes one entry out of those for its components, at the place of the first.
   void join(const Components &rule)
   {
-    std::map<Path, std::vector<std::string>> values;
+    std::map<EntryPath, std::vector<std::string>> values;
     for (const InputEntry &entry : entries)
       if (fits(entry.path, rule.path))
         for (std::size_t c = 0; c < rule.from.size(); ++c)
