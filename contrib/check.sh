@@ -23,4 +23,5 @@ if [ "$(id -u)" -eq 0 ]; then
   # As in a container; Open MPI wants to be asked twice.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"
+# One more than there are cores, as some wait for launchers and disks.
+part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(($(nproc) + 1))"

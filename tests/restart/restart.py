@@ -167,7 +167,7 @@ def curved(program: str, folder: Path) -> None:
 
 
 def killed(program: str, folder: Path) -> None:
-    longer = ["simulation control/iteration end = 100000"]
+    longer = ["simulation control/iteration end = 60000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
     alone.run(1)
     restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
