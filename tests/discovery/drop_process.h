@@ -5,10 +5,9 @@
 // with a tilted field of gravity, and their heights, their drift and their speed are measured.
 
 #include <eunoe/core/declare.h>
+#include <eunoe/core/gather.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/loose_powder.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <cmath>
@@ -103,14 +102,12 @@ public:
       energy += norm_square(p.velocity[k].vec());
       fastest = std::max(fastest, norm_square(p.velocity[k].vec()));
     }
-    std::vector<double> all;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(simulation.communicator(), heights))
-      all.insert(all.end(), part.begin(), part.end());
+    std::vector<double> all = gather_all(heights, simulation.communicator());
     std::sort(all.begin(), all.end());
     drift.reduce(simulation.communicator());
     width.reduce(simulation.communicator());
     energy.reduce(simulation.communicator());
-    fastest = dealii::Utilities::MPI::max(fastest, simulation.communicator());
+    MPI_Allreduce(MPI_IN_PLACE, &fastest, 1, MPI_DOUBLE, MPI_MAX, simulation.communicator());
     if (fastest > section.largest_speed * section.largest_speed)
       throw UserError("A sphere is faster than 'largest speed'.");
     const auto n = static_cast<double>(all.size());
