@@ -4,6 +4,7 @@
 
 #include <boost/algorithm/string.hpp>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace eunoe::declare {

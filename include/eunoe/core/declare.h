@@ -61,7 +61,7 @@ void count(dealii::ParameterHandler &prm, const std::string &name, Number &value
 void number_of(dealii::ParameterHandler &prm, const std::string &name, std::size_t number,
                int smallest, int largest, const std::string &documentation);
 
-/// How many numbers a list has, and the smallest of them.
+/// How many numbers a list has, and what each may be.
 struct ListLimits
 {
   unsigned int shortest = 0, longest = std::numeric_limits<unsigned int>::max();

@@ -3,6 +3,7 @@
 
 #include <boost/math/special_functions/erf.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace eunoe::discovery {
