@@ -88,6 +88,25 @@ std::string shape_input(const std::string &shape, const std::string &arguments,
          shape + "\n set grid arguments = " + arguments + "\n end\n" + more + " end\n end\nend\n";
 }
 
+std::vector<std::vector<double>> particles_when(
+    Simulation &simulation, const std::function<bool(const Simulation &)> &condition)
+{
+  struct Seen
+  {
+  };
+  std::vector<std::vector<double>> table;
+  try {
+    simulation.run([&](Simulation &) {
+      if (!condition(simulation))
+        return;
+      table = particle_table(simulation);
+      throw Seen();
+    });
+  } catch (const Seen &) {
+  }
+  return table;
+}
+
 std::vector<std::vector<double>> of_all_ranks(MPI_Comm comm,
                                               const std::vector<std::vector<double>> &mine)
 {

@@ -98,6 +98,10 @@ enum Column
 /// One row a particle of all ranks, by id; the same on every rank. SI units.
 std::vector<std::vector<double>> particle_table(Simulation &simulation);
 
+/// Runs until a condition holds after a step, and gives the particles then; none if it never does.
+std::vector<std::vector<double>> particles_when(
+    Simulation &simulation, const std::function<bool(const Simulation &)> &condition);
+
 /// An input text for spheres without gravity in a periodic-free box from -1 to 1 cm whose walls
 /// are far away; entries are added behind it. Material: young 1e6 Pa, poisson 0.3, rho 1000.
 std::string box_input(double time_step, double time_end, const std::string &more);

@@ -15,25 +15,13 @@ constexpr double largest = 80e-6, column = 2. * largest, reservoir = 1.2e-3;
 const char *const long_reservoir = "  set feedstock platform length W1 = 1.2e-3\n"
                                    "  set first feedstock stroke = 0.25e-3\n";
 
-struct Seen
-{
-};
-
 /// The particles when what stood above the bed's level has just been taken away.
 std::vector<std::vector<double>> with_levelled_bed()
 {
   Case bed(small_spreading("results", long_reservoir));
-  std::vector<std::vector<double>> table;
-  try {
-    bed.run([&](Simulation &simulation) {
-      if (simulation.get_ledger().taken_out.number == 0)
-        return;
-      table = particle_table(simulation);
-      throw Seen();
-    });
-  } catch (const Seen &) {
-  }
-  return table;
+  return particles_when(*bed, [](const Simulation &simulation) {
+    return simulation.get_ledger().taken_out.number > 0;
+  });
 }
 
 void examine_surface()

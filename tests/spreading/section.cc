@@ -11,26 +11,12 @@ using namespace test;
 
 namespace {
 
-struct Seen
-{
-};
-
 /// The particles after some steps.
 std::vector<std::vector<double>> first_particles(const Parameters &parameters)
 {
   Log log(MPI_COMM_WORLD, true);
   Simulation simulation(parameters, MPI_COMM_WORLD, log);
-  std::vector<std::vector<double>> table;
-  try {
-    simulation.run([&table](Simulation &s) {
-      if (s.step_number() < 20)
-        return;
-      table = particle_table(s);
-      throw Seen();
-    });
-  } catch (const Seen &) {
-  }
-  return table;
+  return particles_when(simulation, [](const Simulation &s) { return s.step_number() >= 20; });
 }
 
 void examine_parameters()
