@@ -4,14 +4,22 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cstdint>
+#include <limits>
 
 namespace eunoe::discovery {
 
 /// Random numbers for bootstraps: the same sequence for the same seed and stream everywhere.
+/// A UniformRandomBitGenerator for distributions of other libraries.
 class RandomStream
 {
 public:
+  using result_type = std::uint64_t;
+
   RandomStream(std::uint32_t seed, std::uint32_t stream) : key({{seed, stream}}) {}
+
+  static constexpr result_type min() { return 0; }
+  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
+  result_type operator()();
 
   /// In (0, 1), without the ends.
   double uniform();
@@ -26,11 +34,6 @@ private:
   std::array<std::uint32_t, 4> block{};
   std::uint64_t count = 0;
 };
-
-/// The number below which a standard normal variable stays with this probability, to 1e-9
-/// relative.
-/// @param probability in (0, 1)
-double normal_quantile(double probability);
 
 } // namespace eunoe::discovery
 
