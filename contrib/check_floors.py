@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Says which files include what stands above them. A file of the library may include its own folder and those
-beneath it; doc/architecture.md says what stands on each floor.
+"""Says which files include what stands above them. A file of the library may include its own folder
+and those beneath it; doc/architecture.md says what stands on each floor.
 
 Usage: contrib/check_floors.py [folder of the tree]
 """
@@ -11,7 +11,7 @@ import re
 import sys
 from pathlib import Path
 
-# From the ground up. Folders of one floor do not know each other.
+# From the ground up. Folders of one floor must not include each other.
 FLOORS = [["core"], ["checkpoint"], ["state"], ["solids"], ["domain"], ["contact"], ["engine"], ["simulation"],
           ["observables", "processes"], ["discovery"]]
 FLOOR_OF = {folder: floor for floor, folders in enumerate(FLOORS) for folder in folders}
@@ -20,7 +20,7 @@ RELATIVE = re.compile(r'\s*#\s*include\s*"[^"]*\.\./')
 
 
 def folder_of(path: Path) -> str | None:
-    """The folder that a file of the library belongs to, None for one of no folder."""
+    """The folder that a file of the library belongs to; None for files outside the folders."""
     inner = path.parts[1:] if path.parts[0] == "source" else path.parts[2:]
     return inner[0] if len(inner) > 1 else None
 

@@ -1,2 +1,2 @@
-"""Tools around Eunoe's programs, in Python: reports, benchmarks, studies, verification. The commands are listed
-in commands.py."""
+"""Tools around Eunoe's programs, in Python: reports, benchmarks, studies, verification. commands.py
+lists the commands."""

@@ -1,4 +1,4 @@
-"""The commands: `contrib/tools NAME ...` calls `main` of the module that stands beside the name."""
+"""The commands: `contrib/tools NAME ...` calls `main` of the module beside that name."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import sys
 
 from eunoe.launch import Failure
 
-MISSING_PACKAGE = 77  # exit code, by which tests know that they are to be skipped
-# What Debian's packages are called.
+MISSING_PACKAGE = 77  # exit code that makes ctest skip a test
+# The names of Debian's packages.
 PACKAGES = {"numpy": "python3-numpy", "matplotlib": "python3-matplotlib", "vtkmodules": "python3-vtk9",
             "PIL": "python3-pil"}
 
@@ -57,7 +57,7 @@ def listing() -> str:
 
 
 def run(name: str, words: list[str]) -> int:
-    """A command with its arguments."""
+    """Runs a command with its arguments."""
     try:
         module = importlib.import_module(f"eunoe.{MODULES[name]}")
         return module.main(words)
@@ -88,7 +88,7 @@ def main(words: list[str] | None = None) -> int:
         print(f"There is no command '{name}'. " + (f"Did you mean '{near[0]}'?" if near else
                                                    "See contrib/tools --help."), file=sys.stderr)
         return 2
-    # As other programs, end quietly when who reads the output has read enough.
+    # Like other programs, end quietly when the reader of the output closes the pipe.
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    sys.argv = [f"tools {name}", *rest]  # how argparse calls the program
+    sys.argv = [f"tools {name}", *rest]  # argparse takes the program's name from here
     return run(name, rest)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-# Of runs on ranks that share cores with others, as in tests.
+# Options for ranks that share cores with other programs, as in tests.
 SHARED = ("--oversubscribe", "--bind-to", "none")
 
 
@@ -18,8 +18,8 @@ class Failure(Exception):
 
 
 def mpirun(ranks: int, *options: str) -> list[str]:
-    """What stands before a program on so many ranks; nothing for one. Without options each rank has a core of
-    its own as long as there are enough."""
+    """The words before a program that runs on so many ranks; none for one rank. Without options
+    each rank has a core of its own as long as there are enough."""
     if ranks <= 1:
         return []
     spare = ["--oversubscribe"] if not options and ranks > (os.cpu_count() or 1) else []
@@ -34,7 +34,7 @@ def overrides(entries: Mapping[str, Any] | Iterable[str]) -> list[str]:
 
 
 def output_of(command: list[str], folder: Path) -> str:
-    """What a command printed in a folder. Failure if its exit code is not 0."""
+    """What a command prints when it runs in a folder. Failure if its exit code is not 0."""
     done = subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           check=False)
     if done.returncode != 0:
@@ -43,18 +43,18 @@ def output_of(command: list[str], folder: Path) -> str:
 
 
 def logged(command: list[str], log: Path) -> int:
-    """The exit code of a command whose output goes to the end of a file."""
+    """Runs a command and appends its output to a file; returns the exit code."""
     with open(log, "a", encoding="utf-8") as output:
         return subprocess.run(command, stdout=output, stderr=subprocess.STDOUT, check=False).returncode
 
 
 def parser(documentation: str) -> argparse.ArgumentParser:
-    """Of a command, described by the first paragraph of its module's text."""
+    """The parser of a command; the first paragraph of its module's docstring describes it."""
     return argparse.ArgumentParser(description=" ".join(documentation.split("\n\n", 1)[0].split()))
 
 
 def parser_with_case(documentation: str) -> argparse.ArgumentParser:
-    """Of a command that runs a case of the user's in a folder."""
+    """The parser of a command that runs a user's case in a folder."""
     arguments = parser(documentation)
     arguments.add_argument("program")
     arguments.add_argument("case")
@@ -64,7 +64,7 @@ def parser_with_case(documentation: str) -> argparse.ArgumentParser:
 
 
 def rank_numbers(text: str) -> list[int]:
-    """The argument of --ranks."""
+    """The numbers in the argument of --ranks."""
     try:
         ranks = [int(word) for word in text.split(",")]
     except ValueError:

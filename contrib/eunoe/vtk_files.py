@@ -25,14 +25,14 @@ class Snapshot:
     file: Path
 
 
-# VTK would print what it complains of; the caller gets one sentence instead.
+# VTK would print its complaints; the caller gets one sentence instead.
 vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-# How it begins to say that a picture has nothing in it; deal.II writes no points then.
+# Beginning of VTK's message for a picture without particles, for which deal.II writes no points.
 WITHOUT_POINTS = "No Points element available in first piece"
 
 
 def _complaint(step: Callable[[], None]) -> str:
-    """Takes a step of VTK and returns what it complains of."""
+    """Runs a step of VTK and returns its complaint."""
     complaints, window = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(complaints)
     try:
@@ -43,7 +43,7 @@ def _complaint(step: Callable[[], None]) -> str:
 
 
 def read_vtu(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
-    """Points and point data of a .vtu file, of all its pieces (one a rank) together.
+    """Points and point data of a .vtu file, from all its pieces (one for each rank) together.
 
     The coordinates (m) come under the name 'points'; of the point data only those named are read,
     and those that the file lacks are left out.

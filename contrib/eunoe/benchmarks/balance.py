@@ -4,11 +4,11 @@ the sharing out costs.
 Usage: contrib/tools balance [case.prm] [--program build/release/eunoe-particles] [--ranks 2]
            [--every 20000] [--cell-weights 1000,20] [--set ENTRY=VALUE ...]
 
-The case (prm/benchmarks/two_passes.prm) runs with the methods none, frequent (every so many steps)
-and dynamic; dynamic with each cell weight, of which 20 is the program's default. Pictures every so
-many steps tell how many particles each rank owns. The imbalance is the largest number over the mean,
-less 1; it does not depend on the machine's load, the seconds do. With more ranks than cores the
-seconds tell nothing.
+The case (prm/benchmarks/two_passes.prm) runs with the methods none, frequent (every --every steps)
+and dynamic, the latter with each cell weight; 20 is the program's default. Pictures, also every
+--every steps, show how many particles each rank owns. The imbalance is the largest number over the
+mean, less 1. It does not depend on the machine's load, but the seconds do; with more ranks than
+cores they mean nothing.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ HEAD = ["load balancing", "ranks", "imbalance, mean", "worst", "times shared out
 
 
 def imbalances(folder: Path, n_ranks: int) -> list[float]:
-    """Of each picture of a run with particles in it."""
+    """The imbalance in each picture of a run that has particles in it."""
     result = []
     for series in folder.glob("*.pvd"):
         if series.stem.endswith(("_solids", "_layers")):

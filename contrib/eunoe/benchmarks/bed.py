@@ -20,8 +20,8 @@ LENGTH, HEIGHT, PERIOD = 4e-3, 6e-3, 1e-3  # of the box (m)
 
 
 def read(copies: int = 1) -> np.ndarray:
-    """Columns diameter, x, y, z (m), one row a particle; the bed `copies` times, behind each other
-    in z."""
+    """Columns diameter, x, y, z (m), one row for each particle: `copies` of the bed in a row along
+    z."""
     with gzip.open(FILE, "rt") as file:
         bed = 1e-6 * np.loadtxt(file, delimiter=",", skiprows=1)
     shift = np.array([0., 0., 0., PERIOD])

@@ -10,8 +10,8 @@ from . import bed
 class Case:
     """A benchmark.
 
-    `length` is that of the box in x (m), `copies` the number of beds behind each other in z;
-    `steps` 0 lets the run come to its own end; `peers` says whether other programs run it, too.
+    `length` is that of the box in x (m), `copies` the number of beds in a row along z. With `steps`
+    0 the case sets its end; `peers` says whether the other programs run it, too.
     """
 
     name: str
@@ -32,8 +32,8 @@ class Case:
         return self.length > bed.LENGTH
 
     def mesh(self) -> tuple[str, int]:
-        """Arguments of Eunoe's background mesh and how often it is refined: as in settled_bed.prm, cells
-        of 1 mm that are cut twice. Ranks get compact parts, as the curve through these cells is."""
+        """Arguments of Eunoe's background mesh and how often it is refined: as in settled_bed.prm,
+        mesh cells of 1 mm that are cut twice. This gives ranks compact parts of the mesh."""
         cells = ", ".join(str(round(1e3 * size)) for size in (self.length, bed.HEIGHT, self.depth))
         return f"{cells} : 0, 0, 0 : {self.length}, {bed.HEIGHT}, {self.depth} : true", 2
 

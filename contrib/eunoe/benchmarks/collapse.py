@@ -4,10 +4,10 @@ Usage: contrib/tools collapse [--program build/release/eunoe-particles]
            [--column 1e-3] [--time 0.016] [--samples 20] [--seeds 3] [--ranks 1]
            [--figure FILE] [--table FILE] [--keep FOLDER]
 
-Both take the same physics: Hertz and Mindlin with the same damping, friction 0.2, no cohesion, no
+Both use the same physics: Hertz and Mindlin with the same damping, friction 0.2, no cohesion, no
 rolling resistance. The motion is chaotic, so each program runs with several seeds, which move the
-particles at the start by up to 10 nm; the difference of the means is compared with what the
-scatter of the seeds lets one expect. Exit code 1 if they differ by more.
+particles at the start by up to 10 nm. The difference of the means is compared with the difference
+that the scatter over the seeds would explain. Exit code 1 if it is larger.
 """
 
 from __future__ import annotations
@@ -34,15 +34,15 @@ PHYSICS = ("model parameters/particle particle contact force method = hertz_mind
 QUANTITIES = {"mean_x": "centre of mass in x (mm)", "front": "run-out: 99 % lie before (mm)",
               "mean_y": "centre of mass in y (mm)", "top": "height: 99 % lie below (mm)",
               "kinetic": "kinetic energy (nJ)", "rotational": "energy of rotation (nJ)"}
-# Accepted difference of the means in units of its standard error. Few seeds tell their own scatter
-# poorly, and the largest of some hundred values is looked at, so the margin is wide.
+# Accepted difference of the means in units of its standard error. The margin is wide, as few seeds
+# give a poor estimate of the scatter, and the largest of some hundred values is tested.
 LIMIT = 6.
-# Differences below this share of the largest value of a quantity count as agreement.
+# Differences below this share of a quantity's largest value count as agreement.
 RESOLUTION = 0.01
 
 
 def measure(x: np.ndarray, y: np.ndarray, volume: np.ndarray) -> list[float]:
-    """Centre of mass (mm) and places before and below which 99 % of the mass lies (mm)."""
+    """Centre of mass and 99 % quantile of the mass, first in x, then in y (mm)."""
     def quantile(values: np.ndarray) -> float:
         order = np.argsort(values)
         share = np.cumsum(volume[order]) / volume.sum()

@@ -42,7 +42,7 @@ def run(eunoe: Eunoe, options: argparse.Namespace, sleep: bool, folder: Path) ->
 
 
 def row(name: str, summaries: list[dict]) -> list[str]:
-    """Of the run in the middle."""
+    """The table's row, of the run whose loop took the median time."""
     middle = sorted(summaries, key=lambda s: s["loop_seconds"])[len(summaries) // 2]
     shares = [f"{100. * middle[key] / middle['loop_seconds']:.1f} %"
               for key in ("seconds_contact_search", "seconds_sleep")]

@@ -1,4 +1,4 @@
-"""What was measured on: processor, compiler and versions."""
+"""Facts about the machine that was measured: processor, compiler and versions."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def _read(path: str) -> str:
 
 
 def _compiler(program: str) -> str:
-    """The compiler of the build folder that holds the program, from CMake's notes."""
+    """The compiler of the build folder that holds the program, from CMake's files."""
     cache = _read(str(Path(program).parent / "CMakeCache.txt"))
     compiler = _first(r"^CMAKE_CXX_COMPILER:\w+=(.*)$", cache)
     try:
@@ -34,7 +34,7 @@ def _compiler(program: str) -> str:
 
 
 def facts(programs: list, program: str) -> dict[str, str]:
-    """Names and values; `programs` are those that are measured, `program` the path of ours."""
+    """Names and values; `programs` are the programs compared, `program` is the path of Eunoe's."""
     cpu = _read("/proc/cpuinfo")
     flags = set(_first(r"^flags\s*:(.*)$", cpu).split())
     widths = [name for name in ("sse2", "avx", "avx2", "fma", "avx512f") if name in flags]

@@ -22,7 +22,7 @@ from .cases import Case
 
 TIME_STEP = 2.816e-7  # s, that of prm/spreading/parts/model.prm
 MEASURE_RSS = Path(__file__).with_name("measure_rss.py")
-SKIN = 1e-5           # m, of the peers' lists; Eunoe's of the same model is a tenth of a diameter
+SKIN = 1e-5           # m, of the other programs' lists; in Eunoe the skin is a tenth of a diameter
 
 
 @dataclass
@@ -40,7 +40,7 @@ def add_program(arguments: argparse.ArgumentParser) -> None:
 
 
 def said(*command: str) -> str:
-    """What a command printed; LIGGGHTS ends its help with an error and leaves a log behind."""
+    """What a command printed. LIGGGHTS ends its help with an error and leaves a log file behind."""
     with tempfile.TemporaryDirectory() as folder:
         return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               text=True, check=False).stdout
@@ -91,7 +91,7 @@ class Eunoe:
 
 
 def loop_seconds(log: str, name: str) -> float:
-    """The time of the last time loop that a log of LAMMPS or LIGGGHTS tells of."""
+    """Seconds of the last time loop in a log of LAMMPS or LIGGGHTS."""
     loops = re.findall(r"^Loop time of (\S+) on", log, re.M)
     if not loops:
         raise Failure(f"{name} told no 'Loop time':\n{log[-2000:]}")
@@ -144,7 +144,8 @@ class Liggghts(Peer):
         return match.group(1) if match else "unknown"
 
     def variables(self, case: Case, folder: Path) -> dict:
-        # A box that follows the particles shares them out evenly; one that includes the spreader.
+        # A box that follows the particles (s) divides them evenly; one with a minimum size (m)
+        # includes the spreader.
         edge = "m m" if case.plough else "s f" if case.collapse else "f f"
         blade.write_stl(folder / "blade.stl", case.depth)
         return {"right": case.length, "edge": edge, "blade": folder / "blade.stl"}

@@ -4,12 +4,13 @@ Usage: contrib/tools benchmark [--program build/release/eunoe-particles] [--case
            [--ranks 1,2] [--repeats 5] [--steps N] [--peers lammps,liggghts|none]
            [--shares] [--memory] [--json FILE] [--markdown FILE]
 
-doc/performance.md tells what is compared and how to read it. Of a peer that is not installed all
-results say so; `contrib/install_dependencies.sh benchmarks` installs both. The speed is that of the time loop alone, in million particle-steps/s: median (least to most);
-the ratio is Eunoe's median over that of the faster peer.
+doc/performance.md says what is compared and how to read it. If a peer is not installed, all results
+say so; `contrib/install_dependencies.sh benchmarks` installs both. The speed is that of the time
+loop alone, in million particle-steps/s: median (least to most); the ratio is Eunoe's median over
+that of the faster peer.
 
 --shares  adds how much of its time Eunoe spends in each part of a step
---memory  adds Eunoe's peak memory for each particle; takes one more run a case
+--memory  adds Eunoe's peak memory for each particle; needs one more run for each case
 """
 
 from __future__ import annotations
@@ -59,13 +60,13 @@ def parse(words: list[str]) -> argparse.Namespace:
 
 
 def find_peers(names: list[str]) -> tuple[list, list]:
-    """Peers that are installed, and those that are missing."""
+    """The peers that are installed, and the missing ones."""
     peers = [PEERS[name]() for name in names]
     return [peer for peer in peers if peer.path], [peer for peer in peers if not peer.path]
 
 
 def complaint(missing: list) -> str:
-    """What all results say of peers that were asked for and are not there; empty if all are."""
+    """A sentence for the results on requested peers that are missing; empty if none is missing."""
     if not missing:
         return ""
     which = " and ".join(f"{peer.name} (no program '{peer.executable}')" for peer in missing)
@@ -75,8 +76,8 @@ def complaint(missing: list) -> str:
 
 def measure(case: Case, ranks: int, steps: int, repeats: int,
             programs: list) -> dict[str, list[Run]]:
-    """All programs in turn, the whole round `repeats` times, so that slow minutes of the machine
-    fall on all of them."""
+    """Runs all programs in turn, the whole round `repeats` times, so that slow minutes of the
+    machine affect all of them."""
     runs: dict[str, list[Run]] = {program.name: [] for program in programs}
     for repeat in range(repeats):
         for program in programs:
@@ -89,7 +90,7 @@ def measure(case: Case, ranks: int, steps: int, repeats: int,
 
 
 def memory_row(case: Case, ranks: int, runs: list[Run], eunoe: Eunoe) -> list[str]:
-    """Peak memory of all ranks together, also less that of a run of the same mesh with a hundred
+    """Peak memory of all ranks together, and its excess over a run of the same mesh with a hundred
     particles."""
     total = median(run.memory for run in runs)
     n = runs[0].summary["particles"]
@@ -103,7 +104,7 @@ def memory_row(case: Case, ranks: int, runs: list[Run], eunoe: Eunoe) -> list[st
 
 @dataclass
 class Measurements:
-    """What all results are made of: a row for each case and number of ranks."""
+    """The measurements behind all results: a row for each case and number of ranks."""
 
     facts: dict[str, str]
     programs: list
@@ -113,7 +114,7 @@ class Measurements:
     memory: Table = field(default_factory=list)
 
     def tables(self, with_shares: bool) -> dict[str, Table]:
-        """By title."""
+        """The tables by their titles."""
         found = {"Million particle-steps/s, median (least to most)":
                  table.cells(self.speeds, [program.name for program in self.programs],
                              [peer.name for peer in self.missing])}

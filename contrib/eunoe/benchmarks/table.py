@@ -1,4 +1,4 @@
-"""From repeated measurements to medians, ratios and tables."""
+"""Medians, ratios and tables of repeated measurements."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ SECTIONS = ("integration", "contact_search", "ghosts", "particle_contacts", "sol
 
 @dataclass
 class Row:
-    """A case on a number of ranks: the speeds of each program (particle-steps/s), one a repeat."""
+    """A case on a number of ranks: each program's speeds (particle-steps/s), one for each
+    repeat."""
 
     title: str
     ranks: int
     speeds: dict[str, list[float]]
 
     def ratio(self) -> float | None:
-        """Median of ours over that of the fastest peer; None without a peer."""
+        """Eunoe's median over that of the fastest peer; None without a peer."""
         peers = [median(values) for name, values in self.speeds.items() if name != "Eunoe" and values]
         ours = self.speeds.get("Eunoe", [])
         return median(ours) / max(peers) if peers and ours else None
@@ -33,7 +34,7 @@ def cell(speeds: list[float]) -> str:
 
 
 def cells(rows: list[Row], names: list[str], missing: list[str] | None = None) -> list[list[str]]:
-    """Head and rows of the table of speeds; a peer that is missing has a column that says so."""
+    """Head and rows of the table of speeds; a missing peer's column says that it is missing."""
     missing = missing or []
     table = [["case", "ranks", *names, *missing, "ratio"]]
     for row in rows:
@@ -44,7 +45,7 @@ def cells(rows: list[Row], names: list[str], missing: list[str] | None = None) -
 
 
 def shares(summary: dict) -> dict[str, float]:
-    """Shares of the loop's time, mean over ranks; 'other' is what no timer counted."""
+    """Shares of the loop's time, mean over ranks; 'other' is the time outside all timers."""
     loop = summary["loop_seconds"]
     result = {name: summary[f"seconds_{name}"] / loop for name in SECTIONS}
     result["other"] = 1. - sum(result.values())
@@ -52,7 +53,7 @@ def shares(summary: dict) -> dict[str, float]:
 
 
 def share_cells(cases: list[tuple[str, int, list[dict]]]) -> list[list[str]]:
-    """Head and rows of the table of shares; of several runs the median of each share."""
+    """Head and rows of the table of shares; each share is the median over the runs."""
     table = [["case", "ranks", *(name.replace("_", " ") for name in (*SECTIONS, "other")),
               "slowest rank"]]
     for title, ranks, summaries in cases:

@@ -1,1 +1,2 @@
-"""Blind suites for eunoe-discovery: twins with hidden truths, and how well the truths were found."""
+"""Blind suites for eunoe-discovery: twins with hidden truths, and scores of how well the truths
+were found."""

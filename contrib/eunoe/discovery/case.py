@@ -8,7 +8,7 @@ import random
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-# Reported suites are never made with seeds on which anything was tuned.
+# Reported suites use seeds on which nothing was tuned.
 FIRST_SEED = {"ci": 100, "development": 10_000, "reported": 500_000}
 STRENGTHS = (2., 4., 8.)  # shift in standard deviations of one run (Mahalanobis)
 STRENGTH_OF_PAIRS, STRENGTH_WHEN_DELETED = 6., 8.
@@ -22,7 +22,7 @@ class Case:
     kind: str  # none, single, two, deleted, confounded
     seed: int  # of the twin
     study_seed: int
-    strengths: dict[str, float] = field(default_factory=dict)  # by effect; negative: below the null value
+    strengths: dict[str, float] = field(default_factory=dict)  # negative: below the null value
     excluded: list[str] = field(default_factory=list)  # effects deleted from the catalogue
     amplitudes: dict[str, float] = field(default_factory=dict)
 
@@ -39,7 +39,7 @@ class Numbers:
     """How many cases of each kind."""
 
     none: int
-    single: int  # of each effect and strength
+    single: int  # for each effect and strength
     two: int
     deleted: int
     confounded: int
@@ -53,7 +53,7 @@ TIERS = {"ci": Numbers(2, 1, 0, 1, 0), "small": Numbers(12, 1, 6, 6, 6),
 def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int) -> list[Case]:
     """All cases of a suite, the same for the same arguments.
 
-    @param effects: what --list-effects says, by name
+    @param effects: the output of --list-effects, by name
     @param study_seeds: number of different seeds of studies; studies with the same seed share the runs
         of the base model and of the fingerprints, which saves most of the time but ties their errors
     """

@@ -1,4 +1,4 @@
-"""How well truths were found."""
+"""Scores of how well the hidden truths of a suite were found."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from statistics import median
 from .case import Case
 
 SOMETHING = ("named", "tie", "off catalogue")
-# Standard errors of the measurement by which a truth must differ from the nearest other single effect
-# to be one that could be told from it.
+# A truth counts as distinguishable if it differs from the nearest other single effect by this many
+# standard errors of the measurement.
 APART = 4.
 
 
@@ -23,12 +23,12 @@ class Outcome:
     verdict: str
     named: set[str]  # effects that are named
     first: str  # likeliest candidate
-    covering: list[set[str]]  # sets of effects among which the truth is said to be
+    covering: list[set[str]]  # sets of effects, one of which the answer takes for the truth
     confidence: dict[str, float]
     amplitudes: dict[str, dict]
     shrink: float | None
     runs: int
-    separation: float | None = None  # from the nearest other effect, where the suite knows it
+    separation: float | None = None  # from the nearest other effect; None: unknown
 
     @property
     def stands_apart(self) -> bool:
@@ -52,7 +52,7 @@ class Outcome:
 
     @property
     def confidently_wrong(self) -> bool:
-        """A name is stated, without a tie, that is no part of the truth."""
+        """Whether an effect is named, without a tie, that is not part of the truth."""
         return self.verdict == "named" and bool(self.named - self.truth_in_catalogue)
 
     @property
@@ -72,7 +72,7 @@ def read(folder: Path, label: str) -> Outcome | None:
 
 
 def read_lines(path: Path) -> list[Outcome]:
-    """Of a suite that writes cases and answers as lines of JSON."""
+    """The outcomes of a suite that writes cases and answers as lines of JSON."""
     lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
     return [outcome(Case(**line["case"]), line["answer"]) for line in lines]
 
@@ -180,7 +180,7 @@ def score(outcomes: list[Outcome]) -> Scores:
 
 
 def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcome]) -> list[Rate]:
-    """Of truths that could be told from every other single effect."""
+    """Rates for truths that are distinguishable from every other single effect."""
     def apart(outcomes: list[Outcome]) -> list[Outcome]:
         return [o for o in outcomes if o.stands_apart]
     answered = [o for o in apart(strong) if o.verdict in ("named", "tie")]

@@ -21,7 +21,7 @@ class Program:
         self.path, self.ranks = path.resolve(), ranks
 
     def run(self, arguments: list[str], log: Path, allowed: tuple[int, ...] = (0,)) -> int:
-        """Its output goes to a file. Throws if the exit code is none of the allowed ones."""
+        """Runs the program with its output in a file. Throws unless the exit code is allowed."""
         with open(log, "w", encoding="utf-8") as output:
             code = subprocess.run([*mpirun(self.ranks, "--oversubscribe"), str(self.path), *arguments], stdout=output,
                                   stderr=subprocess.STDOUT, check=False).returncode
@@ -32,7 +32,7 @@ class Program:
         return code
 
     def effects(self, study: Path) -> dict[str, dict]:
-        """The effects of a study by name: sign and confounders, from their files' own words."""
+        """The effects of a study by name: sign and confounders, as their files state them."""
         done = subprocess.run([self.path, str(study), "--list-effects"], text=True, capture_output=True,
                               check=True)
         effects = {}

@@ -1,5 +1,5 @@
-"""How strong an effect is in an experiment: from the runs of a pilot study, the amplitude at which its
-shift of the measured cells is so many standard deviations of one run (Mahalanobis)."""
+"""How strong an effect is in an experiment: from the runs of a pilot study, the amplitude at which
+it shifts the data points by a given number of standard deviations of one run (Mahalanobis)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 
 class Strengths:
-    """Shifts of all effects by amplitude, in units of one run's chaos."""
+    """Shifts of all effects by amplitude, in units of one run's scatter."""
 
     def __init__(self, pilot: Path) -> None:
         self.content = json.loads((pilot / "discovery.json").read_text(encoding="utf-8"))
@@ -35,7 +35,7 @@ class Strengths:
         self.whiten = _whitening(base[:, self.kept])
 
     def shift(self, effect: str, amplitude: float) -> float:
-        """Squared length of the shift, with what noise adds to it taken off."""
+        """Squared length of the shift, less the contribution of noise."""
         rows = np.array(self.sets[((effect, amplitude),)])[:, self.kept]
         change = self.whiten @ (rows.mean(axis=0) - self.mean)
         return float(change @ change) - len(change) * (1. / len(rows) + 1. / self.n_base)
@@ -59,8 +59,8 @@ class Strengths:
 
 
 def _whitening(rows: np.ndarray) -> np.ndarray:
-    """A matrix that makes the runs' scatter a unit matrix. Correlations are shrunk towards none as far as
-    so few runs demand (Schaefer and Strimmer 2005)."""
+    """A matrix that makes the covariance of the runs' scatter a unit matrix. Correlations are
+    shrunk towards zero, the more the fewer the runs (Schaefer and Strimmer 2005)."""
     n = len(rows)
     spread = rows.std(axis=0, ddof=1)
     z = (rows - rows.mean(axis=0)) / spread

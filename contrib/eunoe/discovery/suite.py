@@ -89,7 +89,7 @@ class Suite:
                    "discovery/write page = false", *settings]
         if case.excluded:
             entries.append(f"discovery/excluded effects = {', '.join(case.excluded)}")
-        # The truth is out of reach while the study runs.
+        # The study must not be able to read the truth.
         sealed, away = folder / "sealed", self.folder / f".sealed_{case.name}"
         if sealed.exists():
             sealed.rename(away)

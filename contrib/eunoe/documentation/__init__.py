@@ -1,1 +1,1 @@
-"""Pages that are made of what the programs say of themselves."""
+"""Pages that are generated from the programs' own descriptions."""

@@ -41,8 +41,8 @@ class Subject:
 
     page: Path
     head: str
-    # Sections in the order in which a case is written. Those that are not named, as of a new process or
-    # observable, come after these.
+    # Sections in the order in which a case is written. Those that are not named here, such as the
+    # section of a new process or observable, come after these.
     order: tuple[str, ...]
 
 
@@ -81,7 +81,7 @@ def cell(text: str) -> str:
 
 
 def kind(value: str) -> str:
-    """What fits, in words; choices as code."""
+    """The values that an entry accepts, in words; choices as code."""
     return re.sub(r"'([^']*)'", r"`\1`", value) if value else "text"
 
 

@@ -23,7 +23,7 @@ from eunoe.launch import SHARED, Failure, mpirun, overrides, parser_with_case, r
 
 
 class Case:
-    """A case of the program in a folder of its own."""
+    """A case of the program, with a folder of its own."""
 
     def __init__(self, program: str, case: str, folder: Path, settings: list[str]) -> None:
         self.program, self.case, self.folder, self.settings = program, case, folder, settings
@@ -48,20 +48,20 @@ class Case:
             raise Failure(f"The run ended with exit code {process.returncode}:\n{output}")
 
     def processes(self) -> list[int]:
-        """Numbers of the ranks that run the case, without the launcher."""
+        """Process numbers of the ranks that run the case, without the launcher."""
         found = subprocess.run(["pgrep", "-f", f"^{self.program} .*{self.results}"], text=True,
                                capture_output=True, check=False)
         return [int(word) for word in found.stdout.split()]
 
     def last_step(self) -> int:
-        """Of the newest checkpoint, 0 if there is none."""
+        """The step of the newest checkpoint, 0 if there is none."""
         index = self.results / "restart.latest"
         names = index.read_text().split() if index.is_file() else []
         return int(re.search(r"_(\d+)\.", names[0]).group(1)) if names else 0
 
 
 def tables_of(folder: Path) -> dict[str, str]:
-    """Tables and lists of pictures, without the columns that the wall clock fills."""
+    """Tables and lists of pictures, without the columns of wall-clock time."""
     found = {}
     for file in sorted([*folder.glob("*.csv"), *folder.glob("*.pvd")]):
         lines = file.read_text().splitlines()
@@ -81,7 +81,8 @@ def compare(reference: Case, other: Case, what: str) -> None:
 
 
 def kill_all(case: Case, process: subprocess.Popen) -> str:
-    """Kills the launcher and every rank, which the launcher puts into groups of their own.
+    """Kills the launcher and every rank. The launcher puts ranks into process groups of their own,
+    so killing its group is not enough.
 
     @return what the run has printed"""
     os.killpg(process.pid, signal.SIGKILL)
@@ -100,9 +101,9 @@ def reached_step(output: str) -> int:
 
 
 def check_loss(case: Case, output: str, before: int, frequency: int, what: str) -> int:
-    """No more than an interval is lost.
+    """Throws if more than an interval between checkpoints was lost.
 
-    @return how many steps are"""
+    @return number of steps lost"""
     left = case.last_step()
     if left < before:
         raise Failure(f"{what} the newest checkpoint is of step {left}, and it had been of step {before}.")
@@ -115,8 +116,8 @@ def check_loss(case: Case, output: str, before: int, frequency: int, what: str) 
 
 def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
                      frequency: int, draw: random.Random) -> tuple[int, int, int]:
-    """@return numbers of restarts from a checkpoint, of ends that were compared, and the most steps
-    that a kill has cost"""
+    """@return number of restarts from a checkpoint, number of finished runs that were compared, and
+    the most steps that a kill has cost"""
     began = time.monotonic()
     case.run(ranks[0])
     duration = time.monotonic() - began

@@ -1,1 +1,1 @@
-"""Which command makes which picture of the documentation, and what made those that are there."""
+"""The commands that make the documentation's pictures, and the record of what made each picture."""

@@ -31,7 +31,7 @@ from eunoe.repository import CASES, DOC, ROOT
 from eunoe.tables import read_columns
 from eunoe.vtk_files import read_pvd, read_vtu
 
-# Of each case: the view (axes to the right and upwards), the window (mm), the times (s) of the panels.
+# For each case: the view (axes to the right and upwards), the window (mm), the panels' times (s).
 VIEWS = {
     "sandpile": ("xz", (-22., 22., 0., 32.), (0.2, 0.4, 1.2)),
     "packing_in_box": ("xz", (-0.3, 12.3, 0., 24.), (0.1, 0.2, 0.5)),
@@ -44,7 +44,7 @@ DRAWN = {"granular_mixer": 1, "rotating_drum": 0, "sandpile": 0}
 
 
 def outline(axes: Axes, file: Path, view: tuple[int, int], number: int) -> None:
-    """The triangles of one solid, behind the particles' outlines but without faces."""
+    """Draws the edges of one solid's triangles, without faces."""
     data = read_vtu(file, ("solid",))
     points = data["points"][:, list(view)]
     solid = np.asarray(data["solid"], dtype=int)
@@ -53,10 +53,10 @@ def outline(axes: Axes, file: Path, view: tuple[int, int], number: int) -> None:
                                        linewidths=0.4, zorder=3))
 
 
-# Of those that are not listed, the speed gives the colour.
+# In all other cases the speed gives the colour.
 COLOURED_BY = {"granular_mixer": "type", "packing_in_box": "diameter"}
 TYPES = ((style.PALE_BLUE, "2500 kg/m³"), (style.VERMILLION, "4000 kg/m³"))
-LEGEND = 0.3  # height of its place below the panels (inch)
+LEGEND = 0.3  # height of the legend below the panels (inch)
 SPEEDS = ScalarMappable(Normalize(0., 0.3), "viridis")  # m/s
 DIAMETERS = ScalarMappable(Normalize(0.7, 1.5), "plasma")  # mm
 
@@ -102,7 +102,7 @@ def draw_case(name: str, folder: Path) -> Figure:
         axes.locator_params(nbins=5)
         axes.set_xlabel(f"{names[0]} (mm)")
         rows = np.flatnonzero(window.shows(points[:, view[0]], points[:, view[1]], particles["diameter"]))
-        # Seen from the front: the nearest, with the least coordinate in depth, are drawn last.
+        # Particles nearest to the viewer, with the least coordinate in depth, are drawn last.
         rows = rows[np.argsort(-points[rows, depth])]
         draw_circles(axes, points[rows, view[0]], points[rows, view[1]], particles["diameter"][rows],
                      colours(name, particles)[rows])
@@ -133,7 +133,7 @@ def draw_bounces(folder: Path) -> Figure:
 
 
 def save(figure: Figure, file: Path) -> None:
-    """As a small file: 128 colours do for these pictures."""
+    """Saves a small file: 128 colours are enough for these pictures."""
     buffer = io.BytesIO()
     figure.savefig(buffer, dpi=style.RESOLUTION)
     Image.open(buffer).convert("RGB").quantize(128).save(file, optimize=True)

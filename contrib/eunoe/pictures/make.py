@@ -5,11 +5,12 @@ Usage: contrib/tools pictures --list
                            [--pictures doc/pictures]
 
 Each picture belongs to one rule: the commands that compute what it shows, and the one that draws it.
---only takes names of rules and of pictures; without it all rules are followed, which takes days of one
-core for the studies, so look at --list first. A rule keeps its runs in a folder of its own under the
-given one (output/pictures); what has been computed there is not computed again. Into doc/pictures goes,
-with each picture, its line in README.md there: the rule, the revision that computed it, and the digest of
-the file, by which a test notices a picture that no rule has made.
+--only takes names of rules and of pictures; without it all rules are followed, which takes days of
+one core for the studies, so look at --list first. A rule keeps its runs in a folder of its own
+under the given one (output/pictures); what has been computed there is not computed again. Each
+picture goes to doc/pictures, and a line about it to README.md there: the rule, the revision that
+computed it, and the digest of the file. By the digest a test notices a picture that no rule has
+made.
 
 The runs of one revision give the same bits on any number of ranks, so the pictures are the same
 everywhere but for computing times and for fonts. Needs numpy, matplotlib and Pillow.
@@ -52,7 +53,7 @@ def chosen(names: list[str]) -> list[Rule]:
 
 
 def revision_of(program: Path) -> str:
-    """Of the sources from which a program was built, seven digits."""
+    """The revision of the sources from which a program was built, seven digits."""
     try:
         done = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
@@ -64,7 +65,7 @@ def revision_of(program: Path) -> str:
 
 
 def words_of(command: str, rule_folder: Path, options: argparse.Namespace) -> list[str]:
-    """The command with programs and folders put in."""
+    """The command with the names of programs and folders filled in."""
     launch = "".join(f"{word} " for word in mpirun(options.ranks))
     build = options.build.resolve()
     return shlex.split(command.format(
@@ -78,13 +79,13 @@ def run(command: str, rule_folder: Path, options: argparse.Namespace) -> None:
     print("  $", shlex.join(words), flush=True)
     with open(rule_folder / "log", "a", encoding="utf-8") as log:
         code = subprocess.run(words, cwd=ROOT, stdout=log, stderr=log, check=False).returncode
-    # A study ends with a code from 10 on that tells its verdict.
+    # A study's verdict is an exit code of 10 or more.
     if code != 0 and not (code >= 10 and "{discovery}" in command):
         raise Failure(f"The command ended with exit code {code}: see {rule_folder / 'log'}.")
 
 
 def check_revision(rule_folder: Path, revision: str) -> None:
-    """Runs of one folder are of one revision."""
+    """Throws unless all runs of a folder come from one revision."""
     note = rule_folder / "revision"
     if not note.exists():
         note.write_text(revision + "\n", encoding="utf-8")
@@ -94,7 +95,7 @@ def check_revision(rule_folder: Path, revision: str) -> None:
 
 
 def follow(rule: Rule, options: argparse.Namespace, revision: str) -> dict[str, Entry]:
-    """Computes and draws; the pictures' entries of the record."""
+    """Computes and draws; returns the pictures' entries for the record."""
     rule_folder = options.folder.resolve() / rule.name
     rule_folder.mkdir(parents=True, exist_ok=True)
     check_revision(rule_folder, revision)

@@ -34,7 +34,7 @@ def digest(file: Path) -> str:
 
 
 def read_record(pictures: Path) -> dict[str, Entry]:
-    """By the name of the picture; empty if there is no record yet."""
+    """The entries by the names of the pictures; empty if there is no record yet."""
     file = pictures / NAME
     text = file.read_text(encoding="utf-8") if file.exists() else ""
     return {name: Entry(*words) for name, *words in

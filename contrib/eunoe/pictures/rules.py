@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 class Rule:
     """Commands that make pictures, run in the top folder of the repository.
 
-    `pictures` tells for each file of doc/pictures the file that the commands make, relative to the rule's
-    folder. `compute` are commands that need not be repeated, `draw` those that only draw, or that skip by
-    themselves what they have computed. In both, {particles} and {discovery} stand for the programs with
-    mpirun, {program} for eunoe-particles without, {python} for the interpreter, {folder} for the rule's
-    folder. `cost` is that of one free core.
+    `pictures` maps each file of doc/pictures to the file that the commands make, relative to the
+    rule's folder. `compute` are commands that need not be repeated; `draw` are commands that only
+    draw, or that skip by themselves what they have computed. In both, {particles} and {discovery}
+    stand for the programs with mpirun, {program} for eunoe-particles without mpirun, {python} for
+    the interpreter, {folder} for the rule's folder. `cost` is the time on one free core.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""The spreading apparatus as a run tells it in apparatus.json.
+"""The spreading apparatus as a run describes it in apparatus.json.
 
 x runs along the passes with the feedstock platform's left end at 0, y upwards with the transfer
 plate's surface at 0. SI units.
@@ -15,7 +15,7 @@ import numpy as np
 
 
 class ApparatusError(Exception):
-    """The file is missing or is not what a run writes; the text says so in a sentence."""
+    """The file is missing or no run wrote it; the text is a sentence for the user."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Apparatus:
     bed_depth: float
     first_bed_depth: float
     density: float
-    plate_stroke: float | None = None  # where it differs from the layer thickness
+    plate_stroke: float | None = None  # None: the layer thickness
 
     @classmethod
     def read(cls, file: Path) -> Apparatus:
@@ -86,19 +86,19 @@ class Apparatus:
 
     @property
     def full_layer_mass(self) -> float:
-        """Of solid material that fills a layer on the plate (kg)."""
+        """Mass of solid material that fills a layer on the plate (kg)."""
         return self.density * self.plate_length * self.depth * self.layer_thickness
 
     def plate_height(self, layer: int) -> float:
-        """Of the measuring plate when this layer is weighed."""
+        """Height of the measuring plate when this layer is weighed."""
         return -layer * (self.plate_stroke or self.layer_thickness)
 
     def spreader_tip(self) -> float:
-        """Place of the lowest line of the spreader that has made a layer when that is weighed."""
+        """x of a spreader's lowest line when the layer that it has made is weighed."""
         return self.x_plate_end + self.rear + self.velocity * self.rest_before_weighing
 
     def spreader_tips(self, layer: int, weighings: Sequence[float]) -> list[float]:
-        """Places of the lowest lines of all spreaders at work when a layer is weighed.
+        """x of the lowest lines of all spreaders at work when a layer is weighed.
 
         :param weighings: times (s) at which layers 0, 1, ... were weighed
         """
@@ -121,7 +121,7 @@ class Apparatus:
         return np.column_stack((x, self.clearance + y))
 
     def platform_height(self, layer: int, weighings: Sequence[float]) -> float:
-        """Of the feedstock platform when a layer is weighed.
+        """Height of the feedstock platform when a layer is weighed.
 
         A pass begins a fixed time before its weighing, and the platform's stroke ends when the
         pass begins; the next pass may have begun already.

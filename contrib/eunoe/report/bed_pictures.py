@@ -22,7 +22,7 @@ STATIC_BELOW = 1e-6  # distance over the plate (m) under which a particle counts
 
 
 def plate_window(apparatus: Apparatus, last_layer: int, largest_diameter: float) -> Window:
-    """Around the measuring plate, as deep as it is at the last layer."""
+    """The window around the measuring plate, down to its height at the last layer."""
     beside = max(2.5 * apparatus.gap, 0.08 * apparatus.plate_length)
     above = max(2. * largest_diameter, 0.07 * apparatus.plate_length)
     return Window(apparatus.x_gap - beside, apparatus.x_exit + beside,
@@ -31,7 +31,7 @@ def plate_window(apparatus: Apparatus, last_layer: int, largest_diameter: float)
 
 
 def whole_window(apparatus: Apparatus) -> Window:
-    """Everything from the feedstock platform to the collector."""
+    """The window from the feedstock platform to the collector."""
     beside = 0.02 * apparatus.x_end
     right = max(apparatus.x_end, apparatus.spreader_tip() + apparatus.front)
     return Window(-beside, right + beside, apparatus.y_bottom,
@@ -122,13 +122,13 @@ def overview_figure(particles: Fields, apparatus: Apparatus, layer: int,
 
 def displacement_figure(particles: Fields, apparatus: Apparatus,
                         layer: int) -> tuple[Figure, float]:
-    """How far the last pass moved what was on the plate; and the share of it drawn."""
+    """How far the last pass moved the powder on the plate; and the share of the powder drawn."""
     window = plate_window(apparatus, layer, particles["diameter"].max(initial=0.))
     figure, panels = make_panels(window, 1)
     _draw_plates(panels[0], apparatus, apparatus.plate_height(layer))
     rows, share = _rows_to_draw(particles, window)
     tracked = particles["tracked"] > 0.
-    # What came new lies behind, so that it does not hide what it has moved.
+    # New powder is drawn behind the powder that it has moved.
     rows = rows[np.lexsort((particles["points"][rows, 2], tracked[rows]))]
     moved = moved_over_plate(particles)
     largest = max(moved[tracked].max(initial=0.), 10. * STATIC_BELOW)

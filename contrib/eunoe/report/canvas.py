@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from . import style
 
-MOST_CIRCLES = 100_000  # in a panel; of more, only those in the front of the slice are drawn
+MOST_CIRCLES = 100_000  # in a panel; of more circles, only the front ones are drawn
 MM = 1e3  # of a metre
 
 LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 0.62, 0.82, 0.42, 0.08, 0.12  # around the panels (inch)
@@ -30,14 +30,14 @@ class Window:
     y1: float
 
     def shows(self, x: np.ndarray, y: np.ndarray, diameters: np.ndarray) -> np.ndarray:
-        """Which circles reach into the window."""
+        """Whether each circle reaches into the window."""
         reach = 0.5 * diameters
         return ((x + reach > self.x0) & (x - reach < self.x1) &
                 (y + reach > self.y0) & (y - reach < self.y1))
 
 
 def make_panels(window: Window, n: int, names: str = "xy") -> tuple[Figure, list[Axes]]:
-    """Panels below each other that show a window to scale, in mm."""
+    """Makes panels in a column that show a window to scale, in mm."""
     ratio = (window.y1 - window.y0) / (window.x1 - window.x0)
     width = min(style.WIDTH - LEFT - RIGHT, MOST_HEIGHT / ratio)
     height = width * ratio
@@ -60,7 +60,7 @@ def make_panels(window: Window, n: int, names: str = "xy") -> tuple[Figure, list
 
 def add_colour_bar(figure: Figure, panels: list[Axes], mappable: ScalarMappable, label: str,
                    **options) -> Axes:
-    """Right of the panels, from the upper end of the first one."""
+    """Adds a colour bar right of the panels, from the upper end of the first one."""
     low, high = panels[-1].get_position(), panels[0].get_position()
     height = np.clip(high.y1 - low.y0, LEAST_BAR / figure.get_figheight(),
                      MOST_BAR / figure.get_figheight())
@@ -71,7 +71,7 @@ def add_colour_bar(figure: Figure, panels: list[Axes], mappable: ScalarMappable,
 
 
 def front_slice(shown: np.ndarray, towards_viewer: np.ndarray) -> tuple[np.ndarray, float]:
-    """Rows of the circles that are drawn of those shown, and the share that they are of them."""
+    """Rows of the circles to draw, and their share of the circles shown."""
     rows = np.flatnonzero(shown)
     if len(rows) <= MOST_CIRCLES:
         return rows, 1.
@@ -82,7 +82,7 @@ def front_slice(shown: np.ndarray, towards_viewer: np.ndarray) -> tuple[np.ndarr
 
 def draw_circles(axes: Axes, x: np.ndarray, y: np.ndarray, diameters: np.ndarray,
                  faces: np.ndarray) -> None:
-    """In the order given, so that later circles cover earlier ones (m)."""
+    """Draws circles in the order given, so that later ones cover earlier ones (m)."""
     if len(diameters) == 0:
         return
     points_wide = 72. * style.WIDTH * axes.get_position().width

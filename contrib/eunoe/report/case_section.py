@@ -1,4 +1,4 @@
-"""How the simulated case compares with the apparatus on which the densities were measured."""
+"""The section that compares the simulated case with the apparatus of the measurements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .quantities import count, length, number, percent
 from .run_folder import Layers
 
 
-BRIDGED = 3.  # width of a gap over the largest diameter below which a few particles bridge it
+BRIDGED = 3.  # gap width over the largest diameter, below which a few particles bridge the gap
 FIRST_OF_DENSIFICATION = 10  # layer from which the measured density rises
 
 
@@ -45,7 +45,7 @@ def _case_rows(layers: Layers, apparatus: Apparatus, full: FullSize,
 
 
 def _slopes(apparatus: Apparatus, full: FullSize, layer: int) -> str:
-    """What the free ends of the powder mean for a plate of this length."""
+    """What the slopes at the powder's free ends mean for a plate of this length."""
     height = layer * apparatus.layer_thickness
     free = height - apparatus.lip
     if free <= 0.:
@@ -60,7 +60,7 @@ def _slopes(apparatus: Apparatus, full: FullSize, layer: int) -> str:
 
 
 def _bridging(apparatus: Apparatus, largest_diameter: float) -> str:
-    """What a gap means that is not much wider than the particles."""
+    """What it means if a gap is not much wider than the particles."""
     if largest_diameter <= 0. or apparatus.gap > BRIDGED * largest_diameter:
         return ""
     return (f"The gaps are only {number(apparatus.gap / largest_diameter, 2)} times as wide as the "

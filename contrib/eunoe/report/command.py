@@ -14,15 +14,15 @@ from .run_folder import ReportError
 
 
 def write_page(words: list[str], documentation: str, make_page: Callable[[Path], Page], name: str) -> int:
-    """Makes the page of the folder that the words of the command line name and writes it there, as a file of
-    the given name. Returns the exit code; a folder of which no page can be made is told in one sentence."""
+    """Makes the page of the folder that the command line names and writes it there under the given
+    name. Returns the exit code. If no page can be made, one sentence says why."""
     arguments = parser(documentation)
     arguments.add_argument("folder", type=Path, help="output folder")
     arguments.add_argument("--out", type=Path, help=f"file to write (default: FOLDER/{name})")
     arguments.add_argument("--figures", choices=("pdf", "png", "svg"),
                         help="write the figures as files too, into 'figures' beside the page")
     options = arguments.parse_args(words)
-    # matplotlib tells of the building of its font cache, which says nothing about the run.
+    # matplotlib logs that it builds its font cache, which says nothing about the run.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     target = options.out or options.folder / name
     try:

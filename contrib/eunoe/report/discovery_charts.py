@@ -31,7 +31,7 @@ def _panels(n: int, height: float) -> tuple[Figure, list[Axes]]:
 
 
 def _sentence(text: str) -> Figure:
-    """Stands for a picture that has nothing to show."""
+    """A sentence in place of a picture that has nothing to show."""
     figure = Figure(figsize=(style.WIDTH, 0.6), layout="constrained")
     axes = figure.subplots()
     axes.set_axis_off()
@@ -41,7 +41,7 @@ def _sentence(text: str) -> Figure:
 
 def _draw_band(axes: Axes, x: np.ndarray, rows: list[dict], name: str, colour: str,
                shift: float) -> None:
-    """Two standard deviations of single runs about their mean."""
+    """Draws the band of two standard deviations of single runs about their mean."""
     if name not in rows[0]:
         return
     mean = np.array([row[name] for row in rows])
@@ -102,7 +102,7 @@ def envelope_figure(study: Study, held_out: bool) -> Figure:
 
 
 def ranking_figure(study: Study) -> Figure:
-    """How sure it is that each effect is the missing one, or one of the missing ones."""
+    """The probability that each effect is the missing one, or one of the missing ones."""
     rows = study.content["candidates"][:MOST_EFFECTS]
     bars = [(row["effect"].replace("_", " "), row["confidence"], style.BLUE) for row in rows]
     bars.append(("none of the catalogue", study.content["confidence off catalogue"], style.GREY))
@@ -120,7 +120,7 @@ def ranking_figure(study: Study) -> Figure:
 
 
 def _blocks(cells: list[tuple[str, str, int]]) -> list[tuple[int, int, str]]:
-    """Beginning, end and name of the runs of cells that belong to one observable."""
+    """Beginning, end and name of each sequence of data points that belong to one observable."""
     blocks: list[tuple[int, int, str]] = []
     for k, (experiment, observable, _) in enumerate(cells):
         name = f"{experiment}: {observable.replace('_', ' ')}"
@@ -155,7 +155,7 @@ def fingerprint_figure(cells: list[tuple[str, str, int]], prints: list[Fingerpri
 
 
 def cosine_figure(study: Study) -> Figure:
-    """How alike the changes are that two effects make."""
+    """How similar the changes by each two effects are."""
     similarity = study.stage("screen")["similarity"]
     names = [name.replace("_", " ") for name in similarity["effects"]]
     matrix = np.array([[np.nan if value is None else value for value in row]
@@ -176,7 +176,7 @@ def cosine_figure(study: Study) -> Figure:
 
 
 def gap_figure(study: Study) -> Figure:
-    """Distance between model and measurement before and after, with its noise taken off."""
+    """Discrepancy between model and measurement before and after."""
     gaps = study.content["gaps"]
     figure = Figure(figsize=(style.WIDTH, 2.), layout="constrained")
     axes = figure.subplots()

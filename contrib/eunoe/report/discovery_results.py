@@ -13,7 +13,7 @@ from .run_folder import ReportError
 
 @dataclass
 class Fingerprint:
-    """What an effect changes, cell by cell, in standard deviations of one run of the base model."""
+    """The change of each data point by an effect, in standard deviations of one base-model run."""
 
     effect: str
     amplitude: float
@@ -94,7 +94,7 @@ class Study:
                 if list(run["amplitudes"]) == [effect] and run["values"] is not None}
 
     def _values(self, amplitudes: dict, cells: list, places: dict) -> np.ndarray:
-        """One row a seed: the cells of all experiments at these amplitudes."""
+        """One row for each seed: the data points of all experiments at these amplitudes."""
         by_seed: dict[int, dict[str, list]] = {}
         for run in self._runs():
             if run["amplitudes"] == amplitudes and run["values"] is not None:

@@ -113,7 +113,7 @@ def _members(table: dict) -> str:
     if not rows:
         return ""
     if not refuted:
-        # Without runs of the held-out experiments there is no p.
+        # p exists only if the held-out experiments were run.
         each = ", ".join(f"{plain(row['effects'])} {_probability(row['p'])}" for row in rows
                          if row["p"] is not None)
         return f" The held-out data refute none of the candidates (p of {each})." if each else ""
@@ -138,7 +138,7 @@ def held_out_text(study: Study) -> str:
 
 
 def gap_text(study: Study) -> str:
-    """Why a gap may be larger with an effect than without, if it is; else nothing."""
+    """Explains why a discrepancy is larger with an effect than without; empty if it is not."""
     table = study.content["gaps"].get("fit", {})
     if table.get("gap after", 0.) <= table["gap before"]:
         return ""

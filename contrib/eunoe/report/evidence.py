@@ -1,4 +1,4 @@
-"""What a spreading run left beside its tables: the geometry and the particles."""
+"""What a spreading run leaves in addition to its tables: the geometry and the particles."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from .apparatus import Apparatus, ApparatusError
 from .run_folder import Run
 from eunoe.vtk_files import VtkError, read_vtu
 
-Fields = dict[str, np.ndarray]  # of particles, by name
+Fields = dict[str, np.ndarray]  # fields of the particles, by name
 FIELDS = ("diameter", "mass", "layer", "tracked", "displacement", "on_plate")
 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What is known of the run beside its tables; None or empty where it is not."""
+    """What is known of the run in addition to its tables; None or empty if unknown."""
 
     apparatus: Apparatus | None
     pictures: dict[int, Fields]  # of the first, a middle and the last layer
@@ -28,7 +28,7 @@ class Evidence:
 
 
 def gather(run: Run) -> Evidence:
-    """Reads apparatus.json and the pictures; what is missing becomes a sentence of the problems."""
+    """Reads apparatus.json and the pictures; a sentence in `problems` says what is missing."""
     problems: list[str] = []
     apparatus, pictures = None, {}
     try:

@@ -1,4 +1,4 @@
-"""The short report of a run that was no spreading: timings and the last picture."""
+"""The short report of a run of any other process: timings and the last picture."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _vertical_axis(run: Run) -> tuple[int, float]:
 
 def _speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
                   upwards: float) -> tuple[Figure, float]:
-    """Particles by speed in the view that shows most of them; and the share that is drawn.
+    """Particles coloured by speed in the view that shows most of them; and the share drawn.
 
     :param triangles: corners of the solids' triangles, three rows each (m)
     """
@@ -71,7 +71,7 @@ def _speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
 
 
 def _solids(file: Path | None) -> np.ndarray:
-    """Corners of the solids' triangles; none if they were not drawn."""
+    """Corners of the solids' triangles; none if the run wrote no pictures of them."""
     points = read_vtu(file, ())["points"] if file else np.empty((0, 3))
     return points if len(points) % 3 == 0 else points[:0]
 

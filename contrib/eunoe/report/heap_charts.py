@@ -81,7 +81,7 @@ def profile_figure(profile: Profile, views: Views, disc: float) -> Figure:
 
 def particles_figure(particles: Fields, height: float, disc: float,
                      rim: float) -> tuple[Figure, float]:
-    """The heap of a height seen along z, coloured by diameter; and the share of it drawn (m)."""
+    """The heap seen along z, coloured by diameter; and the share of it drawn. Lengths in m."""
     x, y, z = particles["points"].T.astype(float)
     margin = 0.06 * disc + particles["diameter"].max(initial=0.)
     window = Window(-0.5 * disc - margin, 0.5 * disc + margin, -RIM_SHOWN * rim, height + margin)

@@ -12,9 +12,9 @@ from .run_folder import Run
 from .run_section import add_run_section
 from eunoe.vtk_files import VtkError, read_vtu
 
-# By Gaboriault et al. (2025), for their powder on a disc of 10 mm.
+# Measured by Gaboriault et al. (2025) for their powder on a disc of 10 mm.
 MEASURED_ANGLE = 37.5
-# Of the powder that was filled in; of four heaps one stays if it flows.
+# Share of the powder filled in. Of a fill of four heaps, one stays on the disc if the powder flows.
 COLUMN_SHARE = 0.6
 
 
@@ -46,7 +46,7 @@ def _size_notice(disc: float, particles: dict[str, np.ndarray] | None) -> str:
 
 
 def _column_notice(run: Run, views: Views) -> str:
-    """That there is no heap: what flows leaves at most a cone on the disc."""
+    """A notice that there is no heap: a powder that flows leaves at most a cone on the disc."""
     inserted = float(run.summary["inserted_mass"]) if run.summary else 0.
     if inserted <= 0. or views.mass_on_disc < COLUMN_SHARE * inserted:
         return ""

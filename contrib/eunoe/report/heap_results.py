@@ -16,7 +16,7 @@ from .run_folder import ReportError
 
 @dataclass(frozen=True)
 class Views:
-    """The rows of heap.csv but for the last, one a view, and from the last the means."""
+    """The rows of heap.csv, one for each view; the last row has the means."""
 
     direction: np.ndarray  # degrees
     base_angle: np.ndarray  # degrees

@@ -1,4 +1,4 @@
-"""What follows from the table of layers: counting noise, and where the powder went."""
+"""Results from the table of layers: counting noise, and where the powder went."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class DensityNoise:
 
 
 def counting_noise(layers: Layers, full_layer_mass: float, grain: float) -> DensityNoise:
-    """Noise if particles came and left independently of each other.
+    """The noise if particles came and left independently of each other.
 
     The mass M that came or left then has the variance M * grain. Particles of a packing make room
     for each other, so the true noise is smaller.
@@ -41,7 +41,7 @@ def counting_noise(layers: Layers, full_layer_mass: float, grain: float) -> Dens
 
 @dataclass(frozen=True)
 class Feed:
-    """Where the powder went that left the feedstock platform, until the last weighing (kg)."""
+    """Where the powder from the feedstock platform went, until the last weighing (kg)."""
 
     plate: float
     gap: float

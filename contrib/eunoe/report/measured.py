@@ -36,7 +36,7 @@ class FullSize:
 
     @property
     def full_layer_mass(self) -> float:
-        """Of solid material that fills a layer on the plate (kg)."""
+        """Mass of solid material that fills a layer on the plate (kg)."""
         return self.density * self.plate_area * self.layer_thickness
 
 

@@ -54,7 +54,7 @@ class Page:
         self.parts.append(f"<p>{escape(text)}</p>")
 
     def notice(self, text: str) -> None:
-        """Something that limits what the report shows."""
+        """Adds a notice of something that limits what the report shows."""
         self.parts.append(f'<p class="notice">{escape(text)}</p>')
 
     def figure(self, figure: Figure, caption: str) -> None:
@@ -66,7 +66,7 @@ class Page:
                           "</figcaption></figure>")
 
     def write_figures(self, folder: Path, file_format: str) -> None:
-        """Each figure as a file of its own: figure-1.pdf, ..."""
+        """Writes each figure as a file of its own: figure-1.pdf, ..."""
         folder.mkdir(parents=True, exist_ok=True)
         for number, figure in enumerate(self.figures, start=1):
             figure.savefig(folder / f"figure-{number}.{file_format}", dpi=style.RESOLUTION)
@@ -75,7 +75,7 @@ class Page:
         self.parts.append(table(head, rows))
 
     def timing_table(self, rows: Iterable[tuple[str, str, str, float]]) -> None:
-        """Name, seconds, seconds of the slowest rank, and share, which is drawn as a bar too."""
+        """Columns: name, seconds, seconds of the slowest rank, and share, also drawn as a bar."""
         body = "".join(
             f"<tr><td>{escape(name)}</td><td>{mean}</td><td>{slowest}</td>"
             f"<td>{100. * share:.1f}\u00a0%</td>"
@@ -86,7 +86,7 @@ class Page:
                           f"<tbody>{body}</tbody></table>")
 
     def fold(self, summary: str, content: str) -> None:
-        """Content (HTML) that is shown on demand."""
+        """Adds content (HTML) that is shown on demand."""
         self.parts.append(f"<details><summary>{escape(summary)}</summary>{content}</details>")
 
     def html(self) -> str:

@@ -14,13 +14,13 @@ TIME = [(1., "s"), (60., "min"), (3600., "h")]
 
 
 def unit_for(largest: float, units: list[tuple[float, str]]) -> tuple[float, str]:
-    """The unit in which the largest of some values is at least 1, and its size."""
+    """The unit in which the largest of some values is at least 1, and the unit's size."""
     fitting = [unit for unit in units if abs(largest) >= unit[0]]
     return fitting[-1] if fitting else units[0]
 
 
 def number(value: float, digits: int = 3) -> str:
-    """A number with so many significant digits, without exponent where that is readable."""
+    """A number with so many significant digits, without an exponent if that is readable."""
     if not isfinite(value):
         return "–"
     if value == 0.:

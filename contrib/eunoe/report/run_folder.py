@@ -1,4 +1,4 @@
-"""What a run leaves in its output folder, apart from the particles themselves."""
+"""What a run leaves in its output folder, except the particles themselves."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from eunoe.vtk_files import read_pvd
 
 
 class ReportError(Exception):
-    """Why no report can be made, in a sentence for the user."""
+    """No report can be made; the text is a sentence for the user that says why."""
 
 
 @dataclass(frozen=True)
 class Layers:
-    """The rows of layers.csv, one a weighing, in SI units; NaN where a value is not defined."""
+    """The rows of layers.csv, one for each weighing, in SI units; NaN where undefined."""
 
     layer: np.ndarray  # number of the pass, from 0
     time: np.ndarray  # s
@@ -80,7 +80,7 @@ class Run:
     """An output folder."""
 
     folder: Path
-    layers: Layers | None  # None if the run was no spreading
+    layers: Layers | None  # None if the run did not spread powder
     summary: dict[str, float | str] | None  # None if the run has not finished
     parameters: Parameters | None
     parameters_text: str
@@ -110,7 +110,7 @@ class Run:
             return {}
         pictures = {}
         for snapshot in read_pvd(index):
-            # By time, as the files may stem from an earlier run in the same folder.
+            # Matched by time, as some files may come from an earlier run in the same folder.
             same = np.isclose(self.layers.time, snapshot.time, rtol=1e-9, atol=0.)
             if same.any() and snapshot.file.is_file():
                 pictures[int(self.layers.layer[same][0])] = snapshot.file
@@ -124,7 +124,7 @@ class Run:
 
 
 def read_run(folder: Path) -> Run:
-    """Reads what is in the folder; a ReportError says what is missing for any report."""
+    """Reads the folder; a ReportError says what is missing if no report is possible."""
     if not folder.is_dir():
         raise ReportError(f"{folder} is no folder: give the output folder of a run.")
     table, summary_file, prm = (folder / name

@@ -74,7 +74,7 @@ def _timing_rows(summary: Summary) -> list[tuple[str, str, str, float]]:
 
 
 def add_run_section(page: Page, run: Run, outlets: dict[str, str]) -> None:
-    """Provenance, timings and the input; what is not there is left out."""
+    """Adds provenance, timings and the input, as far as the run has them."""
     if run.summary is not None:
         page.heading("The run")
         page.table((), _provenance_rows(run.summary, outlets))

@@ -22,7 +22,7 @@ OUTLETS = {"1": "Went to the collector", "2": "Fell into the gaps"}
 
 
 def noise_of(layers: Layers, evidence: Evidence) -> DensityNoise | None:
-    """The counting noise, with the sizes of the particles on the plate where they are known."""
+    """The counting noise, from the sizes of the particles on the plate if they are known."""
     if evidence.apparatus is None or layers.particles[-1] == 0:
         return None
     grain = layers.mass[-1] / layers.particles[-1]
@@ -34,7 +34,7 @@ def noise_of(layers: Layers, evidence: Evidence) -> DensityNoise | None:
 
 
 def _progress_notice(run: Run, layers: Layers, apparatus: Apparatus | None) -> str:
-    """What an unfinished run lacks; empty for a finished one."""
+    """A notice of what an unfinished run lacks; empty for a finished one."""
     if run.summary is None:
         expected = f" of {apparatus.n_layers}" if apparatus else ""
         return (f"The run has not finished (there is no summary.json): {len(layers)}{expected} "
@@ -107,7 +107,8 @@ def _add_pictures(page: Page, layers: Layers, evidence: Evidence) -> None:
 
 
 def _weighing_times(layers: Layers, apparatus: Apparatus) -> list[float]:
-    """Of all layers so far and, for the platform may already rise for it, of the next (s)."""
+    """Times of all weighings so far and of the next, for which the platform may already rise
+    (s)."""
     times = list(layers.time)
     if 1 < len(times) < apparatus.n_layers:
         times.append(2. * times[-1] - times[-2])

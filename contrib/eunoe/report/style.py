@@ -1,4 +1,4 @@
-"""The look that all figures share, and their way into the page."""
+"""The style that all figures share, and their conversion for the page."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ INK, GREY, PALE_GREY = "#222222", "#777777", "#cccccc"
 SOLID_FACE, SOLID_EDGE = "#e4e4e4", "#555555"
 
 WIDTH = 6.5  # of all figures (inch)
-RESOLUTION = 260  # of what is drawn as pixels (dots an inch)
+RESOLUTION = 260  # of bitmaps (dots per inch)
 
 matplotlib.rcParams.update({
     "font.family": "sans-serif",
@@ -66,7 +66,7 @@ def layer_axis(axes: Axes, last: float) -> None:
 
 
 def plain_log_axis(axis: Axis) -> None:
-    """Labels of a logarithmic axis as plain numbers."""
+    """Labels a logarithmic axis with plain numbers."""
     low, high = axis.get_view_interval()
     if high < 100. * low:
         axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1., 2., 5.)))

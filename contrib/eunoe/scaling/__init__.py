@@ -1,1 +1,1 @@
-"""How a case would be shared out over many ranks, and what its steps would take."""
+"""Predicts how a case would be divided among many ranks, and the cost of its steps."""

@@ -12,18 +12,18 @@ import numpy as np
 from .mesh import Mesh
 
 SLOPE = math.tan(math.radians(35.))
-# Of prm/spreading: full lengths, strokes, spreader and powder (m).
+# From prm/spreading: full lengths, strokes, spreader and powder (m).
 W1, W2, W3, W4 = 69e-3, 56e-3, 73e-3, 46.5e-3
 GAP, LIP, STROKE, FIRST_STROKE, MARGIN = 0.5e-3, 0.1e-3, 0.6e-3, 2.2e-3, 1e-3
 LAYER, CLEARANCE, RADIUS, N_LAYERS = 100e-6, 100e-6, 5e-3, 21
 LARGEST = 101.096e-6
 DIAMETERS = np.array([52.622, 57.7666, 63.4141, 69.6138, 76.4196, 83.8907, 92.0923, 101.096]) * 1e-6
 SHARES = np.array([0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927, 0.050544])
-BED_FRACTION = 0.55  # of the volume that is solid
+BED_FRACTION = 0.55  # solid fraction
 
 
 def apparatus(length_factor: float, depth: float) -> dict[str, float]:
-    """Places of the parts (m), by the names that a run's apparatus.json has."""
+    """Positions of the parts (m), by their names in a run's apparatus.json."""
     a = {"x_transfer": length_factor * W1, "depth": depth}
     a["x_gap"] = a["x_transfer"] + length_factor * W2
     a["x_plate"] = a["x_gap"] + GAP
@@ -53,10 +53,10 @@ def mesh_of(a: dict[str, float], largest: float = LARGEST) -> Mesh:
 
 def lattice(lower: tuple[float, ...], upper: tuple[float, ...], density: float,
             random: np.random.Generator) -> np.ndarray:
-    """Points in a box, `density` a cubic metre, on a grid with random shifts."""
+    """Points in a box, `density` per cubic metre, on a grid with random shifts."""
     size = np.array(upper) - np.array(lower)
     number = np.maximum(1, np.round(size * density ** (1. / 3.))).astype(int)
-    # A thin box takes whole layers, so their spacing in x makes up for what rounding leaves.
+    # A thin box holds whole layers of points; the spacing in x makes up for the rounding.
     number[0] = max(1, round(density * float(np.prod(size)) / float(number[1] * number[2])))
     grid = np.indices(number).reshape(3, -1).T
     return np.array(lower) + (grid + random.uniform(0., 1., grid.shape)) / number * size

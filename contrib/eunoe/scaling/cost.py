@@ -1,4 +1,4 @@
-"""What a step takes, from costs that were measured on one core and figures of a network."""
+"""The cost of a step, from costs measured on one core and the figures of a network."""
 
 from __future__ import annotations
 
@@ -16,13 +16,12 @@ GHOST_BYTES = 9 * 8  # position, velocity and spin of a ghost at every step
 class Costs:
     """Seconds and bytes; doc/performance.md says how they were measured.
 
-    `speeds`: particle-steps/s of a core by the particles that it owns, as fewer fit better into its
-    caches. `ghost`: work for a ghost over that for an own particle; `paired`: share of the ghosts
-    that are in listed pairs, which alone are sent at every step. `search`: what a search costs
-    in steps of the same particles; `interval`: steps between searches; `collectives`: operations
-    among all ranks in a search. `step_allreduces`: those in every step. `bandwidth` is that of a
-    node to others, in each direction, shared by its ranks; `copy` that of a rank to another one of
-    its node.
+    `speeds`: particle-steps/s of a core by the number of its particles, as fewer fit better into
+    its caches. `ghost`: work for a ghost over that for an own particle; `paired`: share of the
+    ghosts that are in listed pairs; only these are sent at every step. `search`: cost of a search
+    in steps of the same particles; `interval`: steps between searches; `collectives`: collective
+    operations in a search; `step_allreduces`: those in every step. `bandwidth`: of a node to
+    others, in each direction, shared by its ranks; `copy`: bandwidth between two ranks of a node.
     """
 
     speeds: tuple[tuple[float, float], ...] = ((2e4, 17.4e6), (2e5, 8.6e6))
@@ -41,16 +40,17 @@ class Costs:
     bytes_particle: float = 1.1e3
 
     def seconds_per_particle(self, owned: np.ndarray) -> np.ndarray:
-        """Of a step, between the given sizes by their logarithm, beyond them constant."""
+        """Seconds of a step, interpolated over the logarithm of the size; constant beyond the
+        ends."""
         sizes, speeds = np.array(self.speeds).T
         return 1. / np.interp(np.log(np.maximum(owned, 1)), np.log(sizes), speeds)
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """Of a number of ranks: seconds of a step (in all, and what each part adds on the rank for
-    which the whole is longest), efficiency, bytes that a rank sends in a step (mean, largest),
-    memory of the largest rank (bytes)."""
+    """For a number of ranks: seconds of a step (total, and of each part on the slowest rank),
+    efficiency, bytes that a rank sends in a step (mean, largest), memory of the largest rank
+    (bytes)."""
 
     n_ranks: int
     seconds: float
@@ -62,8 +62,8 @@ class Prediction:
 
 
 def message_seconds(partition: Partition, costs: Costs) -> np.ndarray:
-    """Of the exchange of ghosts in a step, shape (n_ranks): a latency for each neighbour, copies
-    within the node, and the node's traffic with others, for which all its ranks wait."""
+    """Seconds of the exchange of ghosts in a step, shape (n_ranks): a latency for each neighbour,
+    copies within the node, and the node's traffic with others, for which all its ranks wait."""
     sender, receiver, number = partition.messages.T
     n_ranks, per_node = len(partition.owned), costs.ranks_per_node
     inside = sender // per_node == receiver // per_node
@@ -79,7 +79,7 @@ def message_seconds(partition: Partition, costs: Costs) -> np.ndarray:
 
 
 def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
-    """The efficiency is against one core that has all particles, as if it had room for them."""
+    """The efficiency is relative to one core that has all particles, even if they would not fit."""
     owned, n_ranks = partition.owned, len(partition.owned)
     per_particle = costs.seconds_per_particle(owned)
     rounds = ceil(log2(n_ranks)) if n_ranks > 1 else 0

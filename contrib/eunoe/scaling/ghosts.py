@@ -9,14 +9,14 @@ import numpy as np
 from .mesh import Mesh
 
 DIRECTIONS = [offset for offset in product((-1, 0, 1), repeat=3) if offset != (0, 0, 0)]
-CHUNK = 1 << 18  # particles that are looked at together, which bounds the memory
+CHUNK = 1 << 18  # particles that are processed together, which bounds the memory
 
 
 def reach_of(diameters: np.ndarray, skin: float, cohesion: float = 0.) -> np.ndarray:
-    """How far from its centre each particle is needed (m): up to the largest particle's centre at a
-    gap of the skin (a share of the largest diameter) and of the range of cohesion (m), and the
-    program's 0.1 per thousand more. DMT of prm/spreading acts over 12 nm, which hardly changes a
-    number of ghosts."""
+    """How far from its centre each particle is needed (m): up to the centre of the largest particle
+    at a separation of the skin (a share of the largest diameter) plus the range of cohesion (m),
+    and the program's 0.1 per thousand more. DMT of prm/spreading acts over 12 nm, which hardly
+    changes the numbers of ghosts."""
     gap = skin * float(diameters.max()) + cohesion
     return 1.0001 * (0.5 * diameters + 0.5 * float(diameters.max()) + gap)
 
@@ -24,7 +24,7 @@ def reach_of(diameters: np.ndarray, skin: float, cohesion: float = 0.) -> np.nda
 class Filling:
     """The particles in the cells of a mesh.
 
-    `counts`: number in each cell, of the shape of the mesh. By particle, in the order of the cells:
+    `counts`: number in each cell, in the shape of the mesh. By particle, in the order of the cells:
     `cell`, a flat index; `place`, its distance from the cell's lower faces, shape (n, 3); `reach`,
     the distance at which it is needed as a ghost. Lengths in m.
     """
@@ -55,7 +55,7 @@ def shifted(array: np.ndarray, offset: tuple[int, ...], periodic: tuple[bool, ..
 
 def receivers(near: np.ndarray, own: np.ndarray, place: np.ndarray, reach: np.ndarray,
               width: np.ndarray) -> np.ndarray:
-    """The ranks that need each of n particles, each rank once, and -1 in what is left: shape
+    """The ranks that need each of n particles, each rank once, and -1 in the other places: shape
     (26, n).
 
     `near`: owners of the cells in the DIRECTIONS, -1 for none, shape (26, n); `own`: of the

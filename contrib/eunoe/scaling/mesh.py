@@ -19,9 +19,9 @@ MOST_TREES = 60000  # beyond, ordering them takes minutes
 def group_order(neighbours: list[list[int]]) -> list[int]:
     """An order of the nodes of a graph in which neighbours are close.
 
-    From a node with the fewest neighbours on, a node that has few neighbours left is taken together
-    with all of these that are still free, as a group; then the same is done with the groups, until
-    no node finds company. This is the order that deal.II 9.4 documents as
+    It starts at a node with the fewest neighbours and groups, again and again, a node that has few
+    neighbours left with those that are still free. Then the same is done with the groups, until no
+    group joins another. This is the order that deal.II 9.4 documents as
     SparsityTools::reorder_hierarchical.
 
     `neighbours[k]`, in ascending order, includes k itself.
@@ -71,7 +71,7 @@ class Mesh:
         return (np.array(self.upper) - np.array(self.lower)) / self.cells
 
     def tree_order(self) -> np.ndarray:
-        """Place of each tree on the curve, shape of the trees."""
+        """Place of each tree on the curve, in the shape of the trees."""
         nx, ny, nz = self.trees
         if nx * ny * nz > MOST_TREES:
             raise Failure(f"The mesh has {nx * ny * nz} coarse cells; their order is only computed "
@@ -97,7 +97,7 @@ class Mesh:
         return np.argsort(((outer << (3 * self.refinement)) + inner).ravel(), kind="stable")
 
     def find(self, points: np.ndarray) -> np.ndarray:
-        """Indices of each point's cell, shape (n, 3); for points beyond the box, of the one at its
+        """Indices of each point's cell, shape (n, 3); for points beyond the box, of the cell at its
         edge."""
         cell = ((points - np.array(self.lower)) / self.width).astype(np.int64)
         return np.clip(cell, 0, self.cells - 1)

@@ -13,8 +13,8 @@ from .mesh import Mesh
 def cut(weights: np.ndarray, n_ranks: int, family: int = 1) -> np.ndarray:
     """Starts of the ranks' parts of a curve of cells, with the end: shape (n_ranks + 1).
 
-    Rank p begins where p/n_ranks of the weight are behind it, at the next cell. Cells of the same
-    parent, `family` of them in a row, stay together, as they could not be united again else.
+    Rank p begins at the first cell behind p/n_ranks of the weight. Cells of the same parent,
+    `family` of them in a row, stay together; otherwise they could not be coarsened again.
     """
     behind = np.concatenate(([0], np.cumsum(weights, dtype=np.int64)))
     wanted = (int(behind[-1]) * np.arange(n_ranks + 1)) // n_ranks
@@ -26,7 +26,7 @@ def cut(weights: np.ndarray, n_ranks: int, family: int = 1) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Partition:
-    """What each rank has, shape (n_ranks): own cells, own particles; and what is sent as ghosts,
+    """What each rank owns, shape (n_ranks): cells and particles; and what is sent as ghosts,
     one row (sender, receiver, particles) for each message, shape (n_messages, 3)."""
 
     cells: np.ndarray
@@ -65,7 +65,7 @@ class Partition:
 
 def divide(mesh: Mesh, filling: Filling, curve: np.ndarray, n_ranks: int,
            cell_weight: int = 20, particle_weight: int = 2000) -> Partition:
-    """Shares out the cells with their particles."""
+    """Divides the cells with their particles among the ranks."""
     counts = filling.counts
     weights = cell_weight + particle_weight * counts.ravel()[curve].astype(np.int64)
     starts = cut(weights, n_ranks, 8 if mesh.refinement > 0 else 1)

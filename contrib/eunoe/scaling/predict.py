@@ -11,12 +11,13 @@ The particles are those of a picture of a run, or of the paper's apparatus with 
 length factor. The mesh is cut as the program cuts it, with the given weights of a cell and a
 particle. doc/performance.md explains the columns and the costs.
 
---steps    of the whole run: adds core-hours
---reach    distance (m) of a particle's centre to a cell of another rank within which that rank has it
-           as a ghost; otherwise that of the program: each particle's radius, the largest one, and
---skin     a share of the largest diameter, 0.13 in prm/spreading
---compare  instead shows what each piece (rank) of the picture really holds beside the prediction for
-           that number of ranks
+--steps    number of steps of the run: adds core-hours
+--reach    distance (m) within which a rank has a particle as a ghost, from the particle's centre to
+           a mesh cell of that rank. Default: as in the program, each particle's radius, the largest
+           radius, and the skin
+--skin     as a share of the largest diameter, 0.13 in prm/spreading
+--compare  instead shows what each piece (rank) of the picture really holds beside the prediction
+           for that number of ranks
 """
 
 from __future__ import annotations

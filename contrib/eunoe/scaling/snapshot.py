@@ -1,4 +1,4 @@
-"""The mesh and the places of the particles of a run."""
+"""The mesh and the particles' positions of a run."""
 
 from __future__ import annotations
 

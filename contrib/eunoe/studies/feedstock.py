@@ -4,13 +4,14 @@ small layers of the paper's powder with several of both and several seeds, and c
 Usage: contrib/tools feedstock path/to/eunoe-particles folder [--layers 3] [--seeds 1 2 3] [--jobs 1]
        [--table-only]
 
-The apparatus is that of the micro-spreading with a plate of 1.5 mm x 0.25 mm, of which a stroke feeds 2.7 times
-what a layer takes (the paper's 5.7 times); friction, rolling friction and cohesion are those of property set
-PS1, the grains soft as in all micro experiments. The reservoir is only 0.8 mm long, so that its walls count
-for far more than in the apparatus; so the depth of the bed is asked of a longer one, too, of 4 mm, before a
-plate of 4 mm, of which a stroke feeds 5 times what a layer takes. Seeds draw sizes and places anew. A run that has finished is not run again.
-feedstock.md in the folder has means and standard deviations of single runs over the seeds; in brackets the
-difference from the first row of the same reservoir in its standard errors.
+The apparatus is that of the micro-spreading with a plate of 1.5 mm x 0.25 mm; a stroke feeds 2.7
+times what a layer takes (the paper's 5.7 times). Friction, rolling friction and cohesion are those
+of property set PS1; the grains are soft as in all micro experiments. The reservoir is only 0.8 mm
+long, so its walls matter far more than in the real apparatus. The depth of the bed is therefore
+also varied in a reservoir of 4 mm before a plate of 4 mm, where a stroke feeds 5 times what a layer
+takes. Each seed draws sizes and positions anew. A run that has finished is not run again.
+feedstock.md in the folder has means and standard deviations of single runs over the seeds; in
+brackets the difference from the first row of the same reservoir in its standard errors.
 """
 
 from __future__ import annotations
@@ -40,8 +41,8 @@ SETTINGS = {
     MODEL + "contact detection/neighborhood threshold": 1.13,
     SPREADING + "depth": 0.25e-3,
     SPREADING + "feedstock bed depth": 0,
-    # As in the paper's cases: a deep bed that counts as settled at the 20 mm/s of the micro experiments
-    # goes on collapsing and does not reach the level of the transfer plate.
+    # As in the paper's cases. With the 20 mm/s of the micro experiments a deep bed would count as
+    # settled while it still collapses, and not reach the level of the transfer plate.
     SPREADING + "settled speed": 2e-3,
     SPREADING + "settling time": 0.2,
 }
@@ -51,9 +52,9 @@ SETTINGS = {
 class Feed:
     """How the powder is fed."""
 
-    velocity: float  # of the platform (mm/s)
+    velocity: float  # velocity of the platform (mm/s)
     margin: float  # left in the reservoir (mm)
-    reservoir: float = 0.8  # its length (mm)
+    reservoir: float = 0.8  # length of the reservoir (mm)
 
     @property
     def plate(self) -> float:
@@ -62,15 +63,15 @@ class Feed:
 
     @property
     def spreader(self) -> float:
-        """Radius of the spreader (mm), for what lies before it."""
+        """Radius of the spreader (mm), which must hold the powder before it."""
         return 0.4 if self.reservoir < 1. else 1.5
 
     def __str__(self) -> str:
         return f"reservoir of {self.reservoir:g} mm, {self.velocity:g} mm/s, margin {self.margin:g} mm"
 
 
-# The first, and what differs from it in one thing. That 0.2 mm, three grains, are left below the stroke makes
-# the platform felt more than the 1 mm of the paper's procedure, and is cheap.
+# The first feed, and feeds that differ from it in one property. Only 0.2 mm, three grains, are left
+# below the stroke: this is cheap, and the platform has more influence than with the paper's 1 mm.
 FEEDS = (Feed(11., 0.2), Feed(11., 1.), Feed(2., 0.2),
          Feed(11., 1., 4.), Feed(11., 2.4, 4.))
 
@@ -97,7 +98,8 @@ class Run:
         return [options.program, str(CASE), "--seed", str(self.seed), *overrides(settings)]
 
     def result(self, folder: Path) -> dict[str, float] | None:
-        """Densities by layer of a finished run, their mean, what a stroke feeds, and what the run took."""
+        """Results of a finished run: densities by layer, their mean, mass that a stroke feeds,
+        cost."""
         summary = summary_of(folder / self.name)
         return densities(folder / self.name / "layers.csv", summary) if summary else None
 
@@ -107,7 +109,7 @@ def densities(table: Path, summary: dict) -> dict[str, float] | None:
         with open(table, newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         values = {f"LRD of layer {row['layer']}": float(row["LRD"]) for row in rows if row["LRD"]}
-        # What a stroke brings: it stays on the plate, or leaves.
+        # The powder that a stroke feeds stays on the plate or leaves.
         lost = sum(float(row[name]) for row in rows[1:] for name in ("mass_to_gap", "mass_to_collector"))
         fed = (float(rows[-1]["mass"]) - float(rows[0]["mass"]) + lost) / (len(rows) - 1)
     except (OSError, ValueError):
@@ -120,7 +122,7 @@ def densities(table: Path, summary: dict) -> dict[str, float] | None:
 
 
 def cell(values: list[float], reference: list[float]) -> str:
-    """Mean and standard deviation, and how far the mean is from the reference's in standard errors."""
+    """Mean, standard deviation, and the mean's difference from the reference in standard errors."""
     text = f"{statistics.mean(values):.3g}" + (f" ± {spread(values):.2g}" if len(values) > 1 else "")
     errors = in_errors(values, reference) if reference else float("nan")
     return text if errors != errors else f"{text} ({errors:+.1f})"

@@ -7,8 +7,8 @@ Usage: contrib/tools forgetting path/to/eunoe-particles folder [--intervals 0 10
 
 An interval is a number of steps; 0: nothing is forgotten. A run that has finished is not run again.
 forgetting.csv in the folder has a row for each finished run and observable, forgetting.md means and
-standard deviations of single runs over the seeds. A mean that lies farther from that of interval 0 than
-three standard errors of the difference is in bold.
+standard deviations of single runs over the seeds. A mean is in bold if it differs from that of
+interval 0 by more than three standard errors of the difference.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from eunoe.tables import as_markdown, read_rows, write_csv
 
 from .series import arguments, compute, in_errors, spread, summary_of
 
-# The pile is watched from here to its end (s), in mean diameters (m).
+# Start of the interval in which the pile is watched (s), and its mean diameter (m).
 WATCHED_FROM, MEAN_DIAMETER = 0.8, 1e-3
 
 
@@ -109,14 +109,14 @@ def finished(folder: Path, runs: list[Run]) -> Series:
 
 
 def rows_of(folder: Path, runs: list[Run]) -> list[list]:
-    """Of forgetting.csv."""
+    """The rows of forgetting.csv."""
     return [["experiment", "interval", "seed", "observable", "value"],
             *([run.experiment, run.interval, run.seed, name, repr(value)] for run in runs
               for name, value in (run.result(folder) or {}).items())]
 
 
 def intervals_of(series: Series, key: str) -> list[int]:
-    """From the longest to the shortest; 0, which is never, comes first."""
+    """The intervals from the longest to the shortest; 0, without forgetting, comes first."""
     return sorted((n for name, n in series if name == key), key=lambda n: -n if n else -math.inf)
 
 

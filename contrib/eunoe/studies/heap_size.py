@@ -4,11 +4,12 @@ of several sizes and several seeds, which draw sizes and places anew, and makes 
 Usage: contrib/tools heap-size path/to/eunoe-particles folder [--discs 2 3] [--fill-ratios 12]
        [--sets PS1 PS2 PS3] [--seeds 1 2 3] [--ranks 1] [--table-only]
 
-The disc and the tube have the same diameter (mm); the fill ratio is the powder over that of a heap of 37.5
-degrees. A run that has finished is not run again, one that was interrupted continues from its
-checkpoint. heap_size.csv in the folder has a row for each finished run, heap_size.md means and standard
-deviations over the seeds, and the share of the powder that stayed on the disc: where that is close to 1, the
-powder stands as a column and the angle says only how much was filled in.
+The disc and the tube have the same diameter (mm); the fill ratio is the mass of the powder over
+that of a heap of 37.5 degrees. A run that has finished is not run again; one that was interrupted
+continues from its checkpoint. heap_size.csv in the folder has a row for each finished run.
+heap_size.md has means and standard deviations over the seeds, and the share of the powder that
+stayed on the disc. If that share is close to 1, the powder stands as a column, and the angle
+depends only on the filling.
 """
 
 from __future__ import annotations
@@ -62,7 +63,7 @@ class Run:
 
 
 def finished(folder: Path) -> dict[Run, dict]:
-    """All that the folder holds, those of earlier calls as well."""
+    """All finished runs in the folder, including those of earlier calls."""
     found = {}
     for path in folder.iterdir():
         run = Run.from_name(path.name)

@@ -1,4 +1,4 @@
-"""What all studies share: runs that are not repeated, and what is said of several seeds."""
+"""What all studies share: runs that are made once, and statistics over several seeds."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ class Run(Protocol):
 
     @property
     def name(self) -> str:
-        """Of its output folder."""
+        """Name of the run's output folder."""
 
     def command(self, options: argparse.Namespace) -> list[str]:
-        """What starts it."""
+        """The command that starts the run."""
 
     def result(self, folder: Path) -> Any:
-        """What it found; None if it has not finished."""
+        """The run's result; None if it has not finished."""
 
 
 # Settings of a run that is long enough to be interrupted: it continues from its checkpoint.
@@ -34,7 +34,7 @@ CONTINUED = {"restart/restart": "auto", "restart/checkpoint": "true", "restart/w
 
 
 def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentParser:
-    """Of a study, before its own are added."""
+    """The command-line arguments that all studies share."""
     found = parser(documentation)
     found.add_argument("program")
     found.add_argument("folder", type=Path)
@@ -45,7 +45,7 @@ def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentPars
 
 
 def summary_of(folder: Path) -> dict | None:
-    """Of a finished run."""
+    """The summary of a finished run; None if it has not finished."""
     try:
         return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -54,7 +54,7 @@ def summary_of(folder: Path) -> dict | None:
 
 def compute(runs: Sequence[Run], options: argparse.Namespace,
             after_each: Callable[[], None] = lambda: None) -> bool:
-    """Makes the runs that have not finished, unless only a table is wanted. Whether all went well."""
+    """Makes the runs that have not finished, unless only a table is wanted; false if one failed."""
     options.folder.mkdir(parents=True, exist_ok=True)
 
     def make(run: Run) -> bool:
@@ -70,7 +70,7 @@ def compute(runs: Sequence[Run], options: argparse.Namespace,
 
 
 def publish(table: Table, file: Path, *sentences: str) -> None:
-    """Writes a table and what is said of it into a file, and prints both."""
+    """Writes a table and sentences about it into a file, and prints both."""
     text = "\n".join([as_markdown(table), *(word for sentence in sentences for word in ("", sentence))]) + "\n"
     file.write_text(text, encoding="utf-8")
     print(text, end="")
@@ -82,6 +82,6 @@ def spread(values: Sequence[float]) -> float:
 
 
 def in_errors(values: Sequence[float], reference: Sequence[float]) -> float:
-    """Difference of the means over its standard error; NaN where that is not known."""
+    """Difference of the means over its standard error; NaN if the error is unknown or zero."""
     error = math.hypot(*(spread(v) / math.sqrt(len(v)) for v in (values, reference)))
     return (statistics.mean(values) - statistics.mean(reference)) / error if error > 0. else math.nan

@@ -4,10 +4,10 @@ adaptive sparse contacts for several seeds, which draw sizes and places anew, an
 Usage: contrib/tools sleep-layers path/to/eunoe-particles folder [--case CASE.prm] [--layers 21]
        [--seeds 1 2 3 4] [--jobs 1] [--ranks 1] [--set ENTRY=VALUE ...] [--table-only]
 
-A run that has finished is not run again, one that was interrupted continues from its checkpoint.
+A run that has finished is not run again; one that was interrupted continues from its checkpoint.
 sleep_layers.md in the folder has LRD and CRD of every layer, mean and standard deviation over the
-seeds; then the difference of their means in standard errors. With n seeds each way a difference of no
-significance exceeds 2 to 2.5 standard errors in one layer of twenty.
+seeds; then the difference of their means in standard errors. With n seeds each way, chance alone
+makes the difference exceed 2 to 2.5 standard errors in one layer of twenty.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def cells_of(awake: list[float], asleep: list[float]) -> list[str]:
 
 
 def of_layer(runs: dict[bool, list[dict]], key: str, layer: int) -> list[list[float]]:
-    """The values of a layer awake and with sleep; none of CRD before it begins."""
+    """The values of a layer without and with sleep; none of CRD before its first layer."""
     values = [[run[key][layer] for run in runs[sleep]] for sleep in (False, True)]
     return [] if any(map(math.isnan, sum(values, []))) else values
 

@@ -8,8 +8,8 @@ from .bench import Bench, Row, absolute, relative, row
 
 SURFACE_ENERGY = ("lagrangian_physical_properties__particle_type_0__surface_energy_particles",
                   "lagrangian_physical_properties__surface_energy_wall")
-# Of each property set for two particles of 75 um: surface energy (J/m2), pull-off force (N), end of the plateau
-# and cut-off (nm).
+# For each property set, for two particles of 75 um: surface energy (J/m2), pull-off force (N), end
+# of the plateau and cut-off (nm).
 PAPER_SETS = {"PS1": (35e-5, 8.25e-8, 3.89, 12.3), "PS2": (25e-5, 5.89e-8, 4.61, 14.6),
               "PS3": (8e-5, 1.88e-8, 8.14, 25.8)}
 
@@ -49,7 +49,7 @@ def dmt(bench: Bench) -> Row:
 
 
 def jkr_curve(work: float, radius: float, young: float) -> tuple[np.ndarray, np.ndarray]:
-    """Overlap and force (repulsion positive) by the radius of the contact area, from the torn neck on."""
+    """Overlap and force (repulsion positive) for contact radii from that of the tearing neck on."""
     torn = np.cbrt(np.pi * work * radius**2 / (8. * young))
     area = torn * np.linspace(1., 12., 50000)
     overlap = area**2 / radius - np.sqrt(2. * np.pi * work * area / young)
@@ -70,7 +70,7 @@ def jkr(bench: Bench) -> Row:
     neck = 3. * np.cbrt(np.pi * work * radius**2 / (8. * young))**2 / radius
     made = ~rises & (gap < 0.98 * neck) | rises & (gap < -1e-9)
     reference = np.interp(-gap, overlap, force)
-    # The plate turns back within a step of 1 nm, which shifts the way down by as much.
+    # The plate turns back within a step of 1 nm, so the way down is shifted by as much.
     checks = [
         relative("pull-off force", -1e3 * repulsion.min(), 1e3 * pull_off, 1e-2, "mN"),
         relative("separation at which the neck tears", 1e6 * gap[~rises & (repulsion < 0.)].max(), 1e6 * neck, 1e-2,

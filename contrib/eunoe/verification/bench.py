@@ -1,4 +1,4 @@
-"""Running a case, reading what it wrote, and what a row of the table of verification is made of."""
+"""Runs cases, reads their results, and defines the rows of the table of verification."""
 
 from __future__ import annotations
 
@@ -45,15 +45,15 @@ class Results:
 
 @dataclass(frozen=True)
 class Bench:
-    """Where cases run."""
+    """The folder where cases run."""
     program: str
     folder: Path
-    reuse: bool = False  # whether a run that has finished there stands as it is
+    reuse: bool = False  # whether finished runs in the folder are used again
 
     def run(self, case: str, label: str = "", **settings: Any) -> Results:
         """Runs prm/verification/<case>.prm.
 
-        @param label sets apart several runs of a case
+        @param label distinguishes several runs of a case
         @param settings overrides, "subsection/entry" with "__" for "/" and "_" for a blank
         """
         folder = self.folder / (f"{case}_{label}" if label else case)
@@ -73,7 +73,7 @@ class Bench:
 @dataclass(frozen=True)
 class Check:
     """A number beside its reference. The tolerance is absolute, in the same unit; without one the
-    reference is the least that the number may be."""
+    reference is the smallest allowed value."""
     what: str
     result: float
     reference: float
@@ -81,7 +81,7 @@ class Check:
     unit: str = ""
 
     @property
-    def passes(self) -> bool:  # a NaN never does
+    def passes(self) -> bool:  # false for a NaN
         if self.tolerance is None:
             return self.result >= self.reference
         return abs(self.result - self.reference) <= self.tolerance
@@ -107,7 +107,7 @@ def absolute(what: str, result: float, reference: float, tolerance: float, unit:
 
 @dataclass
 class Row:
-    """What a row of the table found, and how it is drawn on the axes that it is given."""
+    """The results of a row of the table, and a function that draws them on given axes."""
     checks: list[Check] = field(default_factory=list)
     n_panels: int = 0
     draw: Callable[[Any], None] | None = None

@@ -25,7 +25,7 @@ def carried(bench: Bench, label: str, **settings) -> tuple[float, float, float]:
 
 
 def saturation(mass: np.ndarray, floor: np.ndarray) -> float:
-    """The mass M_s of F = M_s g (1 - exp(-M / M_s)) with the least squares of errors."""
+    """The mass M_s of F = M_s g (1 - exp(-M / M_s)) by least squares."""
     tried = np.linspace(0.02, 5., 5000) * mass.max()
     errors = [np.sum((s * (1. - np.exp(-mass / s)) - floor / G)**2) for s in tried]
     return float(tried[int(np.argmin(errors))])
@@ -39,7 +39,7 @@ def janssen(bench: Bench) -> Row:
     mass, floor, wall = rough
     limit = saturation(mass, floor)
     model = limit * (1. - np.exp(-mass / limit))
-    # Of M_s = rho_b A D / (4 mu K): the share of the axial stress that acts on the wall.
+    # K in M_s = rho_b A D / (4 mu K): the share of the axial stress that acts on the wall.
     diameter, friction, bulk = 0.01, 0.5, 0.6 * DENSITY
     share = bulk * np.pi / 4. * diameter**3 / (4. * friction * limit)
     checks = [absolute("floor and wall carry the weight, worst relative error",
@@ -65,7 +65,7 @@ def janssen(bench: Bench) -> Row:
 
 
 def bulk_density(folder: Path) -> float:
-    """Of the filling before the hole is opened, between 3 mm and 12 mm over the floor."""
+    """Bulk density before the hole is opened, between 3 mm and 12 mm over the floor."""
     particles = read_vtu(read_pvd(folder / "out.pvd")[0].file, ["mass"])
     inside = (particles["points"][:, 2] > 3e-3) & (particles["points"][:, 2] < 12e-3)
     return float(particles["mass"][inside].sum(dtype=float)) / (np.pi * 8e-3**2 * 9e-3)
@@ -81,7 +81,8 @@ def beverloo(bench: Bench) -> Row:
             "solid_objects__solid_surfaces__solid_object_1__mesh__scale": hole / 2.})
         time, left = results.energies["time"], results.energies["particles"]
         curves[hole] = time, left
-        # From the first 100 grains until 1300 are left, when the silo is still 6 mm high; or to the end.
+        # From the first 100 grains until 1300 are left, when the filling is still 6 mm high; or to
+        # the end.
         window = (left < 2900) & (left > 1300)
         middle = time[window].mean()
         slope = [-np.polyfit(time[part], left[part], 1)[0]

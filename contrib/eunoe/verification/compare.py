@@ -50,7 +50,7 @@ def parse(words: list[str]) -> argparse.Namespace:
 
 
 def compare(maker: RowMaker, bench: Bench, options: argparse.Namespace) -> int:
-    """Makes a row, prints it and does with it what the options say. The number of its failures."""
+    """Makes and prints a row; checks, renews or draws it as the options say. Number of failures."""
     start = time.monotonic()
     row = maker.make(bench)
     print(f"{maker.title} [{maker.name}, {time.monotonic() - start:.0f} s]")

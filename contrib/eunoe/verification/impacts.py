@@ -9,7 +9,7 @@ import numpy as np
 
 from .bench import Bench, Results, Row, absolute, relative, row
 
-# Published numbers have four digits or three.
+# Published numbers have three or four digits.
 FOUR_DIGITS, THREE_DIGITS = 5e-4, 1e-3
 
 
@@ -23,8 +23,8 @@ class Impact:
 
     @classmethod
     def of(cls, results: Results, mass: float, n: int) -> Impact:
-        """From the kinetic energy of n equal spheres alone, so without any law of contact: the
-        closing speed is positive until the energy is least, then negative.
+        """From the kinetic energy of n equal spheres alone, without the contact law: the closing
+        speed is positive until the energy is smallest, then negative.
 
         @param mass effective (kg)
         """
@@ -45,7 +45,7 @@ class Impact:
 
     @property
     def duration(self) -> float:
-        """From touch to touch, where the overlap is zero again, s."""
+        """Time from the first touch until the overlap is zero again (s)."""
         apart = int(np.argmax((self.overlap < 0.) & (self.time > 0.)))
         start = self.time[np.argmax(self.overlap > 0.)] - self.overlap[self.overlap > 0.][0] / self.speed[0]
         return float(self.time[apart] - self.overlap[apart] / self.speed[apart] - start)

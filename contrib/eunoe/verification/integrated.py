@@ -110,7 +110,7 @@ def stacked_pair(bench: Bench) -> Row:
             axes[0].plot(1e3 * time, 1e3 * expected, "--", color="k", linewidth=0.7)
         axes[0].plot([], [], "--", color="k", linewidth=0.7, label="reference")
         axes[0].set(xlabel="Time (ms)", ylabel="Sum of the heights (mm)")
-        # Above the panel, as the curves fill it.
+        # The legend is above the panel, as the curves fill the panel.
         axes[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.), ncol=3, columnspacing=0.9,
                        handlelength=1.2)
     return Row(checks, 1, draw)

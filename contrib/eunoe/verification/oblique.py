@@ -22,7 +22,7 @@ INTEGRATED = 5e-4
 KHARAZ_RESTITUTION = {1.84: 0.793, 3.70: 0.745, 9.50: 0.673, 20.0: 0.597, 30.1: 0.688, 39.4: 0.771,
                       49.7: 0.848, 60.0: 0.901}
 KHARAZ_SPIN = {6.14: 136., 11.0: 266., 21.3: 578., 31.2: 613., 39.1: 595., 50.3: 453., 60.3: 382.}
-# In the order of kharaz.prm.
+# The angles in the order of kharaz.prm.
 KHARAZ_ANGLES = sorted({*KHARAZ_RESTITUTION, *KHARAZ_SPIN})
 
 
@@ -55,8 +55,8 @@ def oblique(bench: Bench) -> Row:
             absolute(f"{name}: velocity sideways over the speed", sideways, 0., 1e-13),
             absolute(f"{name}: tangential restitution at all angles, worst error to the integrated equations",
                      np.abs(restitution - integrated).max(), 0., INTEGRATED),
-            # m R v + I w about the contact point is kept, whatever the law of friction is; velocities have
-            # ten digits in the case.
+            # m R v + I w about the contact point is conserved under any law of friction; velocities
+            # in the case have ten digits.
             absolute(f"{name}: angular momentum about the contact point, worst relative error",
                      np.abs((after.velocity[:, 0] + 0.4 * RADIUS * spin) / along - 1.).max(), 0., 1e-9)]
 
@@ -81,7 +81,7 @@ def tangential(bench: Bench) -> Row:
     slides = v_t > 3.5 * loss
     after = bench.run("chung_ooi_5").particles
     lost, spin = v_t - after.velocity[:, 0], after.spin[:, 1]
-    # Below, rigid bodies that stick would lose 2/7 of v_t; springs give some of it back.
+    # Rigid bodies that stick would lose 2/7 of v_t; springs give some of it back.
     surface = Impact(70e9, 0.33, 2700., RADIUS, e, mu).surface_velocity(np.array(v_n), v_t)
     checks = [absolute("loss of tangential velocity in sliding, worst relative error",
                        np.abs(lost / loss - 1.)[slides].max(), 0., SLIDING),
@@ -151,7 +151,7 @@ def kharaz(bench: Bench) -> Row:
     restitution = dict(zip(angles, after.velocity[:, 0] / (SPEED * np.sin(np.radians(angles)))))
     spin = dict(zip(angles, after.spin[:, 1]))
     energy = (np.sum(after.velocity**2, axis=1) + 0.4 * RADIUS**2 * np.sum(after.spin**2, axis=1)) / SPEED**2
-    # Below 10 degrees the contact sticks, and springs give back what measured contacts do not.
+    # Below 10 degrees the contact sticks, and springs give back energy that measured contacts lose.
     checks = [absolute(f"tangential restitution at {angle:g} degrees", restitution[angle], value, 0.04)
               for angle, value in KHARAZ_RESTITUTION.items() if angle >= 9.5]
     checks += [relative(f"spin at {angle:g} degrees", spin[angle], value, 0.10, "rad/s")

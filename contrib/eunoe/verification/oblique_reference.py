@@ -1,6 +1,6 @@
-"""An oblique impact on a plane by its equations of motion alone, integrated here: Hertz's force with the
-damping of Tsuji et al. (1992), Mindlin's spring (1949) with 8 G sqrt(R x) and its damper, Coulomb's limit,
-past which the spring keeps what the limited force has left of it."""
+"""An oblique impact on a plane, by integration of its equations of motion: Hertz's force with the
+damping of Tsuji et al. (1992), Mindlin's spring (1949) with 8 G sqrt(R x) and its damper, and
+Coulomb's limit. Beyond the limit, the spring keeps the displacement of the limited force."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-STEPS = 4000  # a contact: the restitution is within 3e-4 of that with ten times as many
+STEPS = 4000  # per contact: the restitution is within 3e-4 of that with ten times as many steps
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,8 @@ class Impact:
         step = 2.94 * float((deepest / speed).min()) / STEPS
         active = np.ones(along.shape, dtype=bool)
         while active.any():
-            # The middle of the step, so that the error is of second order while nothing slips.
+            # Values at the middle of the step, so that the error is of second order while nothing
+            # slips.
             middle = np.maximum(overlap + 0.5 * step * speed, 0.)
             contact = np.sqrt(self.radius * middle)
             slope, stiffness = 2. * effective_young * contact, 8. * effective_shear * contact

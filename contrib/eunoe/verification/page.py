@@ -1,4 +1,4 @@
-"""The table of doc/verification.md: its lines, whether they are what the rows find, and their renewal."""
+"""Reads the table of doc/verification.md, compares it with the rows' results, and renews it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from pathlib import Path
 
 from .bench import Check, Row, RowMaker
 
-# Processors and libraries may round the last digits otherwise; more than this share of a tolerance is no
-# rounding. Where there is no tolerance, of the number.
+# Processors and libraries may round the last digits differently. A difference above this share of
+# the tolerance (or of the number, if there is no tolerance) is not rounding.
 SHARE = 0.02
 
 
@@ -33,18 +33,18 @@ def _block(text: str, name: str) -> tuple[int, int]:
 
 
 def _agrees(cell: str, check: Check) -> bool:
-    """Whether the page's result is what was found."""
+    """Whether the page's result agrees with the row's."""
     try:
         value = float(cell.split()[0])
     except (ValueError, IndexError):
         return False
     allowed = SHARE * (abs(check.result) if check.tolerance is None else check.tolerance)
-    # Half of the last of the five digits is lost in the page.
+    # The page has five digits, so half of the last one may be lost.
     return abs(value - check.result) <= allowed + 6e-5 * abs(check.result) + 1e-13
 
 
 def differences(file: Path, maker: RowMaker, row: Row) -> list[str]:
-    """Sentences on what the page says otherwise."""
+    """Sentences on the differences between the page and a row."""
     text = file.read_text(encoding="utf-8")
     first, last = _block(text, maker.name)
     there = [[cell.strip() for cell in line.strip("|").split(" | ")]

@@ -8,7 +8,7 @@ from .bench import Bench, Row, absolute, at_least, row
 from .rolling import G, METHOD
 
 MEAN_DIAMETER = 1e-3
-FROM, TO = 0.8, 1.6  # watched (s)
+FROM, TO = 0.8, 1.6  # interval that is evaluated (s)
 
 
 @row("pile", "Pile at rest with EPSD, creep with a constant torque")
@@ -25,7 +25,7 @@ def pile(bench: Bench) -> Row:
     checks = [absolute(f"EPSD: sinking of the centre of mass from {FROM:g} to {TO:g} s, over a diameter",
                        sunk["epsd"], 0., 1e-4),
               absolute("EPSD: largest root mean square speed from then on", speed["epsd"], 0., 1e-5, "m/s"),
-              # Far beyond what EPSD is allowed, so that the row can tell the two.
+              # Far beyond the limit for EPSD, so that the row distinguishes the two.
               at_least("constant torque: sinking over a diameter", sunk["constant"], 1e-3),
               at_least("constant torque: largest root mean square speed", speed["constant"], 1e-4, "m/s")]
 

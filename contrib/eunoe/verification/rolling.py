@@ -38,7 +38,8 @@ def slip_to_roll(bench: Bench) -> Row:
 
 
 def acceleration(bench: Bench, label: str, degrees: float, method: str, mu: float) -> float:
-    """Along the incline, of the last 5 ms: by then EPSD's spring is mobilised. m/s2."""
+    """Acceleration along the incline in the last 5 ms (m/s2): by then EPSD's spring is
+    mobilised."""
     angle = np.radians(degrees)
     settings = {GRAVITY: f"{G * np.sin(angle):.17g}, 0, {-G * np.cos(angle):.17g}", METHOD: method,
                 **dict.fromkeys(FRICTION, mu)}
