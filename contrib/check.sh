@@ -5,7 +5,7 @@ set -euo pipefail
 
 cd "$(dirname "$0")/.."
 
-# Says at the end how long each part took.
+# The end of the output says how long each part took.
 parts=""
 part() {
   local start=$SECONDS
@@ -20,8 +20,8 @@ part "floors" contrib/check_floors.py
 part "names in Python" /usr/bin/python3 -m pyflakes contrib tests
 part "build" contrib/build.sh Release all test-programs
 if [ "$(id -u)" -eq 0 ]; then
-  # As in a container; Open MPI wants to be asked twice.
+  # Root is usual in a container; Open MPI demands both variables.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-# One more than there are cores, as some wait for launchers and disks.
+# One more test than cores, as some tests wait for launchers and disks.
 part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(($(nproc) + 1))"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Says which files are not laid out as .clang-format asks. `contrib/check_format.sh --fix` mends them.
+# Lists the files that do not follow .clang-format. `contrib/check_format.sh --fix` mends them.
 set -euo pipefail
 
 cd "$(dirname "$0")/.."

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Eunoe needs and this machine lacks, from Debian's packages. Every dependency is
+# Installs Debian packages that Eunoe needs and this machine lacks. Every dependency is
 # named here, once.
 # Usage: contrib/install_dependencies.sh [fuzzing] [benchmarks]
 #   fuzzing     with what contrib/fuzzing/run.sh needs, too
@@ -25,7 +25,7 @@ report=(
 checks=(
   perl             # deal.II's test driver
   clang-format     # layout of the code
-  python3-pyflakes # names in Python that nobody uses or knows
+  python3-pyflakes # unused and undefined names in Python
 )
 fuzzing=(
   clang              # compiler with libFuzzer

@@ -1,9 +1,9 @@
 # Settings for all tests; ctest reads this file before it runs them.
 
-# What tests in Python import. By hand: PYTHONPATH=contrib:tests tests/.../test.py ...
+# Where tests in Python find modules. By hand: PYTHONPATH=contrib:tests tests/.../test.py ...
 set(ENV{PYTHONPATH} "${CMAKE_CURRENT_LIST_DIR}/../contrib:${CMAKE_CURRENT_LIST_DIR}")
 
-# A start of Open MPI takes half the time without a search for fast networks.
+# Open MPI starts in half the time without a search for fast networks.
 set(ENV{OMPI_MCA_pml} ob1)
 # Tests have more ranks than some machines have cores. A rank that waits leaves its core to others.
 set(ENV{OMPI_MCA_rmaps_base_oversubscribe} 1)

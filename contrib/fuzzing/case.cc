@@ -1,4 +1,4 @@
-// Any text as an input file, as far as --check goes: everything is built from what was read.
+// Any text as an input file, as --check treats it: all parts of a run are built.
 
 #include <eunoe/simulation/simulation.h>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Whether the mesh has so many cells that its making takes seconds.
+/// Whether the mesh has so many cells that making it takes seconds.
 bool is_large(const eunoe::MeshParameters &mesh)
 {
   double n[3] = {1., 1., 1.};
@@ -16,8 +16,8 @@ bool is_large(const eunoe::MeshParameters &mesh)
          n[0] * n[1] * n[2] < 1e7;
 }
 
-/// Whether a case reads other files, which have their own fuzzers, or takes a mesh that deal.II
-/// makes of other pieces than boxes, or one of many cells, which is the user's right.
+/// Whether a case is not for this fuzzer: it reads other files, which have their own fuzzers, or
+/// has a mesh that is not made of boxes or refined more than once and may rightly take long.
 bool is_out_of_scope(const eunoe::Parameters &parameters)
 {
   const auto &mesh = parameters.mesh;

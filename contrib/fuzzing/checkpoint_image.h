@@ -11,7 +11,7 @@ namespace fuzzing {
 /// Makes the file of a checkpoint from the input of a fuzzer, which cannot guess lengths and
 /// checksums: the text of the head, a byte 0, and the sections. The sections are cut or filled up
 /// to the size that the head promises, unless that is large. A head whose input file is "=" gets
-/// @p input. What starts like a checkpoint is taken as it is.
+/// @p input. An input that starts like a checkpoint is taken as it is.
 inline std::string checkpoint_image(const std::string &data, const std::string &input)
 {
   using namespace eunoe::checkpoint_format;

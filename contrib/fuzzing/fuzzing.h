@@ -1,8 +1,8 @@
 #ifndef eunoe_contrib_fuzzing_h
 #define eunoe_contrib_fuzzing_h
 
-// What the fuzzers share. A fuzzer lets a UserError pass, which is how bad input is refused, and
-// nothing else: any other exception ends it as a crash does.
+// What the fuzzers share. A fuzzer accepts a UserError, by which bad input is refused. Any other
+// exception ends it like a crash.
 
 #include <eunoe/simulation/parameters.h>
 
@@ -21,7 +21,7 @@ namespace fuzzing {
 
 using namespace eunoe;
 
-/// Starts MPI, as everything else needs it.
+/// Starts MPI, which everything else needs.
 inline void start(int *argc, char ***argv)
 {
   static const dealii::Utilities::MPI::MPI_InitFinalize mpi(*argc, *argv, 1);

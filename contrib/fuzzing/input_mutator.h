@@ -1,8 +1,8 @@
 #ifndef eunoe_contrib_fuzzing_input_mutator_h
 #define eunoe_contrib_fuzzing_input_mutator_h
 
-// How fuzzers of input files change an input: half of the time as libFuzzer does, which knows
-// nothing of lines, half of the time by giving an entry another value.
+// How fuzzers of input files change an input: half of the time as libFuzzer does, which ignores
+// lines, half of the time by giving an entry another value.
 
 #include <algorithm>
 #include <cstring>

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Builds the fuzzers with Clang and lets each look for crashes, hangs and large allocations.
 # Usage: contrib/fuzzing/run.sh [seconds per target [target ...]]
-# Needs the packages of `contrib/install_dependencies.sh fuzzing`. Ends with code 1 if something was
-# found; the inputs that did it are in build/fuzzing/findings/<target>. What the fuzzers have learnt
+# Needs the packages of `contrib/install_dependencies.sh fuzzing`. Ends with code 1 if it finds
+# something; the inputs that cause it are in build/fuzzing/findings/<target>. The fuzzers' corpus
 # stays in build/fuzzing/corpus and is used again.
 set -euo pipefail
 
@@ -13,21 +13,21 @@ targets=("$@")
 source_folder=$(cd "$(dirname "$0")/../.." && pwd)
 build=$source_folder/build/fuzzing
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-# Small stacks and a small quarantine: the reader of parameters allocates much.
+# Short stack traces and a small quarantine, as the reader of parameters allocates much.
 export ASAN_OPTIONS=detect_leaks=0:malloc_context_size=3:quarantine_size_mb=8 UBSAN_OPTIONS=print_stacktrace=1
 [ -d /dev/shm ] && export TMPDIR=${TMPDIR:-/dev/shm}
 
 "$source_folder/contrib/install_dependencies.sh" fuzzing
 mkdir -p "$build"
 if [ ! -f "$build/build.ninja" ]; then
-  # Warnings are GCC's business.
+  # Warnings are checked with GCC only.
   cmake -G Ninja -S "$source_folder" -B "$build" -DCMAKE_BUILD_TYPE=Release \
     -DCMAKE_CXX_COMPILER=clang++ "-DEUNOE_SANITIZE=fuzzer-no-link;address;undefined" \
     -DEUNOE_FUZZERS=ON -DEUNOE_TESTS=OFF
 fi
 ninja -C "$build" fuzzers
 
-# The text of the head, a byte 0, the sections: see checkpoint_image.h.
+# Prints the text of the head, a byte 0 and the sections: see checkpoint_image.h.
 take_apart() {
   local length
   length=$(od -An -t u8 -j 19 -N 8 "$1" | tr -d ' ')
@@ -36,7 +36,7 @@ take_apart() {
   tail -c +$((28 + length)) "$1" | head -c -8
 }
 
-# Runs a case until there is a checkpoint, and prints the path of that.
+# Runs a case until there is a checkpoint, and prints the checkpoint's path.
 make_checkpoint() {
   local folder=$build/seeds/$1 case=$2 waited=0
   shift 2

@@ -1,5 +1,5 @@
-# A build in which sanitizers watch (CMake option EUNOE_SANITIZE): what they find ends the program
-# with a report, so a test fails. CONTRIBUTING.md tells how to use it.
+# A build with sanitizers (CMake option EUNOE_SANITIZE): a finding ends the program with a report,
+# so a test fails. CONTRIBUTING.md says how to use it.
 
 string(TOUPPER "${EUNOE_SANITIZE}" wish)
 if(wish MATCHES "^(ON|TRUE|YES|1)$")
@@ -12,9 +12,9 @@ if(sanitizers MATCHES "undefined")
   list(APPEND options -fsanitize=float-cast-overflow)
 endif()
 
-# All targets, and those of the tests: what a sanitizer does not see it may report wrongly.
+# For all targets, tests too: code without instrumentation may cause wrong reports.
 add_compile_options(${options})
 add_link_options(${options})
-# The indices of vectors and other containers are checked, too. (Warnings are not errors here: GCC
-# takes instrumented code for faulty where it is not.)
+# The indices of vectors and other containers are checked, too. (Warnings are not errors here, as
+# GCC gives false warnings on instrumented code.)
 add_compile_definitions(_GLIBCXX_ASSERTIONS)
