@@ -54,7 +54,7 @@ std::vector<std::string> CheckpointStore::listed() const
   std::vector<std::string> names;
   for (std::string line; std::getline(lines, line);)
     names.push_back(line);
-  // What is not as it was written may have lost any of its lines.
+  // An index that is not in order may have lost any of its lines.
   const bool is_in_order = !text.empty() && text.back() == '\n' &&
                            std::all_of(names.begin(), names.end(),
                                        [this](const std::string &file) { return is_ours(file); });

@@ -102,7 +102,7 @@ public:
   std::vector<std::int32_t> rows;
 
 private:
-  /// Moves a coordinate back into the grid; false where there is nothing.
+  /// Moves a coordinate back into the grid; false beyond the box of cells.
   bool wrap(std::array<int, 3> &c, unsigned int d, const std::array<bool, 3> &periodic) const
   {
     if (periodic[d])
@@ -114,7 +114,7 @@ private:
   std::vector<std::int32_t> start;
 };
 
-/// Places and radii in the order of cells, one array a component.
+/// Places and radii in the order of cells, one array per component.
 class Spheres
 {
 public:
@@ -135,8 +135,7 @@ public:
   }
 
   /// Whether each of the spheres [first, first + batch) has a separation of less than @p reach from
-  /// sphere
-  /// @p a.
+  /// sphere @p a.
   void find_near(const std::size_t a, const std::size_t first, const double reach,
                  const Vec3 &period, const Vec3 &half, bool *near) const
   {
@@ -174,7 +173,7 @@ ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox
 {
   const Vec3 extent = upper - lower;
   std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
-  // Wider cells find the same pairs; so many that they fill the memory are no use.
+  // Wider cells find the same pairs; the limit keeps the cells from filling the memory.
   constexpr double most = 1 << 27;
   std::array<double, 3> number;
   for (unsigned int d = 0; d < 3; ++d)

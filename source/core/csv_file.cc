@@ -53,7 +53,7 @@ CsvFile::CsvFile(const std::string &path, const std::vector<std::string> &column
     file = std::fopen(path.c_str(), keep > 0 ? "a" : "w");
     if (file == nullptr)
       throw UserError(cannot_be_written(path, std::strerror(errno)));
-    // Nothing of a row that failed may come later.
+    // No part of a row that failed may be written later.
     std::setvbuf(file, nullptr, _IONBF, 0);
     complete = keep;
     std::string line;

@@ -12,7 +12,7 @@ namespace eunoe {
 namespace {
 
 constexpr int tag_here = 341;
-/// What a message takes at most, and a rank that speaks and ends all (s).
+/// Largest time for a message, and for a rank to print the reason and end all (s).
 constexpr double time_for_messages = 1., time_to_end = 10.;
 
 /// Polls, and sleeps in between to leave the processor to ranks that work.
@@ -74,7 +74,7 @@ void Departure::leave(const std::string &sentence, const double patience) const
     return;
   }
   if (is_preceded())
-    // That one speaks and ends all.
+    // The earlier rank prints the reason and ends all.
     wait_for(time_to_end, [] { return false; });
   else
     std::fprintf(stderr, "%s\n", sentence.c_str());

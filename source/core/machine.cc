@@ -33,7 +33,7 @@ double usable_memory()
        {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"})
   {
     double limit = 0.;
-    // No limit is the word "max" or an enormous number.
+    // Without a limit the file has the word "max" or an enormous number.
     if (std::ifstream(file) >> limit && limit > 0. && (memory == 0. || limit < memory))
       memory = limit;
   }

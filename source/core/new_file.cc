@@ -15,7 +15,7 @@ namespace {
 int sync(const int handle)
 {
   const int failure = fsync(handle) == 0 ? 0 : errno;
-  // What has no disk behind it, as a pipe, cannot be synced, and some file systems cannot do it.
+  // Files without a disk, such as pipes, cannot be synced, nor can those of some file systems.
   const bool is_unable =
       failure == EINVAL || failure == EROFS || failure == ENOSYS || failure == ENOTSUP;
   return is_unable ? 0 : failure;
@@ -56,7 +56,7 @@ void sync_file(std::FILE *const file, const std::string &path)
 void sync_folder_of(const std::string &path)
 {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  // Not every file system can do this, and those that cannot need it not.
+  // Not every file system can do this, and those that cannot do not need it.
   sync_path(folder.empty() ? "." : folder);
 }
 

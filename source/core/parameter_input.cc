@@ -219,7 +219,7 @@ unsigned int RepeatedSections::count(const std::vector<InputEntry> &entries) con
     if (e.path == path && e.name == entry) {
       char *end;
       const long n = std::strtol(e.value.c_str(), &end, 10);
-      // A value that is not a number is reported when it is set.
+      // Values that are not numbers are reported when they are set.
       if (*end == '\0' && n >= 0 && n <= static_cast<long>(largest))
         number = static_cast<unsigned int>(n);
     }
@@ -345,7 +345,7 @@ std::string describe_entries(const dealii::ParameterHandler &prm,
     nlohmann::ordered_json *section = &description;
     for (const std::string &name : r.path)
       section = &section->at("subsections").at(name);
-    // What is declared as the default is the number that there are.
+    // The declared default is the number of subsections.
     section->at("entries").at(r.entry).at("default") = std::to_string(r.standard);
   }
   return description.dump(1);

@@ -10,7 +10,7 @@ const std::string byte_order_mark = "\xEF\xBB\xBF";
 
 std::string shortened(const std::string &text, const std::size_t kept)
 {
-  // What is a little longer stays whole: the number behind it would be no shorter.
+  // A slightly longer text stays whole: the note on its length would not be shorter.
   if (text.size() <= kept + 40)
     return text;
   std::size_t end = kept;

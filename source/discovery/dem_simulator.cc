@@ -167,7 +167,7 @@ RunRecord DemSimulator::simulate(const Case &one)
   } catch (const UserError &error) {
     record.failure = error.what();
   } catch (const std::bad_alloc &) {
-    throw; // this is no property of the model
+    throw; // not a failure of the model
   } catch (const std::exception &error) {
     // The other ranks of the group may not have this exception.
     if (!queue.is_alone())

@@ -93,7 +93,7 @@ Effect make_time_step_change()
 }
 
 /// Readings of an instrument with noise, from simulated repeats.
-/// @param runs values of all data points, one row a repeat
+/// @param runs values of all data points, one row per repeat
 std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
                                    const std::vector<std::vector<double>> &runs,
                                    const SyntheticDataParameters &synthetic, NormalNumbers &normal)

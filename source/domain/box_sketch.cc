@@ -18,7 +18,7 @@ std::vector<std::string> parts_of(const std::string &arguments)
   return parts;
 }
 
-/// Whole numbers from 1, separated by commas; empty if they are no such thing.
+/// Whole numbers from 1, separated by commas; empty for any other text.
 std::vector<unsigned int> counts_in(const std::string &text)
 {
   std::vector<unsigned int> counts;

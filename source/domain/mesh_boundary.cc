@@ -75,8 +75,8 @@ MeshBoundary::MeshBoundary(const Triangulation &triangulation)
 
 void MeshBoundary::find_sides(const Triangulation &triangulation)
 {
-  // Sides by their distance from a place that is at no distance in common to many of them, as the
-  // middle of a cylinder would be.
+  // Sides by their distance from a place. The place must not have the same distance from many
+  // sides, as the middle of a cylinder has.
   const auto box = dealii::GridTools::compute_bounding_box(triangulation);
   const Vec3 lower = to_vec3(box.get_boundary_points().first),
              extent = to_vec3(box.get_boundary_points().second) - lower;

@@ -8,7 +8,7 @@ namespace eunoe {
 namespace {
 
 constexpr int tag_build = 311, tag_update = 312, tag_flags = 313, tag_paired = 314;
-/// Doubles a ghost when it is made (all that is constant, then the state) and at every step.
+/// Doubles per ghost when it is made (all that is constant, then the state) and at every step.
 constexpr std::size_t build_size = 14, update_size = 9;
 
 void append(std::vector<double> &values, const Quad &q, bool with_w)

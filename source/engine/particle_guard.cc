@@ -74,7 +74,7 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
   const double largest = parameters.largest_overlap;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto i = static_cast<std::size_t>(pairs.i[k]), j = static_cast<std::size_t>(pairs.j[k]);
-    // A pair with an i that is a ghost is seen by the owner of i.
+    // If i is a ghost, its owner checks the pair.
     if (pairs.record[k] == ContactMemory::none || i >= p.n_owned)
       continue;
     const double ri = p.radius(i), rj = p.radius(j);

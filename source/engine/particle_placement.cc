@@ -92,7 +92,7 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
 {
   Implementation &impl = *implementation;
   MPI_Comm comm = impl.domain.communicator();
-  // Refused here, as the search for the cells of such points does not come back.
+  // Refused here, as the search for the cells of such points never returns.
   const std::uint64_t outside = dealii::Utilities::MPI::sum(
       static_cast<std::uint64_t>(
           std::count_if(particles.begin(), particles.end(),

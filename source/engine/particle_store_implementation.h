@@ -65,7 +65,7 @@ struct ParticleStore::Implementation
     look_at_cells();
   }
 
-  /// After the cells have been shared out.
+  /// Called after load balancing.
   void look_at_cells()
   {
     if (locator)
@@ -74,7 +74,7 @@ struct ParticleStore::Implementation
   }
 
   void find_foreign_neighbours();
-  /// How far particles are from their cells, which must be little; collective.
+  /// Measures the distances of particles from their cells, which must be small; collective.
   void measure_gaps(const ParticleArrays &arrays);
 
   std::vector<double> properties_of(const NewParticle &p, const Origin &origin,

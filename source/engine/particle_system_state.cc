@@ -1,4 +1,4 @@
-// The particles and their contacts in a checkpoint: a row of doubles a particle.
+// The particles and their contacts in a checkpoint: a row of doubles per particle.
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/engine/load_balancing.h>

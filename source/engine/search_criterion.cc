@@ -37,7 +37,7 @@ void SearchCriterion::ask(const unsigned long long step, const double moved2)
 {
   if (step % parameters.frequency != 0)
     return;
-  // How the largest over ranks treats what is no number depends on the MPI.
+  // Whether MPI_MAX keeps a NaN depends on the MPI library.
   if (parameters.method == "constant" || std::isnan(moved2))
     largest = std::numeric_limits<double>::infinity();
   else

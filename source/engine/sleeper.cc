@@ -8,7 +8,7 @@ namespace eunoe {
 
 namespace {
 
-/// Whether particles near a solid feel it move, appear or vanish since an earlier look at it.
+/// Whether a solid has moved, appeared or vanished since an earlier look.
 bool stirs(const Solid &solid, const RigidState &before, const double time_before,
            const double time)
 {
@@ -22,8 +22,9 @@ bool stirs(const Solid &solid, const RigidState &before, const double time_befor
 
 bool Sleeper::solid_starts(const double time, const std::vector<Solid> &solids) const
 {
-  // Near one that moved at the last look, all are awake. What it would do in up to a whole check
-  // frequency to those who rest on it and feel nothing would come all at once.
+  // Near a solid that moved at the last look, all particles are awake. A solid that starts to move
+  // needs a look at once: otherwise sleepers on it would miss its motion until the next regular
+  // look and then feel all of it in one step.
   for (std::size_t s = 0; s < solids.size(); ++s) {
     const RigidState &before = last_states[s];
     const bool was_at_rest =

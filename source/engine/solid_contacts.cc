@@ -173,7 +173,7 @@ std::vector<double> SolidContacts::ways(const std::vector<Solid> &solids) const
 bool SolidContacts::is_far(const Candidate &candidate, const ParticleArrays &particles,
                            const double way) const
 {
-  // Too far for a contact, as long as both together have not gone the gap that there was.
+  // No contact as long as both together have moved by less than their separation at the search.
   const double spare = candidate.gap - model.range() - way;
   return spare > 0. && candidate.n_living == 0 &&
          norm_square(particles.position[candidate.particle].vec() -
@@ -188,7 +188,7 @@ void SolidContacts::add_forces(ParticleArrays &particles, const std::vector<Soli
   Candidate asleep = {}; // a copy, from which contacts may be taken
   batch->n = 0;
   for (Candidate &candidate : candidates) {
-    // Sleepers weigh on solids, too; whether that is wanted must leave no trace in them.
+    // Sleepers also load the solids; computing that must not change the sleepers' state.
     const bool is_awake = particles.is_awake(candidate.particle);
     if ((loads == nullptr && !is_awake) || is_far(candidate, particles, way[candidate.solid]))
       continue;

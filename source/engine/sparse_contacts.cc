@@ -81,7 +81,7 @@ std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
   for (const SolidContacts::Candidate &candidate : solids.get_candidates())
     if (stirring.solid_moves[candidate.solid])
       moved[candidate.particle] = now;
-  // Ghosts of no pair are not asked.
+  // Ghosts outside all pairs get no flags from their owners.
   std::vector<std::uint8_t> restless(p.size(), 1);
   for (std::size_t row = 0; row < p.n_owned; ++row)
     restless[row] = now - moved[row] < rest_steps;

@@ -260,9 +260,9 @@ private:
   MPI_Comm comm;
   const std::shared_ptr<CsvFile> file;
   std::vector<std::optional<unsigned int>> boundary; ///< of each solid
-  std::vector<bool> counts;                          ///< whether its collisions do
-  std::vector<Approach> approaches; ///< one a candidate of the contacts with solids
-  /// At which the approaches were put in their places, at first none.
+  std::vector<bool> counts;                          ///< whether its collisions are recorded
+  std::vector<Approach> approaches; ///< one per candidate of the contacts with solids
+  /// Search at which the approaches were put in their places, at first none.
   unsigned long long searches = std::numeric_limits<unsigned long long>::max();
   std::vector<Collision> ended; ///< of this rank, not written yet
   std::uint64_t n_collisions = 0;

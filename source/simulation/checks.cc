@@ -46,7 +46,7 @@ void check_crossings(const std::vector<Solid> &solids, const std::size_t n_given
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
                   Problems &problems)
 {
-  // A process makes its mesh so that only the skin can be to blame.
+  // A process makes its mesh so that only the skin can be the cause.
   const bool is_own = parameters.process_name == "none";
   const std::string cells = is_own ? "subsection 'mesh':"
                                    : "subsection 'model parameters' / subsection 'contact "

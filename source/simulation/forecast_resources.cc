@@ -70,7 +70,7 @@ void judge_disk(const Parameters &parameters, const RunEstimate &estimate,
   const double pictures =
       n * estimate.particles * (picture_bytes_per_particle + n_extra * picture_bytes_per_field);
   const RestartParameters &restart = parameters.restart;
-  // A new one is complete before the oldest goes.
+  // A new checkpoint is complete before the oldest is removed.
   const double checkpoints = restart.checkpoint ? (restart.keep + 1.) * estimate.most_particles *
                                                       (checkpoint_bytes_per_particle + 8. * n_extra)
                                                 : 0.;

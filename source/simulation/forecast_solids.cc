@@ -11,7 +11,7 @@ namespace {
 
 /// Instants at which a prescribed motion is looked at.
 constexpr unsigned int n_looks = 500;
-/// How much longer than the mesh a solid may be, or shorter.
+/// Largest and smallest length of a solid over that of the mesh.
 constexpr double largest_ratio = 100., smallest_ratio = 1e-3;
 
 const std::string mend_scale =
@@ -87,7 +87,7 @@ Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, con
   return path;
 }
 
-/// @return whether the solid is as large as one expects
+/// @return whether the solid's size is plausible
 bool judge_size(const std::string &where, const Box &box, const Box &space, Problems &problems)
 {
   const double ratio = longest_edge(box) / longest_edge(space);

@@ -5,9 +5,9 @@
 
 namespace eunoe {
 
-/// Entries that give @p seed to all that a run draws at random: to every entry that is called
-/// 'seed' or '... seed'. So a new draw with such an entry is turned with the others. Numbers for
-/// different purposes are independent though their seeds are equal.
+/// Entries that give @p seed to all random numbers of a run: to every entry that is called 'seed'
+/// or '... seed', also to those that are added later. Numbers for different purposes are
+/// independent though their seeds are equal.
 /// @param known all entries of the run
 /// @param given what the user wrote; a seed that loses is noted in @p problems as a warning
 /// @param makes_insertion whether a process does that itself, and refuses entries for it

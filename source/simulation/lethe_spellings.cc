@@ -187,7 +187,7 @@ const std::vector<Ignored> &ignored()
   return list;
 }
 
-/// What is out of scope or has moved, if it asks for more than nothing.
+/// Entries that are out of scope or have moved, unless their value is harmless.
 struct Refused
 {
   EntryPath path;
@@ -225,7 +225,7 @@ public:
                                  [this](const InputEntry &entry) { return takes_out(entry); }),
                   entries.end());
     for (std::size_t k = 0; k < entries.size(); ++k) {
-      // What had this name were shares of the volume.
+      // The entry of this name held shares of the volume.
       if (fits(entries[k].path, type) && entries[k].name == "custom volume fractions") {
         InputEntry basis = entries[k];
         basis.name = "distribution weighting basis";

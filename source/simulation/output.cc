@@ -138,7 +138,7 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &n_ranks);
   MPI_Allreduce(&has_points, &any_has_points, 1, MPI_INT, MPI_MAX, comm);
-  // ParaView wants a piece, but none without points in front of others.
+  // ParaView needs at least one piece, but none without points in front of others.
   const bool has_piece = has_points != 0 || (any_has_points == 0 && rank == 0);
   write_in_turn(path,
                 (rank == 0 ? text.head : std::string()) + (has_piece ? text.piece : std::string()) +

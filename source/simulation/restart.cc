@@ -62,7 +62,7 @@ void Simulation::checkpoint_if_due()
   const Timers::Scope scope(progress.timers, Section::output);
   CheckpointWriter writer(communicator());
   save(writer);
-  // What depends on how the work is shared out, and what was written, have no place in a dump.
+  // Not in a dump, as these depend on the distribution of the work or on the files written.
   writer.head["balancing"] = balancer.save();
   writer.head["input"] = parameters.as_input_file();
   writer.head["outputs"] = outputs.save();

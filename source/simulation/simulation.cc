@@ -84,8 +84,8 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log, const P
       integrator(parameters.integration.make()),
       criterion(parameters.detection, skin(parameters, inserter), comm),
       balancer(parameters.load_balancing),
-      // Two bodies must not come closer by more than the skin without a search; half of it is the
-      // way of each.
+      // Without a search two bodies must not come closer by more than the skin, so each may move by
+      // half of it.
       guard(parameters.faults, domain, system.contact_model().get_materials(),
             0.5 * skin(parameters, inserter), clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
@@ -154,7 +154,7 @@ void Simulation::open_output()
   int rank;
   MPI_Comm_rank(communicator(), &rank);
   if (rank == 0)
-    // One of an earlier run would make this one look finished.
+    // The summary of an earlier run would make this run look finished.
     remove_file(outputs.folder.file("summary.json"));
   make_observables();
 }
@@ -225,7 +225,7 @@ void Simulation::advance()
   criterion.ask(clock.step(), moved2);
   const bool look_is_due = sleeper.is_look_due(clock, solids.list());
   if (!look_is_due) {
-    // While the answers of all ranks come; in vain if they want a search.
+    // Done while the answers of all ranks arrive; wasted if these demand a search.
     const Timers::Scope scope(progress.timers, Section::ghosts);
     system.update_ghosts();
   }

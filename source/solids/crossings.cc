@@ -32,8 +32,7 @@ bool pierces(const Vec3 &p, const Vec3 &q, const Vec3 *corner, const double tole
 }
 
 /// Whether an edge or a median of triangle @p a goes through @p b. Medians, as the edges may all
-/// meet
-/// @p b at its border, where it has a neighbour.
+/// meet @p b at its border, where it has a neighbour.
 bool passes_through(const Vec3 *a, const Vec3 *b, const double tolerance, Vec3 &where)
 {
   for (unsigned int c = 0; c < 3; ++c) {

@@ -66,7 +66,7 @@ bool Enclosure::contains(const Vec3 &position) const
 
 int Enclosure::exit(const Vec3 &from, const Vec3 &to) const
 {
-  // A way through the line between two triangles must not slip through.
+  // A path through the common edge of two triangles must not slip between them.
   constexpr double margin = 1e-6;
   const Vec3 way = to - from;
   const std::array<Vec3, 2> ends = {from, to};
@@ -84,7 +84,7 @@ int Enclosure::exit(const Vec3 &from, const Vec3 &to) const
     const double a = dot(s, p) / volume, b = dot(way, q) / volume, share = dot(other, q) / volume;
     const bool meets =
         a >= -margin && b >= -margin && a + b <= 1. + margin && share >= 0. && share <= 1.;
-    // Of triangles that are met at one place, the larger tag counts, whatever the order in the
+    // If triangles are met at the same place, the largest tag counts, whatever the order in the
     // tree.
     if (meets && (share > last || (share == last && own_tag > tag))) {
       last = share;

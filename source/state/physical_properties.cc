@@ -172,8 +172,8 @@ double PhysicalProperties::shortest_contact_time(const ParticleType &type,
   const double with_its_like = hertz_tangent_stiffness(
       effective_young_modulus(type.material, type.material), 0.5 * radius, overlap);
   double largest = with_its_like / (0.5 * mass);
-  // A partner that is much larger and heavier, like a wall, lends the particle its own radius and
-  // mass.
+  // With a partner that is much larger and heavier, like a wall, the effective radius and mass are
+  // the particle's own.
   const Materials all = materials();
   for (int m = 0; m < all.size(); ++m)
     largest =

@@ -28,7 +28,7 @@ public:
   nlohmann::ordered_json head;
 
   /// Adds a section; collective.
-  /// @param keys one a row, different from each other on all ranks
+  /// @param keys one per row, different from each other on all ranks
   void add_rows(const std::string &name, const std::vector<std::uint32_t> &keys, const Rows &rows);
 
   /// Writes the file beside an old one of this name and renames it when it is complete and on the

@@ -11,11 +11,11 @@
 namespace eunoe {
 
 /// A grid of cells as wide as the contact search reaches, the same on every rank. It orders the
-/// particles and finds the pairs; the distributed background mesh is another, coarser thing.
+/// particles and finds the pairs. It is not the distributed background mesh, which is coarser.
 class ContactGrid
 {
 public:
-  /// @param lower, upper corners of the domain, from its centre (m); what lies outside counts to
+  /// @param lower, upper corners of the domain, from its centre (m); places outside belong to
   ///                     the border cells
   /// @param cell_size smallest allowed width of a cell (m)
   ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box, double cell_size);

@@ -38,8 +38,8 @@ public:
 };
 
 /// What the input says of a law, in entries that the law's own file declares. The law is made from
-/// the materials and the largest radius of the particles (m): laws that act across gaps may reach
-/// the farther, the larger particles are.
+/// the materials and the largest radius of the particles (m): laws that act without contact may
+/// reach farther for larger particles.
 using ContactLawSection = PluginSection<ContactLaw, const Materials &, double>;
 
 /// Laws by family ("normal", "cohesion", "further", "tangential", "rolling") and name. Those of the

@@ -46,7 +46,7 @@ private:
 
 /// The laws of a contact, composed at run time: normal, cohesion, further ones that the input and
 /// the materials ask for, tangential, rolling.
-/// Particle-particle and particle-solid contacts go through the same one.
+/// Particle-particle and particle-solid contacts use the same model.
 class ContactModel
 {
 public:

@@ -20,7 +20,7 @@ struct alignas(64) ContactForces
   alignas(64) Lanes torque_x, torque_y, torque_z; ///< rolling-resistance torque on i (N m)
 };
 
-/// A batch of contacts, one array a quantity, on which every active law runs one vector loop.
+/// A batch of contacts, one array per quantity, on which every active law runs one vector loop.
 ///
 /// Body i is always a particle; body j is a particle or a piece of a solid surface (infinite
 /// radius and mass). The normal points from i to j. What the laws write acts **on j**; i feels
@@ -36,7 +36,7 @@ struct alignas(64) PairBlock : ContactForces
   unsigned int n = 0;
   /// Row in every law's table of coefficients, shared by the whole block if >= 0 ...
   int uniform_kind = -1;
-  /// ... else one a contact.
+  /// ... else one per contact.
   std::int32_t kind[size];
 
   /// @name Written by the geometry, read by the laws

@@ -21,8 +21,8 @@ public:
   /// sums without meaning) and advances the memory of the contacts by @p dt.
   void add(ParticleArrays &particles, PairList &pairs, double dt);
 
-  /// Gives what acts at this moment in the contacts to @p sink, in the order of the list. Contacts
-  /// remember what they remember; one that has not begun has nothing to remember.
+  /// Gives the present forces of the contacts to @p sink, in the order of the list. The memory of
+  /// contacts does not change; a contact that has not begun has none.
   /// @param places of the pairs that are asked for, ascending; null: all
   void evaluate(const ParticleArrays &particles, const PairList &pairs,
                 const std::vector<std::int32_t> *places, const ContactForceSink &sink) const;

@@ -10,7 +10,7 @@
 namespace eunoe {
 
 /// A table that grows row by row, written by the first rank of a communicator; every row can be
-/// read when `write` returns. Without a path it goes nowhere.
+/// read when `write` returns. Without a path nothing is written.
 class CsvFile
 {
 public:
@@ -28,8 +28,8 @@ public:
   /// Bytes written, on the first rank.
   std::uint64_t size() const;
 
-  /// Waits until they would outlive a crash of the machine. To be called by the first rank, throws
-  /// a UserError there.
+  /// Waits until the rows would survive a crash of the machine. To be called by the first rank,
+  /// throws a UserError there.
   void sync() const;
 
 private:

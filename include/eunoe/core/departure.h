@@ -6,8 +6,8 @@
 
 namespace eunoe {
 
-/// Ends a program whose ranks cannot continue. Most errors occur on all ranks alike, and these end
-/// in good order; if one rank alone has an error, the others would wait for it for ever.
+/// Ends a program whose ranks cannot continue. Most errors occur on all ranks, which then end in
+/// order. If only one rank has an error, the others would wait for it for ever.
 class Departure
 {
 public:
@@ -17,7 +17,7 @@ public:
   Departure(const Departure &) = delete;
   Departure &operator=(const Departure &) = delete;
 
-  /// Says why, once. Waits until all ranks are here; if some do not come, ends them, too.
+  /// Prints the reason once. Waits until all ranks are here; if some do not come, ends them, too.
   /// @param patience how long it waits (s)
   void leave(const std::string &sentence, double patience) const;
 

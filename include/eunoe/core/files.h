@@ -16,11 +16,11 @@ std::string read_file(const std::string &path, MPI_Comm comm);
 
 /// Writes a file beside the old one and renames it when it is complete. To be called by one rank.
 /// Throws a UserError if that fails, and leaves the old file as it was.
-/// @param sync waits until it would outlive a crash of the machine
+/// @param sync waits until the file would survive a crash of the machine
 void write_file(const std::string &path, const std::string &text, bool sync = false);
 
 /// Writes the texts of all ranks one behind the other, in the same way; collective. One rank
-/// writes: with MPI's own files, some ranks would learn of a full disk, and none of some.
+/// writes: with MPI's own files, a full disk may be reported to some ranks only, or to none.
 void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm comm);
 
 /// Size of a file (bytes), 0 if there is none.

@@ -8,8 +8,8 @@ namespace eunoe {
 
 bool is_first_rank(MPI_Comm comm);
 
-/// Lets the first rank do what one alone can do, as to write a file. A UserError that it meets is
-/// thrown on every rank, so that none waits for one that has left; collective.
+/// Runs an action on the first rank only, such as writing a file. A UserError there is thrown on
+/// every rank, so that none waits for a rank that has left; collective.
 void on_first_rank(MPI_Comm comm, const std::function<void()> &action);
 
 } // namespace eunoe

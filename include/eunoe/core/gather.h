@@ -16,7 +16,7 @@ struct RankShares
 
   std::size_t total() const { return static_cast<std::size_t>(starts.back() + counts.back()); }
 
-  std::vector<int> counts, starts; ///< one a rank
+  std::vector<int> counts, starts; ///< one per rank
 };
 
 /// Brings the entries of all ranks to every rank, or to the first one; collective.

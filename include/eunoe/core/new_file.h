@@ -8,7 +8,7 @@
 namespace eunoe {
 
 /// A file that is written beside the old one of its name and takes its place when it is complete,
-/// so that nothing leaves half of it. To be used by one rank.
+/// so that no half-written file is left. To be used by one rank.
 class NewFile
 {
 public:
@@ -22,7 +22,7 @@ public:
   void write(const void *data, std::uint64_t n);
 
   /// Throws a UserError if the file could not be written; then the old one is as it was.
-  /// @param sync waits until the file and its name would outlive a crash of the machine
+  /// @param sync waits until the file and its name would survive a crash of the machine
   void complete(bool sync);
 
 private:
@@ -34,8 +34,8 @@ private:
   std::string error;
 };
 
-/// Waits until a file would outlive a crash of the machine. Throws a UserError if it would not; one
-/// that was taken away meanwhile needs nothing.
+/// Waits until a file would survive a crash of the machine. Throws a UserError if it would not; a
+/// file that was removed meanwhile is ignored.
 void sync_file(const std::string &path);
 void sync_file(std::FILE *file, const std::string &path);
 

@@ -35,7 +35,7 @@ public:
   /// What is doubtful and does not forbid the run.
   const std::vector<Problem> &warnings() const { return doubts; }
 
-  /// One line a problem.
+  /// One line per problem.
   std::string text() const;
 
 private:

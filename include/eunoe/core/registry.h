@@ -10,11 +10,11 @@
 
 namespace eunoe {
 
-/// Ends the program with a sentence about its own code, where plug-ins contradict each other. Most
-/// register before `main`, where nobody could catch an exception.
+/// Ends the program with a sentence about its own code if plug-ins contradict each other. Most
+/// register before `main`, where no exception can be caught.
 [[noreturn]] void end_for_registration(const std::string &sentence);
 
-/// What several may own: `std::unique_ptr` turned into `std::shared_ptr`.
+/// A type of shared ownership: `std::unique_ptr` becomes `std::shared_ptr`.
 ///@{
 template <typename Product>
 struct Shared
@@ -59,8 +59,8 @@ public:
     return maker->second(std::forward<Arguments>(arguments)...);
   }
 
-  /// One of each, by name. Copies of the map share what is made, which is not changed once the
-  /// input is read.
+  /// One product of each plug-in, by name. Copies of the map share the products, which do not
+  /// change once the input is read.
   std::map<std::string, typename Shared<Product>::type> make_all() const
   {
     std::map<std::string, typename Shared<Product>::type> all;

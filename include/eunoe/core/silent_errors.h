@@ -6,8 +6,8 @@
 
 namespace eunoe {
 
-/// Keeps the standard error stream silent while it lives: deal.II's parser of expressions writes
-/// there of what it does not understand, before it throws.
+/// Keeps the standard error stream silent while it lives: deal.II's parser of expressions prints
+/// what it does not understand there before it throws.
 class SilentErrors
 {
 public:

@@ -7,7 +7,7 @@
 
 namespace eunoe {
 
-/// Parts of a run whose time is taken.
+/// Parts of a run whose time is measured.
 enum class Section : unsigned int
 {
   integration,
@@ -26,7 +26,7 @@ enum class Section : unsigned int
 class Timers
 {
 public:
-  /// Counts the time of its own life to a section.
+  /// Adds the time of its own life to a section.
   class Scope
   {
   public:

@@ -1,8 +1,8 @@
 #ifndef eunoe_domain_cell_locator_h
 #define eunoe_domain_cell_locator_h
 
-// Finds the cells of particles in meshes whose cells are no boxes of one size, for source files
-// only.
+// Finds the mesh cells of particles in meshes whose cells are not boxes of one size, for source
+// files only.
 
 #include <eunoe/domain/domain.h>
 
@@ -18,10 +18,10 @@ namespace eunoe {
 class BoxTree;
 
 /// For every cell its centre and its faces as planes: a place belongs to the cell that it sticks
-/// out of least. So every place belongs to some cell, those too that round-off, faces that are not
-/// flat or hanging nodes on a curved boundary leave outside of all.
+/// out of least. So every place belongs to some cell, even if round-off, curved faces or hanging
+/// nodes on a curved boundary leave it outside of all cells.
 ///
-/// deal.II's search inverts the mapping of each cell and loses what lies on a face.
+/// deal.II's search inverts the mapping of each cell and loses points that lie on a face.
 class CellLocator
 {
 public:
@@ -30,7 +30,7 @@ public:
   explicit CellLocator(Domain &domain);
   ~CellLocator();
 
-  /// Looks at the cells anew after they have been shared out; must be called first.
+  /// Reads the cells anew after load balancing; must be called first.
   void rebuild();
 
   /// How far a place sticks out of a cell by its active index, at most (m); negative inside.
@@ -39,7 +39,7 @@ public:
   double gap(unsigned int cell, const Vec3 &x) const;
   /// The cell of a place near a known cell, among those that this rank owns and their neighbours.
   unsigned int walk(unsigned int from, const Vec3 &x) const;
-  /// The cell of a place among those that this rank owns, which must be some.
+  /// The cell of a place among those that this rank owns; the rank must own at least one.
   unsigned int find(const Vec3 &x) const;
 
   const Cell &cell(unsigned int index) const { return cells[index]; }

@@ -25,7 +25,7 @@ struct MeshParameters : public ParameterSection
   std::string grid_type = "hyper_cube";
   std::string grid_arguments = "-1 : 1 : false";
   unsigned int refinement = 0;
-  bool has_target = false; ///< refined as often as the target size asks for instead
+  bool has_target = false; ///< refined to the target size instead
   double target_size = 1.; ///< of the cells (m)
   Placement placement;
 
@@ -98,7 +98,7 @@ struct Side;
 struct Outlet
 {
   unsigned int boundary_id;
-  Vec3 point, inward; ///< of the plane that it is where the mesh is convex
+  Vec3 point, inward; ///< of the outlet's plane if the mesh is convex
 };
 
 /// What the background mesh is made of.
@@ -107,8 +107,8 @@ struct Background
   const MeshParameters &mesh;
   const RefinementParameters &refinement;
   std::shared_ptr<const Motion> motion; ///< null: at rest
-  /// Whether nothing will run in the mesh, so that one of equal boxes need not be made: a single
-  /// cell has the same walls, periods and outlets.
+  /// Whether no run follows, so that a mesh of equal boxes need not be made: a single cell has the
+  /// same walls, periods and outlets.
   bool is_only_looked_at = false;
 };
 
@@ -130,8 +130,8 @@ public:
   /// Corners of the box around the mesh, at the beginning if it moves (m).
   const Vec3 &lower() const { return lower_corner; }
   const Vec3 &upper() const { return upper_corner; }
-  /// The box around the mesh however it turns, from its centre (m). It follows from the mesh alone,
-  /// not from how long the run is, on which nothing may depend.
+  /// The box around the mesh however it turns, from its centre (m). It follows from the mesh alone:
+  /// results must not depend on the length of the run.
   Box box_from_centre() const;
   /// Where the centre of the motion is (m), at first in the origin.
   const Vec3 &centre() const { return pose.centre; }
@@ -143,7 +143,8 @@ public:
   Vec3 to_own_frame(const Vec3 &x) const { return in_frame(pose, x); }
   /// A place of that frame in space.
   Vec3 to_space(const Vec3 &x) const { return motion ? pose.rotation.apply(x) + pose.centre : x; }
-  /// Notes that contacts are searched with the mesh where it is; from there `passed_outlet` looks.
+  /// Notes that contacts are searched with the mesh where it is; `passed_outlet` refers to that
+  /// place.
   void note_search() { earlier = pose; }
   /// Where it was at the last search; null for a mesh at rest.
   nlohmann::ordered_json save() const;

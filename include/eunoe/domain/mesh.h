@@ -25,7 +25,7 @@ struct Domain::Mesh
   /// Whether all cells are boxes along the axes, with their corners in the order of these.
   bool has_boxes = false;
   /// Whether they are also of one level and at rest, so that deal.II finds the cells of particles
-  /// well.
+  /// reliably.
   bool is_plain = false;
 };
 
@@ -49,7 +49,7 @@ struct BoxSketch
   double n_cells[3];
 };
 
-/// Empty for meshes that are not surely made of equal boxes along the axes.
+/// Empty for meshes that may not be made of equal boxes along the axes.
 std::optional<BoxSketch> sketch_of(const MeshParameters &mesh);
 
 /// Refuses a mesh with too many cells, as far as their number can be known beforehand. Throws a

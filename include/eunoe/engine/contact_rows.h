@@ -10,9 +10,9 @@
 
 namespace eunoe {
 
-/// The memory of contacts by particle, for the time in which lists are rebuilt: one row a particle
-/// with a record a contact. A pair of particles stands in the rows of both, so that either one can
-/// take it along to another rank; both copies have the same bits.
+/// The memory of contacts by particle, while lists are rebuilt: one row per particle, with one
+/// record per contact. A pair of particles is in the rows of both, so that either particle can take
+/// it along to another rank; both copies have the same bits.
 class ContactRows
 {
 public:

@@ -22,19 +22,19 @@ public:
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double gap);
 
-  /// From now on takes in only ghosts of pairs, about half of them; collective.
+  /// From now on receives only ghosts of pairs, about half of them; collective.
   void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
 
-  /// Number that is taken in unless it sleeps.
+  /// Number of ghosts that are received, asleep or awake.
   std::size_t n_ghosts() const;
 
   /// Brings position, velocity and spin of the ghosts up to date; collective.
   void update(ParticleArrays &particles);
 
-  /// Gives the ghosts the flags of their originals, one a particle; collective.
+  /// Gives the ghosts the flags of their originals, one per particle; collective.
   void update(std::vector<std::uint8_t> &flags);
 
-  /// From now on takes in sleepers again.
+  /// From now on receives sleepers again.
   void include_sleepers();
   /// From now on leaves out sleepers, whose state does not change.
   void leave_out_sleepers(const ParticleArrays &particles);

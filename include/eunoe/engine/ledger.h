@@ -53,7 +53,7 @@ struct Ledger
 
   Tally inserted;
   Tally taken_out;                   ///< by a process
-  Tally lost;                        ///< left the mesh other than through an outlet, or no number
+  Tally lost;                        ///< left the mesh other than through an outlet, or NaN
   std::vector<Tally> through_outlet; ///< in the order of Domain::outlets
 };
 

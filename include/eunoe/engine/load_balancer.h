@@ -9,13 +9,13 @@
 
 namespace eunoe {
 
-/// Decides at which searches the cells are shared out anew over the ranks.
+/// Decides at which searches the mesh cells are divided anew among the ranks.
 class LoadBalancer
 {
 public:
   explicit LoadBalancer(const LoadBalancingParameters &parameters) : parameters(parameters) {}
 
-  /// The parameters if the search of a step shares the cells out anew, else null; collective.
+  /// The parameters if the search of a step divides the mesh cells anew, else null; collective.
   /// @param imbalance largest load of a rank less the smallest, over the mean; asked for only where
   ///                  it decides
   const LoadBalancingParameters *at_search(unsigned long long step,

@@ -5,7 +5,7 @@
 
 namespace eunoe {
 
-/// When the work is shared out anew over the ranks: `subsection load balancing`.
+/// When the work is divided anew among the ranks: `subsection load balancing`.
 struct LoadBalancingParameters : public ParameterSection
 {
   std::string method = "none"; ///< none, once, frequent or dynamic
@@ -13,12 +13,12 @@ struct LoadBalancingParameters : public ParameterSection
   unsigned int frequency = 100000;
   unsigned int check_frequency = 10000;
   double threshold = 0.5;
-  /// When the first particles are there, sharing out by their number costs little.
+  /// When the first particles are there, balancing by their number costs little.
   static constexpr double threshold_at_start = 0.1;
   unsigned int particle_weight = 2000;
   double active_factor = 1.,
          inactive_factor = 0.1; ///< on the weights of awake particles and of sleepers
-  /// Most cells are empty, and an empty one costs next to nothing.
+  /// Most mesh cells are empty, and an empty one costs next to nothing.
   unsigned int cell_weight = 20;
   /// The same as an expression in x, y, z of the cell's centre (m); empty: it does not depend on
   /// the place.

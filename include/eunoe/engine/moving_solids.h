@@ -11,7 +11,7 @@
 namespace eunoe {
 
 /// All solids of a run, walls among them: where they are, where they were when contacts were
-/// searched, and what particles do to them.
+/// searched, and the forces of particles on them.
 class MovingSolids
 {
 public:

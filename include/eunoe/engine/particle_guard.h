@@ -81,7 +81,7 @@ private:
   const FaultParameters &parameters;
   const Domain &domain;
   const Materials &materials;
-  const std::vector<double> young_modulus; ///< effective, one a kind of pair
+  const std::vector<double> young_modulus; ///< effective, one per kind of pair
   const double longest_way, dt;
   bool found_too_short = false; ///< a half period
 };

@@ -19,7 +19,7 @@ struct LoadBalancingParameters;
 class ParticleStore
 {
 public:
-  /// @param n_extra doubles a particle beside the ones of the engine
+  /// @param n_extra doubles per particle beside those of the engine
   /// @param asleep field that is not 0 for sleepers; none: nobody sleeps
   ParticleStore(Domain &domain, unsigned int n_extra, std::optional<FieldHandle> asleep);
   ~ParticleStore();

@@ -21,7 +21,7 @@ class CheckpointWriter;
 struct Delivery
 {
   std::vector<NewParticle> particles; ///< this rank's share; ids larger than all before
-  /// One row a particle, or none at all; partners are named by their new ids.
+  /// One row per particle, or none at all; partners are named by their new ids.
   ContactRows rows{0};
   bool has_rows = false;
 };
@@ -50,7 +50,7 @@ public:
   const ParticleFields &fields() const { return physics.fields; }
   const Ledger &get_ledger() const { return ledger; }
 
-  /// Shares out the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
+  /// Distributes the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
   /// memory. Particles beyond an outlet leave. Collective.
   /// @param lost rows of owned particles that are taken out and counted as lost
   void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
@@ -80,8 +80,8 @@ public:
   /// Of this rank: those that are brought up to date.
   std::size_t n_paired_ghosts() const { return halo.n_ghosts(); }
 
-  /// Keeps awake those around particles that leave at the coming search, as what held them goes;
-  /// collective.
+  /// Keeps awake the neighbours of particles that leave at the coming search, as they lose their
+  /// support; collective.
   /// @param lost rows of owned particles
   void stir_around_leaving(const SparseContacts &sparse, const std::vector<std::size_t> &lost,
                            unsigned long long step);
@@ -93,7 +93,7 @@ public:
   void forget_contacts();
 
   /// Adds the forces of the loads and of all contacts and advances their memory by @p dt (s).
-  /// @param on_solids if not null: forces on the solids, one a solid
+  /// @param on_solids if not null: forces on the solids, one per solid
   void add_forces(const std::vector<Solid> &solids, double time, double dt,
                   std::vector<SolidLoad> *on_solids);
 
@@ -147,7 +147,8 @@ private:
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.
   void leave_out_sleepers();
   void rebuild(const std::vector<Solid> &solids, const LoadBalancingParameters *balance);
-  /// Room for the memory of the contacts at once, as what grows by itself takes twice as much.
+  /// Reserves the memory of the contacts at once, as a vector that grows by itself takes twice as
+  /// much.
   void make_room_for_contacts();
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept

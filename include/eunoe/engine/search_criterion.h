@@ -14,7 +14,8 @@ struct ContactDetectionParameters : public ParameterSection
   double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
   double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
 
-  /// Gap up to which the search lists pairs (m), for particles of at most @p largest_diameter.
+  /// Separation up to which the search lists pairs (m), for particles of at most
+  /// @p largest_diameter.
   double skin(double largest_diameter) const
   {
     return (neighborhood_threshold - 1.) * largest_diameter;
@@ -25,11 +26,11 @@ struct ContactDetectionParameters : public ParameterSection
 };
 
 /// Decides when two bodies may have come closer than the skin allows, so that contacts must be
-/// searched. All ranks are asked while they do something else.
+/// searched. The ranks exchange their displacements while they do something else.
 class SearchCriterion
 {
 public:
-  /// @param skin gap up to which pairs are listed (m)
+  /// @param skin separation up to which pairs are listed (m)
   SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm)
       : parameters(parameters), allowed(parameters.displacement_share * skin), comm(comm)
   {
@@ -39,7 +40,7 @@ public:
   double allowed_displacement() const { return allowed; }
 
   /// Asks how far particles have moved on any rank since the last search; collective.
-  /// @param moved2 square of the largest displacement on this one (m2), no number if one is none
+  /// @param moved2 square of the largest displacement on this rank (m2), NaN if any is NaN
   void ask(unsigned long long step, double moved2);
 
   /// Whether a search is due, once all ranks have answered; collective.

@@ -7,8 +7,8 @@
 
 namespace eunoe {
 
-/// Decides when it is looked at who sleeps, and what has stirred outside the particles since the
-/// last look.
+/// Decides when the sleepers are determined anew (a look), and notes disturbances from outside the
+/// particles since the last look.
 class Sleeper
 {
 public:
@@ -27,7 +27,7 @@ public:
   /// Whether it is time for a look, without a search.
   bool is_look_due(const Clock &clock, const std::vector<Solid> &solids) const;
 
-  /// What has stirred since the last look; this is a look from now on.
+  /// The disturbances since the last look; this call counts as a look.
   /// @param wake_all whether particles have come or gone
   Stirring look(const Clock &clock, const std::vector<Solid> &solids,
                 const std::vector<std::unique_ptr<Load>> &loads, bool wake_all);

@@ -23,7 +23,7 @@ public:
     std::int32_t first_facet, n_facets;
     std::int32_t plane; ///< that stands for the facets until the next search, -1 if none does
     std::uint32_t n_living = 0;
-    float gap = 0.f; ///< least distance of the surfaces when they were searched (m), rounded down
+    float gap = 0.f; ///< least separation at the search (m), rounded down
     /// Records of the contacts that touched at the last step.
     std::array<std::int32_t, Shape::max_contacts> living;
   };
@@ -35,12 +35,12 @@ public:
   void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
 
   /// Adds the forces and torques on the owned particles and advances the memory by @p dt.
-  /// @param loads if not null, one a solid: what the particles exert is added to it
+  /// @param loads if not null, one per solid: what the particles exert is added to it
   void add_forces(ParticleArrays &particles, const std::vector<Solid> &solids, double time,
                   double dt, std::vector<SolidLoad> *loads);
 
-  /// Gives what acts at this moment in all contacts, those of sleepers, too, to @p sink. Contacts
-  /// remember what they remember.
+  /// Gives the present forces of all contacts, also of sleepers, to @p sink. The memory of contacts
+  /// does not change.
   void evaluate(const ParticleArrays &particles, const std::vector<Solid> &solids, double time,
                 const ContactForceSink &sink) const;
 
@@ -62,7 +62,7 @@ public:
   ///@}
 
 private:
-  /// A block for the laws, and what it does not hold of its contacts.
+  /// A block for the laws, with further data of its contacts.
   struct Batch : public PairBlock
   {
     std::array<std::int32_t, size> particle, solid;
@@ -93,7 +93,7 @@ private:
   /// tiny part of the particle's size in a step, over any edge. `ContactMemory::none` without such
   /// a contact.
   std::int32_t take_living(Candidate &candidate, const Vec3 &normal) const;
-  /// Contacts that were found go on, or begin; those that were not have ended.
+  /// Contacts that were found continue or begin; contacts that were not found have ended.
   void go_on(Candidate &candidate, const SurfaceContact *found, unsigned int n_found);
 
   const ContactModel &model;

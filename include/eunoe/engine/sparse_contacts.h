@@ -27,7 +27,7 @@ struct SparseContactParameters : public ParameterSection
 struct Stirring
 {
   unsigned long long step = 0;
-  std::vector<bool> solid_moves; ///< one a solid
+  std::vector<bool> solid_moves; ///< one per solid
   bool everything = false;       ///< particles came or went, or a load has changed
 };
 
@@ -61,7 +61,7 @@ public:
               Halo &halo, const Stirring &stirring) const;
 
   /// Keeps awake the owned particles of all pairs with a flag.
-  /// @param flags one a particle, ghosts too
+  /// @param flags one per particle, ghosts too
   void stir_neighbours(ParticleArrays &particles, const PairList &pairs,
                        const std::vector<std::uint8_t> &flags, unsigned long long step) const;
 

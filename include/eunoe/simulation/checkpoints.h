@@ -31,7 +31,7 @@ public:
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;
 
-  /// Begins to wait for signals and to measure the time, if checkpoints are written at all.
+  /// Starts to watch signals and the time, if checkpoints are written at all.
   void begin();
   /// Goes on behind the one that was opened, which has been read.
   void go_on() { store.go_on(); }
@@ -39,7 +39,7 @@ public:
 
   /// Whether one is due after a step; collective.
   bool is_due(unsigned long long step);
-  /// Whether the run was asked to stop when it was last asked for that.
+  /// Whether the last `is_due` found that the run was asked to stop.
   bool is_stopped() const { return signal != 0; }
   /// Writes one and says so if it is the last; collective.
   void write(CheckpointWriter &writer, unsigned long long step, Log &log);

@@ -10,8 +10,8 @@ namespace eunoe {
 
 class Log;
 
-/// What can be known of a run before its first step. The same words are said by `--check` and at
-/// the start of the run.
+/// What can be known of a run before its first step. `--check` prints the same words as
+/// the start of a run.
 struct Forecast
 {
   std::vector<std::string> facts; ///< lines for the user

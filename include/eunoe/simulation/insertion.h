@@ -16,7 +16,7 @@ class Domain;
 class Log;
 struct Solid;
 
-/// What an insertion finds where its particles are to come.
+/// What is present where an insertion places its particles.
 struct Surroundings
 {
   const Domain &domain;
@@ -42,7 +42,7 @@ struct InsertionSettings
   void check_box(const ParameterCheck &check) const;
 };
 
-/// Supplies the particles of one event after another. Whatever is wrong with its input is found
+/// Supplies the particles of one event after another. Errors of its input are found
 /// when it is made.
 class Insertion
 {
@@ -55,14 +55,14 @@ public:
   /// Number of particles that @p n_events events supply together.
   virtual std::size_t supply(std::size_t n_events) const = 0;
 
-  /// Whether the input gives the particles one by one, whatever their type says of numbers and
-  /// sizes.
+  /// Whether the input gives the particles one by one, so that numbers and sizes in their type do
+  /// not count.
   virtual bool gives_particles() const { return false; }
 
   /// Whether every event comes to the same places.
   virtual bool repeats_places() const { return false; }
 
-  /// What is wrong with the insertion in the light of the mesh; collective.
+  /// Adds problems of the insertion with the mesh; collective.
   virtual void check(const Domain &, Problems &) const {}
 
   /// Looks around before the next event; collective.
@@ -76,11 +76,11 @@ public:
   /// Places of this rank's share of the particles, where they are known beforehand (m).
   virtual std::vector<Vec3> known_places() const { return {}; }
 
-  /// This rank's share of the particles of the first events, as far as they are known beforehand
-  /// and as they are inserted; of very many on a grid only some.
+  /// This rank's share of the particles of the first events, as far as they are known beforehand;
+  /// of very many on a grid only some.
   virtual std::vector<std::vector<NewParticle>> known_events() const { return {}; }
 
-  /// Passes over the particles of the first events, which have been supplied already.
+  /// Skips the particles of the first events, which have been supplied already.
   /// @param n_particles that they supplied
   virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
 
@@ -101,10 +101,10 @@ public:
   /// Asked of the chosen method only.
   virtual void check(const InsertionSettings &, const ParameterCheck &) const {}
 
-  /// Says what will take more than a second.
+  /// Announces work that takes more than a second.
   virtual void announce(const InsertionSettings &, const PhysicalProperties &, Log &) const {}
 
-  /// Whether the insertion asks for cells of a mesh that stays where it is.
+  /// Whether the insertion needs the cells of a mesh at rest.
   virtual bool needs_cells() const { return false; }
 
   virtual std::unique_ptr<Insertion> make(const InsertionSettings &settings,

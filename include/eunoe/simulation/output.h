@@ -29,11 +29,11 @@ struct PictureField
 struct PictureIntegers
 {
   std::string name;
-  std::vector<std::int64_t> values; ///< one a point of this rank
+  std::vector<std::int64_t> values; ///< one per point of this rank
 };
 
-/// A series of .vtu files with their exact times in a .pvd file, for ParaView. Without a folder it
-/// goes nowhere.
+/// A series of .vtu files with their exact times in a .pvd file, for ParaView. Without a folder
+/// nothing is written.
 class PictureSeries
 {
 public:
@@ -63,7 +63,7 @@ public:
   /// Times (s) and names of the files so far.
   using Files = std::vector<std::pair<double, std::string>>;
   const Files &get_files() const { return files; }
-  /// Waits until the files since the last time would outlive a crash of the machine. To be called
+  /// Waits until the files since the last call would survive a crash of the machine. To be called
   /// by the first rank, throws a UserError there.
   void sync();
   /// Goes on behind the files of an interrupted run; later ones disappear from the .pvd file.

@@ -37,8 +37,8 @@ public:
   /// A series of pictures, likewise.
   std::shared_ptr<PictureSeries> pictures(const std::string &name);
 
-  /// Waits until all tables and pictures would outlive a crash of the machine, which a checkpoint
-  /// that knows them relies on. Throws a UserError on every rank; collective.
+  /// Waits until all tables and pictures would survive a crash of the machine, as a checkpoint
+  /// relies on them. Throws a UserError on every rank; collective.
   void sync();
 
   /// How far tables and series have come.

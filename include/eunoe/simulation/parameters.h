@@ -32,7 +32,7 @@ struct SectionCounts
 };
 
 /// Everything that an input file says, as plain structs that belong to the parts of the code that
-/// they rule.
+/// use them.
 class Parameters
 {
 public:

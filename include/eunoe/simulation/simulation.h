@@ -30,7 +30,7 @@ public:
   enum class Purpose
   {
     run,
-    check ///< to be asked what it would do; a mesh of boxes is only sketched
+    check ///< only to foresee a run; a mesh of boxes is only sketched
   };
 
   /// Builds all parts; writes nothing. Throws a UserError on every rank if the case makes no sense.
@@ -38,7 +38,7 @@ public:
   Simulation(const Parameters &parameters, MPI_Comm comm, Log &log, Purpose purpose = Purpose::run);
   ~Simulation();
 
-  /// What the run would stumble over, and what else is known of it beforehand.
+  /// What would stop or harm the run, and what else is known of it beforehand.
   /// @param writes whether it would write pictures, tables and checkpoints
   Forecast foresee(bool writes = true) const;
 
@@ -103,8 +103,8 @@ public:
   ParticleArrays &changeable_particles();
   /// Takes ids for particles of all ranks, see ParticleIds::take.
   ParticleId take_ids(std::uint64_t n) { return inserter.take_ids(n); }
-  /// Inserts and removes particles at the present time; those that stay go on as if nothing had
-  /// been. Particles that have gone wrong are found and treated as before a search.
+  /// Inserts and removes particles at the present time; the others continue unchanged. Particles
+  /// that have gone wrong are found and treated as before a search.
   void insert_and_remove(const Delivery &delivery, const std::vector<std::size_t> &removed);
   /// Takes note that the motion of a solid was changed at the present time.
   void renew_solids() { move_solids(); }
@@ -122,7 +122,7 @@ private:
   /// ranks, or returns the rows of those to take out.
   std::vector<std::size_t> inspect();
   [[noreturn]] void stop_for(const InspectionResult &result);
-  /// Looks at who sleeps from now on.
+  /// Determines the particles that sleep from now on.
   void update_sleep(bool wake_all);
   void compute_forces();
   /// What happens between two steps, at the present time.

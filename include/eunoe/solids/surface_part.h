@@ -5,8 +5,8 @@
 
 namespace eunoe {
 
-/// Some of the triangles of a surface, as a solid of its own. Where parts meet, a sphere feels the
-/// whole surface: a contact belongs to the part on whose triangle it is, and to no other.
+/// Some of the triangles of a surface, as a solid of its own. Where parts meet, contacts are those
+/// of the whole surface: a contact belongs only to the part on whose triangle it is.
 class SurfacePart : public Shape
 {
 public:

@@ -63,7 +63,7 @@ public:
   int kind(int a, int b) const { return a * size() + b; }
   const Material &operator[](int m) const { return materials[m]; }
 
-  /// The table with one row a kind that `row(a, b)` computes from two materials.
+  /// The table with one row per kind, which `row(a, b)` computes from two materials.
   template <typename Row>
   auto table(const Row &row) const
   {

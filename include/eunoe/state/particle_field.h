@@ -6,8 +6,8 @@
 
 namespace eunoe {
 
-/// Doubles that somebody attaches to every particle: their name, their number, and what a new
-/// particle has.
+/// Doubles that a part of the program attaches to every particle: their name, number, and value
+/// for a new particle.
 struct ParticleField
 {
   std::string name;

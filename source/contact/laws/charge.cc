@@ -16,7 +16,7 @@ const MaterialProperty surface_charge(
 class Charge : public ContactLaw
 {
 public:
-  /// @param cut_off gap at which the force ends (m)
+  /// @param cut_off separation at which the force ends (m)
   Charge(const Materials &materials, const double cut_off)
       : table(materials.table([](const Material &a, const Material &b) {
           return Row{4. * M_PI * surface_charge(a) * surface_charge(b) / vacuum_permittivity};
@@ -39,8 +39,8 @@ private:
 
   struct Row
   {
-    /// Of the force over the squared product of effective radius and sum of the radii, times the
-    /// squared distance (N/m2).
+    /// The force times the squared distance, over the squared product of effective radius and sum
+    /// of the radii (N/m2).
     double strength;
   };
 

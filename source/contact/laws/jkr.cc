@@ -61,7 +61,7 @@ public:
 
   double range(int kind) const override
   {
-    // A wall leaves a particle its own radius, the largest that is effective.
+    // Against a wall the effective radius is the particle's own, the largest possible.
     const double neck = table[kind].neck * std::cbrt(largest_radius * largest_radius);
     return largest_radius > 0. ? 3. * neck * neck / largest_radius : 0.;
   }

@@ -123,8 +123,7 @@ struct Estimates
 };
 
 /// @param others replicates of another model or no rows; scaled to the same total variance, they
-/// add to
-///   the estimate of the covariance
+///   add to the estimate of the covariance
 Estimates estimate(const Modes &modes, const Eigen::MatrixXd &runs, const Eigen::MatrixXd &others,
                    const Repeats &repeats, const Eigen::MatrixXd &uncertainty)
 {

@@ -29,7 +29,7 @@ MeanAndSpread statistics(const std::vector<double> &values)
   return result;
 }
 
-/// Writes heap.csv: a row a view and, with an empty number, their mean.
+/// Writes heap.csv: a row per view, then a row of means without a view's number.
 void write_views(Simulation &simulation, const Silhouettes &views, nlohmann::ordered_json &found)
 {
   const auto file = simulation.output_folder().table(

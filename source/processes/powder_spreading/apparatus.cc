@@ -42,7 +42,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   rear = round ? p.spreader_radius : p.spreader_thickness;
   x_start = -run_up - front;
 
-  // The bed is that of the nominal strokes, so that the same powder is there however it is dosed.
+  // The bed is that of the nominal strokes, so errors of the stroke do not change the powder.
   const double strokes =
       p.feedstock == "full" ? p.first_stroke + (p.n_layers - 1) * p.stroke : p.first_stroke;
   bed_depth = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
@@ -80,7 +80,7 @@ double Apparatus::tilt(const double z) const
   const double place = z / depth;
   if (p.side_walls)
     return p.spreader_tilt * (place - 0.5);
-  // To and fro, or the spreader would have a step where space repeats.
+  // The tilt goes up and down again, or the spreader would have a step at the period.
   const double share = place - std::floor(place);
   return p.spreader_tilt * (std::abs(2. * share - 1.) - 0.5);
 }
@@ -97,7 +97,7 @@ TriangleMesh Apparatus::spreader_surface() const
 {
   if (p.spreader_tilt == 0.)
     return spreader_piece(-margin, depth + 2. * margin);
-  // Pieces over which the tilt is straight.
+  // Ends of pieces over which the tilt is linear.
   std::vector<double> ends = {-margin, depth + margin};
   if (!p.side_walls)
     for (double z = 0.5 * depth * std::ceil(-2. * margin / depth); z < depth + margin;

@@ -69,7 +69,7 @@ bool PowderSpreading::has_settled(Simulation &simulation)
     if (norm(particles.velocity[row].vec()) > p.settled_speed)
       ++count[0];
   MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
-  // The last few that bounce on the surface are no reason to wait.
+  // A few particles that still bounce on the surface do not delay the pass.
   const bool settled = static_cast<double>(count[0]) < moving_share * static_cast<double>(count[1]);
   if (!settled && waited < p.settling_time)
     return false;

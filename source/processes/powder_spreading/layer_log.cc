@@ -104,7 +104,7 @@ LayerLog::OnPlate LayerLog::look_at_particles(Simulation &simulation, const unsi
 void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const double plate_height)
 {
   const auto [present, kept] = look_at_particles(simulation, layer, plate_height);
-  // Some of what was there has left the domain, so it is not counted but inferred.
+  // Part of the removed powder has left the domain, so its mass is a difference and not counted.
   ExactSum removed = last_present;
   removed -= kept.mass;
 
@@ -146,7 +146,7 @@ void LayerLog::record(const unsigned int layer, const double time,
   std::vector<double> columns = {static_cast<double>(layer), time};
   for (const auto &[name, value] : row) {
     columns.push_back(value);
-    // No pass before layer 0 has left anything that could be removed.
+    // Before layer 0 there is no powder that could be removed.
     const bool is_defined = std::isfinite(value) && (layer > 0 || name != "mass_removed");
     if (is_defined && name != wall_clock)
       measured.push_back({name, static_cast<int>(layer), value});

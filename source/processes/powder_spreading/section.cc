@@ -22,7 +22,7 @@ void SpreadingParameters::check_with(const Parameters &parameters,
   check_powder_of_process(parameters, check, "Powder spreading",
                           "in powder spreading y points upwards");
   check_lengths(parameters, check);
-  // The powder that is there does not depend on how it is dosed.
+  // Errors of the stroke do not change the powder.
   const double bed = bed_depth > 0. ? bed_depth : stroke + bed_margin;
   const double first_bed = std::max(bed, first_stroke + bed_margin);
   check.require(actual_stroke(0) <= first_bed && actual_stroke(1) <= bed, {section},

@@ -7,7 +7,7 @@
 namespace eunoe {
 namespace {
 
-/// What the input gives, one value a particle (SI units).
+/// What the input gives, one value per particle (SI units).
 struct Lists
 {
   std::vector<double> x, y, z, vx, vy, vz, wx, wy, wz, diameters;

@@ -164,7 +164,7 @@ double Packing::compute_forces()
       if (distance >= touch)
         continue;
       worst = std::max(worst, (touch - distance) / (radius[k] + radius[n]));
-      // Two in the same place part along an axis, the first of them downwards.
+      // Two spheres at the same place separate along an axis, the first one downwards.
       sum += distance > 0. ? (touch / distance - 1.) * away
                            : Vec3{0., 0., (static_cast<std::int32_t>(k) < n ? -1. : 1.) * touch};
     }
@@ -197,7 +197,7 @@ void Packing::move(const double time_step)
     position[k] = x;
     moved2 = std::max(moved2, norm_square(box.shortest(position[k] - searched[k])));
   }
-  // Two may have come closer by twice that.
+  // Two spheres may have come closer by twice that.
   if (2. * std::sqrt(moved2) > 0.3 * largest)
     find_neighbours();
 }

@@ -52,7 +52,7 @@ struct StudyState
   std::vector<std::string> experiments;
   std::vector<DataPoint> columns;
 
-  // The runs, and what is said of them.
+  // The runs, and notes on them.
   Archive archive;
   Log &log;
   std::vector<std::string> notes; ///< for the reader: data points left out, failed runs

@@ -32,8 +32,7 @@ public:
 
   /// @param runs at least one of them at the origin
   /// @param slopes The expected nonlinearity is in proportion to them. (Noise in the slope at a
-  /// fitted
-  ///   amplitude would make its interval too narrow.)
+  ///   fitted amplitude would make its interval too narrow.)
   Emulator(const std::vector<Run> &runs, const Slopes &slopes);
 
   /// Predicted outcome at the origin.

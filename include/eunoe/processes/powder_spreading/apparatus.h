@@ -53,8 +53,7 @@ public:
     return bed_fraction * x_transfer * depth * bed_depth / volume;
   }
   /// Whether the reservoir is full when so many particles reach over the level of the transfer
-  /// plate: as many as a layer of the largest has. Some alone stand or fly over a surface that is
-  /// lower.
+  /// plate: as many as a layer of the largest has. Fewer may stand or fly over a lower surface.
   bool is_full(const ParticleType &type, unsigned long long n_above) const
   {
     return static_cast<double>(n_above) >= particles_in_bed(type, type.sizes.make()->largest());
