@@ -18,7 +18,7 @@ using namespace eunoe::discovery;
 const std::string folder = DISCOVERY_TESTS;
 const std::string cache = "campaign_cache", cache_alone = "campaign_cache_alone";
 
-/// One row a run; that of a failure is empty.
+/// One row per run; the row of a failed run is empty.
 Numbers numbers(const std::vector<RunResult> &results)
 {
   Numbers rows;
@@ -33,7 +33,7 @@ void check_runs(const std::string &name, const Simulator &simulator, const std::
         std::to_string(simulator.n_runs()) + " runs instead of " + std::to_string(made));
 }
 
-/// Two experiments and the effects, as all laboratories here take them.
+/// Two experiments and the effects that all tests here use.
 struct Setting
 {
   std::vector<Experiment> experiments;
@@ -64,7 +64,7 @@ const std::vector<RunRequest> requests = {{"box", {}, 1},
                                           {"box", {{"bounce", 0.}}, 1},
                                           {"box", {{"growth", 20.}}, 1}};
 
-/// Runs of effects differ from the plain one as they should.
+/// Runs with effects differ from the plain run as they should.
 void check_effects(const Simulator &simulator, const std::vector<RunResult> &results)
 {
   const auto value = [&simulator](const std::string &observable) {
@@ -106,7 +106,7 @@ std::vector<RunResult> run_first(const Setting &setting, Log &log)
   });
   check("a null value changes no bit", *first[0] == *first[5]);
   check("other seeds, other packings", *first[0] != *first[4]);
-  // Two base models, and of the requests all but the first and its like.
+  // Two base models, and all requests but the first and those equal to it.
   check_runs("equal runs are made once", simulator, 7);
   simulator.run(requests);
   check_runs("and not again", simulator, 7);
@@ -130,7 +130,7 @@ void run_from_cache(const Setting &setting, const std::vector<RunResult> &first,
     for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
       n += entry.is_regular_file() ? 1 : 0;
     print(std::to_string(n) + " files");
-    // Damage is not taken for a result.
+    // A damaged file does not count as a result.
     write_file(cache + "/" + simulator.ledger()[0].at("key").get<std::string>().substr(0, 2) + "/" +
                    simulator.ledger()[0].at("key").get<std::string>() + ".json",
                "{\"key\": 1");

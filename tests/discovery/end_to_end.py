@@ -17,7 +17,7 @@ from eunoe.launch import mpirun, overrides
 
 HERE = Path(__file__).resolve().parent
 NAMED, BAD_INPUT, FAILED, STOPPED = 10, 2, 1, 3
-# What belongs to one start of the program, not to the answer.
+# Keys that belong to one start of the program, not to the answer.
 PASSING = ("simulations", "ledger")
 
 
@@ -66,7 +66,7 @@ def make_data(program: Program) -> None:
     assert json.loads(sealed)["effects"] == {"tilt": 0.7}
     assert "tilt" not in data and ",held-out\n" in data and ",fit\n" in data
     expect(program.run("--make-twin", "truth.prm"), FAILED, "is there already")
-    # From here on nothing can open the truth.
+    # From here on no program can read the truth.
     for name in ("truth.sealed.json", "truth.prm"):
         (folder / name).unlink()
     shutil.rmtree(folder / "truth.sealed.json.cache")
@@ -117,7 +117,7 @@ def check_answer(folder: Path) -> None:
 
 
 def check_resume(program: Program, reference: Path) -> None:
-    """Killed as soon as some runs are made, then started again, on two ranks."""
+    """Kills a study as soon as some runs are made, then starts it again, on two ranks."""
     arguments = ["study.prm", *settings(output_path="killed")]
     cache = program.folder / "killed_cache"
     with subprocess.Popen(program.command(*arguments), cwd=program.folder,

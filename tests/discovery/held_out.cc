@@ -1,5 +1,5 @@
-// The test of a model by held-out data: as often significant as it says where the model is true,
-// whatever is uncertain of it, and sure where the model is wrong.
+// The test of a model by held-out data: significant as often as its level says if the model is
+// true, whatever its uncertainties, and always if the model is wrong.
 
 #include <eunoe/discovery/stages/held_out.h>
 #include <eunoe/discovery/statistics/covariance.h>
@@ -13,10 +13,10 @@ using namespace test;
 constexpr Eigen::Index n_points = 10;
 constexpr unsigned int n_repeats = 4;
 
-/// What of a model is not known exactly, and how far it is off.
+/// The uncertainties of a model, and its error.
 struct Setting
 {
-  double shift = 0.;       ///< of the data in every data point, in units of one run's scatter
+  double shift = 0.;       ///< of every data point from the model, in units of one run's scatter
   double uncertainty = 0.; ///< standard deviation of a nuisance that changes all data points alike
   double instrument = 0.;  ///< variance of the measurement's noise beside a run's
   bool has_other = false;  ///< whether another model was run, too

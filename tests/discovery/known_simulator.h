@@ -56,7 +56,8 @@ public:
   virtual Eigen::VectorXd mean(const std::string &experiment,
                                const Amplitudes &amplitudes) const = 0;
 
-  /// Mahalanobis distance from the base model in the scatter of one run of each experiment.
+  /// Mahalanobis distance from the base model, in units of the scatter of one run of each
+  /// experiment.
   double strength(const Amplitudes &amplitudes, const std::vector<std::string> &experiments) const
   {
     return change(amplitudes, experiments).norm();
@@ -85,8 +86,8 @@ public:
     throw std::runtime_error("no factor " + name);
   }
 
-  /// Means and deviations of repeated measurements of an experiment, with other seeds than any
-  /// study's, and noise of the instrument in shares of each data point's scatter.
+  /// Means and deviations of repeated measurements of an experiment, with seeds that no study uses,
+  /// and noise of the instrument as a share of each data point's scatter.
   std::vector<MeasuredPoint> measure(const std::string &experiment, const Amplitudes &truth,
                                      unsigned int repeats, double instrument,
                                      std::uint32_t seed) const
@@ -123,7 +124,7 @@ public:
     return data;
   }
 
-  /// What changes in all data points of some experiments, in units in which the scatter of a run is
+  /// Changes of all data points of some experiments, in units in which the covariance of a run is
   /// the unit matrix.
   Eigen::VectorXd change(const Amplitudes &amplitudes,
                          const std::vector<std::string> &experiments) const
@@ -139,7 +140,7 @@ public:
   }
 
 protected:
-  /// What a run gives, if it does not fail.
+  /// The values of a run that does not fail.
   virtual Eigen::VectorXd value(const std::string &experiment, const Amplitudes &amplitudes,
                                 std::uint32_t seed) const = 0;
   virtual bool fails(const RunRequest &) const { return false; }
@@ -187,11 +188,11 @@ public:
                 .ldlt();
   }
 
-  /// Of a truth's effects from the base model.
+  /// Distance of a truth's effects from the base model.
   double clearness(const Amplitudes &truth) const { return size(effects_of(truth)); }
 
   /// Distance of a truth's effects from the nearest other single effect at its best amplitude;
-  /// their clearness if that is less.
+  /// their clearness if it is smaller.
   double separation(const Amplitudes &truth) const
   {
     const Eigen::VectorXd wanted = effects_of(truth);
@@ -230,7 +231,7 @@ private:
     return std::sqrt(difference.squaredNorm() - along.dot(inner.solve(along)));
   }
 
-  /// Amplitudes are tried in a geometric row, then between the best one's neighbours.
+  /// Tries amplitudes in a geometric sequence, then between the neighbours of the best one.
   double least_distance(const Eigen::VectorXd &wanted, const Factor &f, double limit) const
   {
     constexpr double ratio = 0.8;

@@ -1,4 +1,4 @@
-// Values of patched entries: expressions of the amplitude and of what the case has.
+// Values of patched entries: expressions of the amplitude and of the case's own value.
 
 #include <eunoe/discovery/patch.h>
 
@@ -26,7 +26,7 @@ EUNOE_TEST()
   print(give("${amplitude", "1"));
   print(give("${amplitude + nonsense}", "1"));
   print(give("${1 / (amplitude - 0.25)}", "1"));
-  // What an expression gives is read back without loss.
+  // The value of an expression is read back without loss.
   check("full precision", std::stod(patched_value("${amplitude / 3}", "", 1.)) == 1. / 3.);
 
   const std::vector<std::string> path = {"a", "b"};

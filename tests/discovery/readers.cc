@@ -1,5 +1,5 @@
-// What is said of bad studies, bad effects and bad measurements, and that what is written is read
-// back.
+// The error messages for bad studies, effects and measurements; and files that are written can be
+// read back.
 
 #include <eunoe/core/files.h>
 #include <eunoe/discovery/measured_csv.h>
@@ -16,7 +16,7 @@ using namespace eunoe::discovery;
 const std::string folder = DISCOVERY_TESTS;
 const std::string heading = "experiment,observable,index,value,std,repeats,use\n";
 
-/// Problems, without the folder of the tests.
+/// The problems as text, without the path of the tests' folder.
 void print_problems(const std::string &title, const Problems &problems)
 {
   print("-- " + title);

@@ -24,8 +24,8 @@ namespace {
 using namespace eunoe;
 using namespace eunoe::discovery;
 
-/// Amplitudes of a factor that are recorded, in scales from its null value: both sides of those
-/// that may go either way, a wide range of the others, as some are felt at a small share of their
+/// Amplitudes at which a factor is recorded, in scales from its null value: on both sides if its
+/// sign allows both, else over a wide range, as some effects are visible at a small share of their
 /// scale.
 std::vector<double> levels(const Factor &factor)
 {

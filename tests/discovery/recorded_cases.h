@@ -64,7 +64,7 @@ inline RecordedStudy simulated_study(const RecordedTable &table, const LeftOut &
   one.kind = left_out.factor.empty() ? "none" : "single";
   const std::string factor = left_out.factor.empty() ? "base" : left_out.factor;
   if (!left_out.factor.empty()) {
-    // How strong it is, with all of its runs known.
+    // The strength of the factor, from all of its runs.
     const double strength =
         RecordedSimulator(table, seed).strength({{left_out.factor, left_out.amplitude}}, table.fit);
     const bool below = left_out.amplitude < simulator.factor(left_out.factor).null_value;
@@ -84,7 +84,7 @@ inline RecordedStudy simulated_study(const RecordedTable &table, const LeftOut &
 }
 
 /// All data that the table has for simulated studies: groups of four runs of the base model, and
-/// the amplitudes of effects that lie between two others or between another and none.
+/// the amplitudes of effects that lie between two other amplitudes or between one and zero.
 inline std::vector<LeftOut> simulated_data(const RecordedTable &table)
 {
   std::vector<LeftOut> result;

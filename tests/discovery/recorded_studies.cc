@@ -1,8 +1,8 @@
 // Studies on recorded DEM simulations, a small part of the recorded suite. They draw all their
-// numbers from seeds, so what each answers is the same every time: the output holds it line by
-// line, and any change of a stage that changes an answer is seen. Whether the answers are good is
-// asked apart, with bounds that samples miss in four of a hundred at most at the rates of the whole
-// suite (doc/discovery.md), and a broken stage nearly always.
+// numbers from seeds, so each gives the same answer every time: the expected output has the answers
+// line by line, and shows any change of a stage that changes one. The quality of the answers is
+// tested separately, with bounds. At the rates of the whole suite (doc/discovery.md) a sample
+// misses a bound in at most four of a hundred cases; with a broken stage, nearly always.
 
 #include "recorded_cases.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// Whether a study names, without a tie, what is no part of the truth.
+/// Whether a study names, without a tie, an effect that is not part of the truth.
 bool is_wrong(const RecordedStudy &study)
 {
   if (study.discovery.verdict != Verdict::named)

@@ -1,5 +1,5 @@
-// The blind suite on recorded DEM simulations: many studies in which the truth is hidden, a line of
-// JSON each.
+// The blind suite on recorded DEM simulations: many studies with hidden truths, one line of
+// JSON per study.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
 // Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look

@@ -1,4 +1,5 @@
-"""Makes the output folder of a study, as eunoe-discovery writes it, for two effects and four cells."""
+"""Makes the output folder of a study, as eunoe-discovery writes it, for two effects and four data
+points."""
 
 from __future__ import annotations
 

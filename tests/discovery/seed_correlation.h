@@ -7,8 +7,8 @@
 
 namespace test {
 
-/// What common random numbers are worth in recorded simulations: how much runs of the base model
-/// and of changed models have in common if they have the same seed.
+/// The benefit of common random numbers in recorded simulations: the correlation between runs of
+/// the base model and of changed models with the same seed.
 class SeedCorrelation
 {
 public:
@@ -21,7 +21,7 @@ public:
       for (const RecordedTable::Run *run : table.of(experiment, factor.name))
         if (base.count(run->seed) > 0)
           by_amplitude[run->amplitude][run->seed] = run->values;
-      // A vibrating spreader leaves a heap as it is: nothing to compare.
+      // A vibrating spreader does not change a heap, so there is nothing to compare.
       for (const auto &[amplitude, runs] : by_amplitude)
         if (runs.size() > 1 && std::any_of(runs.begin(), runs.end(), [this](const auto &run) {
               return run.second != base.at(run.first);
@@ -37,7 +37,7 @@ public:
     return mean_with([](std::uint32_t seed) { return seed; });
   }
 
-  /// Standard deviation of the mean if nothing is in common: the base model's seeds are exchanged.
+  /// Standard deviation of the mean without any correlation: the base model's seeds are exchanged.
   double scatter() const
   {
     constexpr int n_shuffles = 500;
@@ -77,7 +77,7 @@ private:
       }
       a.rowwise() -= a.colwise().mean().eval();
       b.rowwise() -= b.colwise().mean().eval();
-      // Cells count alike, whatever their units.
+      // All data points have the same weight, whatever their units.
       const Eigen::ArrayXd scale = (a.colwise().norm().array() * b.colwise().norm().array());
       const Eigen::ArrayXd product = (a.cwiseProduct(b)).colwise().sum().array();
       sum += (scale > 0.).select(product / scale, 0.).mean();

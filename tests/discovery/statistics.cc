@@ -85,7 +85,7 @@ void misfits()
         std::abs(misfit.log_determinant(h) - misfit.log_determinant(0.5) -
                  std::log(sum.determinant()) +
                  std::log((other + 0.5 * replicate_covariance).determinant())) < 1e-9);
-  // With many degrees of freedom the deviance is Gauss's.
+  // With many degrees of freedom the deviance is that of a normal distribution.
   check("deviance", std::abs(misfit.deviance(12., 1.5) - 13.5) < 1e-5);
 }
 
@@ -107,14 +107,14 @@ void emulators()
   const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 1.3);
   check("origin", (emulator.origin() - origin).norm() < 1e-6);
   check("change", (emulator.change(at) - 1.3 * slope).norm() < 1e-6);
-  // Three levels and three terms: each level stands for itself.
+  // Three levels and three terms: the mean at each level depends on its own runs only.
   check("leverage of replicates",
         std::abs(emulator.leverage(Eigen::VectorXd::Ones(1)) - 0.25) < 1e-6 &&
             std::abs(emulator.leverage(Eigen::VectorXd::Zero(1)) - 0.1) < 1e-6);
   check("range of amplitudes", emulator.upper(0) == 3. && emulator.lower(0) == 0.);
 }
 
-/// Runs at 0 and at some amplitudes, whose values grow less and less.
+/// Runs at 0 and at some amplitudes, whose values grow more and more slowly.
 constexpr double power = 0.75;
 std::vector<Emulator::Run> saturating(const std::vector<double> &amplitudes)
 {
@@ -132,7 +132,7 @@ std::vector<Emulator::Run> saturating(const std::vector<double> &amplitudes)
 
 void bent_responses()
 {
-  // Of the mean slope between 0 and 1.
+  // The square of the mean slope between 0 and 1.
   const Slopes slope = same_slopes(100. * 100.);
   const Eigen::VectorXd small = Eigen::VectorXd::Constant(1, 0.04);
   const Emulator far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
@@ -194,7 +194,7 @@ void modes_and_noise()
   check("noise of the instrument", std::abs(noise.point_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
                                        std::abs(noise.modes(0, 0) - 2. / 40.) < 0.05 * 2. / 40.);
 
-  // An angle that hardly varies in runs says nothing of the profile's noise.
+  // An angle that hardly varies between runs says nothing about the profile's noise.
   Eigen::VectorXd deviation = Eigen::VectorXd::Ones(21);
   deviation(20) = 100.;
   const DataNoise uneven =

@@ -1,4 +1,4 @@
-// Whole studies on synthetic simulators, whose truth is known: each verdict where it is due.
+// Whole studies on synthetic simulators, whose truth is known: each verdict for a suitable truth.
 
 #include <eunoe/core/problems.h>
 
@@ -73,9 +73,9 @@ void named_with_amplitude()
 
 void steep_from_the_first_bit()
 {
-  // Little of each effect does nearly all of it, and only a third of the data points feel it, as
-  // with the angle of repose and rolling resistance. The truth lies far before the screening's
-  // amplitudes.
+  // A small amplitude of each effect makes nearly its whole change, and only a third of the data
+  // points change, as with the angle of repose and rolling resistance. The true amplitude is far
+  // below those of the screening.
   int named = 0, covered = 0;
   double deviation = 0.;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -97,7 +97,8 @@ void steep_from_the_first_bit()
     deviation += row["amplitude"].get<double>() / a - 1.;
   }
   check("steep effects are named", named >= 6, std::to_string(named) + " of 8");
-  // Runs that only draw nearer from above leave 15 %, and 3 of 8 within their intervals.
+  // If runs approached the amplitude only from above, 15 % would remain, and 3 of 8 would lie in
+  // their intervals.
   check("their amplitudes are not too large", deviation < 0.1 * named,
         std::to_string(deviation / named));
   check("and lie in the intervals", covered >= named - 2, std::to_string(covered));
@@ -105,8 +106,8 @@ void steep_from_the_first_bit()
 
 void rivals_get_their_chance()
 {
-  // In the heap, all there is, effect d does nearly what b does, and its fingerprints are made
-  // where it does; those of b, which is the truth, are made far beyond.
+  // The heap is the only experiment. There effect d does nearly the same as b, the truth. The
+  // fingerprints of d are made at amplitudes where it does so; those of b at far larger ones.
   int n = 0, slivers = 0, fair = 0, compared = 0, modest = 0, wrong = 0;
   for (std::uint32_t seed = 1; n < 10; ++seed) {
     Nature steep = nature(5100 + seed);
@@ -143,7 +144,7 @@ void rivals_get_their_chance()
     const bool undecided = probability["b"] > 0.05 && probability["d"] > 0.05;
     fair += !undecided || std::abs(std::log(leverage["b"] / leverage["d"])) < std::log(1.5);
   }
-  // What an effect has beside a set that does not need it says nothing of it.
+  // The amplitude of an effect in a set that does not need it says nothing about the effect.
   check("effects are confirmed where they explain the data", slivers <= 5, std::to_string(slivers));
   check("rivals are known alike", fair >= 9, std::to_string(fair) + " of 10");
   check("the likelier is not overrated", compared >= 5 && modest == compared,
@@ -206,7 +207,7 @@ void tie_and_how_to_break_it()
 
 void tie_that_held_out_data_break()
 {
-  // In the heap the two are one; the thick layers, where they differ, are held out.
+  // In the heap the two effects are the same; the thick layers, where they differ, are held out.
   SyntheticSimulator simulator(nature(51));
   simulator.make_alike("b", "c", 0., {"heap"});
   const Amplitudes truth = {{"b", simulator.amplitude_of("b", 12., {"heap"})}};
@@ -261,8 +262,8 @@ void too_weak_to_see()
 
 void withdrawn()
 {
-  // On the held-out condition the truth is as the base model: the effect is another one in
-  // disguise.
+  // Under the held-out condition the truth equals the base model, so the effect that fits is not
+  // the true one.
   SyntheticSimulator simulator(nature(72));
   const Amplitudes truth = {{"c", simulator.amplitude_of("c", 9., both)}};
   MeasuredData data = simulator.measure(both, {}, truth, 4, 0.2, 1);

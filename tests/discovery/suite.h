@@ -1,8 +1,8 @@
 #ifndef eunoe_tests_discovery_suite_h
 #define eunoe_tests_discovery_suite_h
 
-// Blind suites on simulators that cost nothing: hidden truths, their data, a study of each, and
-// what it answered, one line of JSON a study. contrib/tools score makes the tables.
+// Blind suites on simulators that cost nothing: hidden truths, their data, a study of each, and its
+// answer, one line of JSON per study. contrib/tools score makes the tables.
 
 #include "known_simulator.h"
 
@@ -34,7 +34,7 @@ struct SuiteCase
 {
   std::string kind;
   std::uint32_t seed = 1;
-  std::map<std::string, double> strengths; ///< of the effects, below zero for those below null
+  std::map<std::string, double> strengths; ///< of the effects; negative: below the null value
   Amplitudes truth;                        ///< with the nuisances
   std::vector<std::string> excluded;       ///< deleted from the catalogue
   double clearness = 0., separation = 0.;  ///< of the truth (Resolution)
@@ -116,7 +116,7 @@ inline SuiteCase draw_case(const KnownSimulator &simulator, const StudyKind &kin
   return one;
 }
 
-/// How clear a drawn truth is from the base model and from competing effects.
+/// How far a drawn truth is from the base model and from competing effects.
 inline void find_resolution(const KnownSimulator &simulator, const std::vector<std::string> &fit,
                             unsigned int repeats, SuiteCase &one)
 {
@@ -125,7 +125,7 @@ inline void find_resolution(const KnownSimulator &simulator, const std::vector<s
   one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
 }
 
-/// Sets of effects that the last stage that compared any found likeliest.
+/// The likeliest sets of effects by the last stage that compared any.
 inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &stages)
 {
   constexpr std::size_t most = 6;
@@ -137,7 +137,7 @@ inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &sta
   return models;
 }
 
-/// What a study answered beside the truth: a line that eunoe_suite/score.py reads.
+/// A study's answer and the truth: a line that contrib/eunoe/discovery/score.py reads.
 inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 {
   const auto &c = discovery.content;
@@ -184,7 +184,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
   std::fflush(stdout);
 }
 
-/// The study of a case; its seed is that of the case, so that no two share a run.
+/// The study of a case; its seed is that of the case, so that no two studies share a run.
 inline Discovery study_of(const SuiteCase &one, KnownSimulator &simulator, const MeasuredData &data,
                           const StudyOptions &options)
 {

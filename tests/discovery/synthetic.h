@@ -21,15 +21,15 @@ struct Nature
 {
   std::uint32_t seed = 1; ///< of fingerprints and scatter
   unsigned int n_effects = 12;
-  double power = 1.;  ///< of the amplitude, with which changes by effects that only add grow
-  double bend = 0.3;  ///< second-order change over the first-order one at one scale
-  double alike = 0.6; ///< share of fingerprints that stems from a few common patterns
+  double power = 1.;             ///< of the amplitude, by which changes of effects of one sign grow
+  double bend = 0.3;             ///< second-order change over the first-order one at one scale
+  double alike = 0.6;            ///< share of fingerprints that stems from a few common patterns
   double strength_of_scale = 5.; ///< strength at an amplitude of one scale
   double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
   double failures = 0.02;        ///< share of runs that fail
   double skewness = 0.15;        ///< of the scatter
   double changed_chaos = 0.15;   ///< how much an effect at one scale makes scatter grow
-  double swing = 0.5;            ///< of all observables together, in units of their own scatter
+  double swing = 0.5;            ///< common to all observables, in units of their own scatter
   unsigned int n_nuisances = 2;
   double nuisance_strength = 1.; ///< of one prior deviation
   std::vector<ObservableShape> observables = {{"spreading", "layer density", 6},
@@ -79,7 +79,7 @@ public:
     }
   }
 
-  /// Makes the fingerprint of one effect that of another, but for a share.
+  /// Makes the fingerprint of one effect equal to that of another, except for a share.
   void make_alike(const std::string &name, const std::string &other, double share,
                   const std::vector<std::string> &experiments)
   {

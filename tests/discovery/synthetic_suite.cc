@@ -1,5 +1,5 @@
-// A blind suite on synthetic simulators: many studies in which the truth is hidden, a line of
-// JSON each. It takes minutes to hours and is no part of ctest.
+// A blind suite on synthetic simulators: many studies with hidden truths, one line of
+// JSON per study. It takes minutes to hours and is not part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
 // Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look

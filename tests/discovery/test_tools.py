@@ -105,7 +105,8 @@ class PageOfAStudy(InFolder):
         cells, prints = Study(self.folder / "study").fingerprints()
         self.assertEqual(len(cells), 4)
         for fingerprint in prints:
-            # Of the larger amplitude; five standard errors, of the chaos's estimate too.
+            # For the larger amplitude: within five standard errors, including that of the estimated
+            # scatter.
             for change, truth, error in zip(fingerprint.change, 2. * CHANGES[fingerprint.effect],
                                             fingerprint.error):
                 self.assertLess(abs(change - truth), 5. * (error + abs(truth) / 80.**0.5))
@@ -143,7 +144,7 @@ class StrengthOfAnEffect(InFolder):
     def test_amplitude_of_a_strength(self) -> None:
         make_study(self.folder / "pilot", "none")
         strengths = Strengths(self.folder / "pilot")
-        # Cells are independent here, so the shift is the length of the change.
+        # Data points are independent here, so the shift is the length of the change.
         length = float((CHANGES["cohesion"]**2).sum())**0.5
         found = strengths.amplitude("cohesion", 4.)
         assert found is not None
@@ -200,7 +201,8 @@ class Scores(InFolder):
         path = self.folder / "answers.jsonl"
         path.write_text("\n".join(lines) + "\n", encoding="utf-8")
         rates = {r.name: (r.hits, r.number) for r in score(read_lines(path)).rates}
-        # A name that is right and not all is incomplete, not wrong; one that is no part of it is wrong.
+        # A right name of several is incomplete, not wrong; a name that is not part of the truth is
+        # wrong.
         self.assertEqual(rates["confident and wrong"], (2, 5))
         self.assertEqual(rates["confident and wrong, effect deleted"], (1, 1))
         self.assertEqual(rates["two effects: both named"], (0, 3))
