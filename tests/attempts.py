@@ -1,4 +1,4 @@
-"""Checks of a test that go on where one fails, some at the same time."""
+"""Runs the checks of a test: a failure does not stop the others, and some run at the same time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from eunoe.launch import Failure
 
 
 class Attempts:
-    """Collects the sentences of those that fail."""
+    """Collects the error messages of the checks that fail."""
 
     def __init__(self) -> None:
         self.failures: list[str] = []
@@ -22,13 +22,13 @@ class Attempts:
             self.failures.append(f"{name}: {failure}")
 
     def make_at_once(self, work: Iterable[tuple], number: int = 4) -> None:
-        """Each a name, an action and its arguments. A launcher takes seconds to notice that its ranks have
-        failed, in which the others can work."""
+        """Runs checks in parallel, each a name, an action and its arguments. A launcher takes
+        seconds to notice that its ranks have failed; other checks run in that time."""
         with ThreadPoolExecutor(number) as pool:
             for waiting in [pool.submit(self.make, *what) for what in work]:
                 waiting.result()
 
     def exit_code(self) -> int:
-        """Prints what has failed."""
+        """Prints the failures; 1 if there are any."""
         print(*self.failures, sep="\n")
         return 1 if self.failures else 0

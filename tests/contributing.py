@@ -29,6 +29,6 @@ def shown_files() -> dict[str, str]:
     """The files that the page adds, by name, each of which it shows as a whole."""
     text = PAGE.read_text(encoding="utf-8")
     files = dict(re.findall(r"`([\w/]+\.cc)`:\s+```cpp\n(.*?)^```$", text, re.M | re.S))
-    # That of a test is indented, as it belongs to a list.
+    # The code block of a test is indented, as it belongs to a list, and is not counted.
     assert len(files) == len(re.findall(r"^```cpp$", text, re.M)) == 3, "three additions, each one file"
     return files

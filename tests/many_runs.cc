@@ -1,8 +1,8 @@
-// Runs eunoe-particles many times in one process, for tests with hundreds of inputs: to start the
-// program takes longer than to check an input. A line of the input is a run: a folder and the words
-// of the command line, between tabs. The answer is a line with the exit code, or -1 where ranks
-// differ. Meanwhile rank r has written what is printed to the files r.out and r.err.
-// tests/many_runs.py speaks to it.
+// Runs eunoe-particles many times in one process, for tests with hundreds of inputs: starting the
+// program takes longer than checking an input. Each line of the input is a run: a folder and the
+// words of the command line, separated by tabs. The answer is a line with the exit code, or -1 if
+// the codes of the ranks differ. The output of rank r is in the files r.out and r.err.
+// tests/many_runs.py starts this program.
 //
 // Usage: many-runs folder
 

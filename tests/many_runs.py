@@ -12,7 +12,8 @@ HANG = 120
 
 
 class ManyRuns:
-    """Takes the place of subprocess.run for eunoe-particles; made anew after a run that ends the process."""
+    """Replaces subprocess.run for eunoe-particles; if a run ends the process, the next starts it
+    anew."""
 
     def __init__(self, program: str, folder: Path, n_ranks: int = 1) -> None:
         self.folder, self.n_ranks = Path(folder).resolve(), n_ranks
@@ -21,7 +22,7 @@ class ManyRuns:
         self.process: subprocess.Popen | None = None
 
     def __call__(self, *words: Path | str, cwd: Path) -> subprocess.CompletedProcess:
-        """The exit code, and what all ranks have printed."""
+        """The exit code, and the output of all ranks."""
         arguments = [str(word) for word in (Path(cwd).resolve(), *words)]
         for stream in ("out", "err"):
             for rank in range(self.n_ranks):

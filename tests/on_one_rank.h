@@ -1,9 +1,9 @@
 #ifndef eunoe_tests_on_one_rank_h
 #define eunoe_tests_on_one_rank_h
 
-// Whether all ranks together compute what one computes alone, to the last bit. The comparison is
-// made within the test, as chaos makes recorded digits depend on the mathematical functions of the
-// processor.
+// Compares the results of all ranks together with those of one rank alone, to the last bit. The
+// comparison is made within the test: recorded digits would depend on the mathematical functions of
+// the processor, as DEM is chaotic.
 
 #include "tests.h"
 
@@ -14,10 +14,10 @@ namespace test {
 
 using Numbers = std::vector<std::vector<double>>;
 
-/// On several ranks: whether they find the same numbers together as the first alone.
-/// @param name of the line that says so; none is printed on a single rank
-/// @param find runs a case on the ranks that it is given
-/// @return what all ranks have found together
+/// On several ranks, checks that they find the same numbers together as the first rank alone.
+/// @param name of the check, whose line is not printed on a single rank
+/// @param find runs a case on the ranks of a communicator
+/// @return the numbers of all ranks together
 inline Numbers same_on_one_rank(const std::string &name,
                                 const std::function<Numbers(MPI_Comm)> &find)
 {

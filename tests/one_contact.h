@@ -15,7 +15,7 @@
 
 namespace test {
 
-/// What the laws read of a contact, and what it remembers.
+/// Inputs of the laws for a contact, and its memory.
 struct Contact
 {
   Vec3 normal = {1., 0., 0.};
@@ -28,7 +28,7 @@ struct Contact
   std::array<double, PairBlock::max_history> history = {};
 };
 
-/// What the laws write: forces on j, repulsion positive, and the torque on i.
+/// Results of the laws: forces on j, repulsion positive, and the torque on i.
 struct Response
 {
   double stiffness, contact_force, cohesion;
@@ -47,8 +47,8 @@ public:
   {
   }
 
-  /// Applies all laws to at most 64 contacts at once; places that are left over hold copies of the
-  /// last one, as in the engine. What the contacts remember advances by @p dt.
+  /// Applies all laws to at most 64 contacts at once; the rest of the block holds copies of the
+  /// last contact, as in the engine. The memory of the contacts advances by @p dt.
   std::vector<Response> apply(std::vector<Contact> &contacts, double dt)
   {
     PairBlock &b = *block;
@@ -112,7 +112,7 @@ private:
   std::unique_ptr<PairBlock> block = std::make_unique<PairBlock>();
 };
 
-/// A block full of contacts that differ in everything, with overlaps and gaps up to @p depth (m).
+/// A full block of contacts that all differ, with overlaps and separations up to @p depth (m).
 inline std::vector<Contact> different_contacts(double depth)
 {
   std::mt19937 generator(7);
@@ -156,7 +156,7 @@ inline double relative_error(const std::vector<double> &values,
   return relative_error(a, b);
 }
 
-/// A line of an input file that gives an entry all digits of a number.
+/// A line of an input file that sets an entry to a number with all its digits.
 inline std::string set_entry(const std::string &entry, double value)
 {
   char text[32];

@@ -1,5 +1,5 @@
-// The program of a folder: runs the test that is named on the command line, and lists all tests
-// where none is.
+// The test program of a folder: runs the test named on the command line; without a known name it
+// lists all tests.
 
 #include <eunoe/core/mpi_session.h>
 

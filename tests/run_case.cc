@@ -1,5 +1,5 @@
 // Runs an input file quietly and prints the particles at the end, in micrometres and millimetres
-// per second so that small differences show; the target of the tests that consist of a .prm file.
+// per second so that small differences show. It runs the tests that consist of a .prm file.
 
 #include <eunoe/core/files.h>
 #include <eunoe/core/mpi_session.h>

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Runs a test in the present folder and compares what it prints, character by character, with what it
-# must print. Tolerances belong into the tests, which know units and references.
+# Runs a test in the current folder and compares its output, character by character, with the
+# expected output. Tolerances belong in the tests, which know units and references.
 # Usage: run_test.sh expected command ...
 expected=$1
 shift

@@ -34,7 +34,7 @@ struct Scene
   bool dmt = false, limit_force = false;
   std::string rolling = "none";
   std::string integration = "velocity_verlet";
-  /// Entries behind all others.
+  /// Entries added after all others.
   std::string more;
 
   Scene()
@@ -164,7 +164,7 @@ inline std::vector<Sphere> run(const Scene &scene,
   return spheres_of(*one);
 }
 
-/// Normal impact of two bodies with Hertz's force and Tsuji's damping at speed @p v (m/s).
+/// Normal impact of two bodies with Hertz's force and Tsuji's damping.
 ///
 /// With y = 4/5 x^(5/4) for the overlap x and ds = sqrt(K/m) x^(1/4) dt, the equation of motion is
 /// that of the linear oscillator y'' + sqrt(5) D y' + 5/4 y = 0, where D = -beta.
@@ -195,15 +195,15 @@ struct Impact
   }
   /// Largest force (N), without damping.
   double force() const { return stiffness * std::pow(overlap(), 1.5); }
-  /// Time from touch to separation (s), without damping.
+  /// Duration of the contact (s), without damping.
   double duration() const
   {
     return 0.8 * std::sqrt(M_PI) * std::tgamma(0.4) / std::tgamma(0.9) * overlap() / speed;
   }
 };
 
-/// Two equal spheres that meet head-on in the origin, or one that meets the floor, from touch to
-/// after the impact.
+/// Two equal spheres that collide head-on at the origin, or one that hits the floor; the run lasts
+/// from first touch until after the impact.
 /// @param normal from the first to the second, or to the floor
 /// @param spins of both (rad/s)
 inline void meet(Scene &s, bool floor, double radius, double speed, const Vec3 &normal,
@@ -221,7 +221,7 @@ inline void meet(Scene &s, bool floor, double radius, double speed, const Vec3 &
   s.time_end = 1.5 * duration;
 }
 
-/// A sphere that rests on the floor under gravity, which may pull along the floor too.
+/// A sphere that rests on the floor under gravity, which may also have a component along the floor.
 inline Sphere resting_sphere(const Scene &scene, double diameter = 1e-3)
 {
   Sphere s;

@@ -1,9 +1,9 @@
 #ifndef eunoe_tests_h
 #define eunoe_tests_h
 
-// What all tests share. A test prints one line a check, "name: ok" or what is wrong; its .output
-// file holds the lines of success. Numbers are compared here, with their own tolerances, as the
-// comparison of whole files knows neither units nor references.
+// What all tests share. A test prints one line for each check, "name: ok" or what is wrong; its
+// .output file holds the lines of success. Numbers are compared in the tests, with their own
+// tolerances, as the comparison of whole files knows neither units nor references.
 
 #include <eunoe/simulation/simulation.h>
 
@@ -39,19 +39,19 @@ void check_relative(const std::string &name, double value, double reference, dou
 std::vector<std::vector<double>> of_all_ranks(MPI_Comm comm,
                                               const std::vector<std::vector<double>> &mine);
 
-/// Declares entries and reads what is written of them.
+/// Declares entries and reads their values from the text @p written.
 void read_entries(const std::function<void(dealii::ParameterHandler &)> &declare,
                   const std::string &written);
 
-/// The test that a file holds, under the name of the file. All tests of a folder are linked to one
-/// program, which runs the one that it is asked for (tests/program.cc).
+/// Registers the test of a file under the name of the file. All tests of a folder are linked into
+/// one program, which runs the test named on its command line (tests/program.cc).
 class Registration
 {
 public:
   Registration(const char *file, void (*test)(), bool with_mpi);
 };
 
-/// What stands in the place of main(), for a test without MPI and for one with it.
+/// These replace main(), for a test without MPI and for one with it.
 #define EUNOE_TEST() EUNOE_TEST_WITH_MPI(false)
 #define EUNOE_MPI_TEST() EUNOE_TEST_WITH_MPI(true)
 #define EUNOE_TEST_WITH_MPI(with_mpi)                                                              \
@@ -59,8 +59,8 @@ public:
   static const test::Registration the_registration(__FILE__, the_test, with_mpi);                  \
   static void the_test()
 
-/// A case that a test runs in its own process: an input text, run quietly, with a look after every
-/// step.
+/// A case that a test runs in its own process: an input text, run quietly; the test can look at the
+/// state after every step.
 class Case
 {
 public:
@@ -79,7 +79,7 @@ private:
   const std::unique_ptr<Simulation> simulation;
 };
 
-/// What a particle is and does, in the order of `particle_table`.
+/// Columns of `particle_table`.
 enum Column
 {
   c_id,
@@ -95,15 +95,17 @@ enum Column
   c_wz
 };
 
-/// One row a particle of all ranks, by id; the same on every rank. SI units.
+/// One row for each particle of all ranks, sorted by id; the same on every rank. SI units.
 std::vector<std::vector<double>> particle_table(Simulation &simulation);
 
-/// Runs until a condition holds after a step, and gives the particles then; none if it never does.
+/// Runs until a condition holds after a step, and returns the particles at that time; an empty
+/// table if it never holds.
 std::vector<std::vector<double>> particles_when(
     Simulation &simulation, const std::function<bool(const Simulation &)> &condition);
 
-/// An input text for spheres without gravity in a periodic-free box from -1 to 1 cm whose walls
-/// are far away; entries are added behind it. Material: young 1e6 Pa, poisson 0.3, rho 1000.
+/// An input text for spheres without gravity in a box from -1 to 1 cm, without periodic boundaries
+/// and with its walls far away; @p more is appended. Young's modulus 1e6 Pa, Poisson's ratio 0.3,
+/// density 1000 kg/m3.
 std::string box_input(double time_step, double time_end, const std::string &more);
 
 /// A solid from a shape, at rest unless told otherwise.
