@@ -1,7 +1,7 @@
 // Liquid bridges: the force of Willett et al. (2000) with Derjaguin's radius R,
-//   F = 2 pi R gamma cos(angle) / (1 + 1.05 s + 2.5 s^2),  s = gap sqrt(R / volume),
-// from contact to the rupture distance (1 + angle/2) volume^(1/3) of Lian et al. (1993); that a
-// bridge forms at contact only, the work of a cycle, and that it joins any other law.
+//   F = 2 pi R gamma cos(angle) / (1 + 1.05 s + 2.5 s^2),  s = separation sqrt(R / volume),
+// from contact to the rupture distance (1 + angle/2) volume^(1/3) of Lian et al. (1993). Also that
+// a bridge forms at contact only, the work of a cycle, and that bridges combine with other laws.
 
 #include "../one_contact.h"
 
@@ -29,7 +29,7 @@ Laws make(const std::string &entries, const ContactModelNames &names = model,
   return Laws({m, m, m}, 2, names, entries, largest_radius);
 }
 
-/// The attraction, with a bridge there already.
+/// The attraction of a bridge that has formed already.
 double attraction(Laws &laws, double radius, double gap, bool wall)
 {
   Contact c;
@@ -69,7 +69,7 @@ void check_curve(const std::string &name, double angle, double share, double vol
                  rupture, 1e-13);
 }
 
-/// Attraction in the order of the gaps of a path.
+/// Attraction at each separation of a path.
 std::vector<double> along(Laws &laws, const std::vector<double> &gaps)
 {
   Contact c;
@@ -102,7 +102,7 @@ EUNOE_TEST()
         forces[2] > forces[3] && forces[3] > 0. && forces[4] > forces[3] && forces[5] == 0.);
   check("none after rupture, until they touch again", forces[6] == 0. && forces[7] == forces[2]);
 
-  // Contact from afar and back costs the integral of the force over the gap up to rupture.
+  // Approach, contact and return cost the integral of the force over the separation up to rupture.
   constexpr int n = 2000;
   std::vector<double> path;
   for (int k = 0; k < n; ++k)

@@ -1,5 +1,5 @@
 // Charged particles: Coulomb's force of the charges 4 pi R^2 sigma over the distance of the
-// centres, less what it is at the cut-off; its sign, its end, and that walls have no part in it.
+// centres, less its value at the cut-off; its sign, where it ends, and that walls exert none.
 
 #include "../one_contact.h"
 

@@ -1,6 +1,6 @@
 // Cohesion of Derjaguin, Muller and Toporov with the long-range part of Meier et al. (2019): the
 // curve of force over distance, its numbers for the powders of Gaboriault et al. (2025), and that
-// nothing else acts across a gap.
+// no other force acts across a separation.
 
 #include "../one_contact.h"
 
@@ -72,7 +72,8 @@ EUNOE_TEST()
   check_powder({"PS2", 25e-5, 5.89e-8, 4.61e-9, 14.6e-9});
   check_powder({"PS3", 8e-5, 1.88e-8, 8.14e-9, 25.8e-9});
 
-  // In the tail the damper of e = 0, friction and rolling resistance are all there to go wrong.
+  // Damping (e = 0), friction and rolling resistance are all enabled; none may act across the
+  // separation.
   Material m;
   m.restitution = 0.;
   m.surface_energy = 35e-5;
@@ -91,7 +92,8 @@ EUNOE_TEST()
     forgotten = forgotten && c.history[h] == 0.;
   check("no memory across a gap", forgotten);
 
-  // The largest pull of a quasi-static separation is the pull-off force, where the overlap ends.
+  // When two particles are parted quasi-statically, the largest attraction is the pull-off force,
+  // which acts where the overlap ends.
   double largest = 0.;
   for (int k = 0; k <= 2000; ++k) {
     c = Contact();

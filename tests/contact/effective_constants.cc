@@ -1,6 +1,6 @@
-// Constants of a pair of materials, and that every kind of pair gets its own: against Hertz's and
-// Mindlin's theory in the form that names the shear modulus, harmonic means, and the time step that
-// Gaboriault et al. (2025) state for their powder.
+// Effective constants of a pair of materials, and that every kind of pair gets its own. References:
+// Hertz's and Mindlin's theory in the form with the shear modulus, harmonic means, and the time
+// step that Gaboriault et al. (2025) state for their powder.
 
 #include <eunoe/state/physical_properties.h>
 
@@ -111,8 +111,7 @@ EUNOE_TEST()
                  0.15 * PhysicalProperties::rayleigh_time(26.311e-6, 4386., titanium), 2.816e-7,
                  0.5e-3 / 2.816);
 
-  // Two spheres of radius R press 0.01 R into each other: Y* = Y / (2 (1 - nu^2)), R* = R / 2,
-  // m* = m / 2.
+  // Two spheres of radius R overlap by 0.01 R: Y* = Y / (2 (1 - nu^2)), R* = R / 2, m* = m / 2.
   PhysicalProperties physics;
   ParticleType &type = physics.types[0];
   type.material = titanium;
@@ -123,8 +122,8 @@ EUNOE_TEST()
   const double young = 26.25e6 / (2. * (1. - 0.342 * 0.342));
   check_relative("contact time of two particles", physics.shortest_contact_time(type),
                  M_PI * std::sqrt(0.5 * mass / (2. * young * std::sqrt(0.5e-4 * 1e-6))), 1e-12);
-  // With a wall of the same material the stiffness grows by sqrt(2) and the mass by 2; a rigid wall
-  // doubles the modulus, and then it is the stiffer one.
+  // With a wall of the same material the stiffness grows by a factor sqrt(2) and the mass by 2. A
+  // rigid wall also doubles the modulus, so that the contact with the wall is the shorter one.
   physics.wall.young_modulus = 1e16;
   check_relative("contact time with a rigid wall", physics.shortest_contact_time(type),
                  M_PI * std::sqrt(mass / (4. * young * std::sqrt(1e-4 * 1e-6))), 1e-8);

@@ -1,5 +1,5 @@
-// Contact forces that are only evaluated are those of the step, to the last bit, with what the
-// contacts remember and where they have just begun.
+// Contact forces that are only evaluated equal those of the step, to the last bit, for contacts
+// with a memory and for those that have just begun.
 // Reference: the forces that PairForces adds to the particles.
 
 #include <eunoe/contact/pair_forces.h>
@@ -19,7 +19,7 @@ double draw(std::size_t row, unsigned int component)
   return uniform(1, Draw::size, row, component) - 0.5;
 }
 
-/// Spheres in a row, each of which touches the next, but for every tenth.
+/// Spheres in a row, each of which touches the next; every tenth lies above the row.
 ParticleArrays row_of_spheres()
 {
   ParticleArrays p;
@@ -35,7 +35,7 @@ ParticleArrays row_of_spheres()
   return p;
 }
 
-/// Forces and torques that single contacts add up to.
+/// Adds the forces and torques of a single contact to its particles.
 void add_up(const ContactForce &contact, ParticleArrays &p)
 {
   p.force[contact.first].add(-contact.force());
@@ -81,7 +81,7 @@ EUNOE_MPI_TEST()
   std::size_t n_before = 0, n_after = 0;
   for (const std::int32_t record : pairs.record)
     n_before += record == ContactMemory::none ? 0 : 1;
-  // Now those touch that were above the others, and others end.
+  // The spheres that lay above the row now touch it, and other contacts end.
   for (std::size_t k = 0; k < n; ++k)
     if (k % 10 == 9)
       p.position[k].z = 0.;

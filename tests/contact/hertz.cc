@@ -1,5 +1,5 @@
 // Normal law: elastic force 4/3 Y sqrt(R d) d, damping coefficient of Tsuji with S_n = 2 Y sqrt(R
-// d), nothing across a gap. A whole block of contacts that all differ, against the formulas.
+// d), no force across a separation. A full block of contacts that all differ, against the formulas.
 
 #include "../one_contact.h"
 
@@ -41,7 +41,7 @@ EUNOE_TEST()
   check_close("force", relative_error(values[1], force), 0., 1e-13);
   check("nothing across a gap", silent);
 
-  // S_n is the slope dF/dd of the elastic force, whatever one believes about its factor.
+  // S_n is the slope dF/dd of the elastic force, measured here to check its factor independently.
   Contact deep, deeper;
   deep.kind = deeper.kind = laws.model.get_materials().kind(0, 1);
   deep.overlap = 1e-6 * (1. - 1e-5);

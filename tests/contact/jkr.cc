@@ -13,7 +13,7 @@ namespace {
 const ContactModelNames jkr = {"jkr", {}, "mindlin_limit_overlap", "epsd"};
 const ContactModelNames hertz = {"hertz", {}, "mindlin_limit_overlap", "epsd"};
 
-/// A contact as the theory describes it.
+/// A contact according to the theory.
 struct Theory
 {
   double radius, young, work; ///< effective radius (m), modulus (Pa), work of adhesion (J/m2)
@@ -26,7 +26,7 @@ struct Theory
   {
     return 4. / 3. * young * a * a * a / radius - std::sqrt(8. * M_PI * work * young * a * a * a);
   }
-  /// Where the overlap is least.
+  /// Contact radius at the least overlap, where the neck tears (m).
   double torn() const { return std::cbrt(M_PI * work * radius * radius / (8. * young)); }
   double pull_off() const { return 1.5 * M_PI * work * radius; }
 };
@@ -45,7 +45,7 @@ Laws make(const ContactModelNames &names, const Material &m, double largest_radi
   return Laws({m}, 1, names, "", largest_radius);
 }
 
-/// Force on j without what the damper adds, repulsion positive.
+/// Force on j without damping, repulsion positive.
 double force_at(Laws &laws, Contact &c, double overlap)
 {
   c.overlap = overlap;
@@ -86,7 +86,7 @@ void check_curve(const std::string &name, double radius, double surface_energy)
   check_relative(name + ": neck at its end", end, 3. * theory.torn() * theory.torn() / radius,
                  1e-13);
   c.history[0] = 1.;
-  // The slope of the force is infinite there.
+  // The tolerance is larger, as the slope of the force is infinite there.
   check_relative(name + ": force at its end", force_at(laws, c, -end * (1. - 1e-14)),
                  -5. / 9. * theory.pull_off(), 1e-6);
   c.history[0] = 0.;
@@ -95,7 +95,7 @@ void check_curve(const std::string &name, double radius, double surface_energy)
   check_relative(name + ": range", make(jkr, m, radius).model.range(), end, 1e-13);
 }
 
-/// Work that goes into a contact that is made, pressed and drawn apart (J), by Simpson's rule.
+/// Work of making, pressing and parting a contact (J), by Simpson's rule.
 double work_of_cycle(Laws &laws, const Theory &theory)
 {
   const double neck = 3. * theory.torn() * theory.torn() / theory.radius, pressed = 2. * neck;
@@ -108,7 +108,7 @@ double work_of_cycle(Laws &laws, const Theory &theory)
       const double s[] = {(k + 1e-9) / n, (k + 0.5) / n, (k + 1. - 1e-9) / n};
       const double weight[] = {1. / 6., 4. / 6., 1. / 6.};
       for (int l = 0; l < 3; ++l) {
-        // Denser towards the ends, where the force has an infinite slope.
+        // Points are denser towards the ends, where the force has an infinite slope.
         const double share = s[l] * s[l] * (3. - 2. * s[l]);
         const double density = 6. * s[l] * (1. - s[l]);
         work +=
@@ -143,7 +143,7 @@ void check_friction()
     check_relative("friction of an adhesive contact " + at, norm(r.shear), 0.3 * felt, 1e-9);
     check_relative("rolling resistance of an adhesive contact " + at, norm(r.torque),
                    0.1 * theory.radius * felt, 1e-9);
-    // A spring so short that no limit is met.
+    // A displacement so small that the Coulomb limit is not reached.
     const double length = 1e-15;
     c.slip = c.roll = {};
     c.history.fill(0.);
@@ -200,7 +200,8 @@ EUNOE_TEST()
         force_at(laws, c, -1.000001 * neck) == 0. && force_at(laws, c, -0.99 * neck) == 0.);
   const double scale =
       std::cbrt(std::pow(theory.work, 5) * std::pow(theory.radius, 4) / std::pow(theory.young, 2));
-  // The integral from the torn neck to the radius at no overlap, 4^(2/3) of it, in closed form.
+  // The integral from the contact radius of the torn neck to 4^(2/3) times it, the contact radius
+  // at zero overlap, in closed form.
   const double closed = (4.8 * std::pow(4., 4. / 3.) + 3.2) * std::pow(M_PI / 8., 5. / 3.);
   check_relative("published work of a cycle", closed, 7.09, 1e-3);
   check_relative("work of a cycle", work_of_cycle(laws, theory) / scale, closed, 1e-6);

@@ -39,7 +39,7 @@ EUNOE_TEST()
   check_close("normal force", relative_error(forces, force), 0., 1e-13);
   check_close("tangential force", relative_error(shears, shear), 0., 1e-13);
 
-  // By its choice an undamped impact of 1 m/s is as deep as Hertz's.
+  // The stiffness is chosen so that an undamped impact of 1 m/s reaches the overlap of Hertz's law.
   const double radius = 1e-3, mass = 1e-6;
   const double hertz = std::pow(1.25 * mass / (4. / 3. * young * std::sqrt(radius)), 0.4);
   check_relative("overlap at 1 m/s", std::sqrt(mass / linear_stiffness(young, radius, mass)), hertz,

@@ -1,6 +1,5 @@
 // A property of materials that a single file adds: it has entries for every particle type, for
-// walls and for wall materials, and the value that was given reaches the pairs of materials of a
-// law.
+// walls and for wall materials, and their values reach the pairs of materials of a law.
 
 #include <eunoe/state/material_property.h>
 

@@ -1,5 +1,5 @@
-// What a contact remembers, Mindlin's displacement and EPSD's torque: it turns with the plane of
-// the contact, keeps its length, and ends with the contact.
+// Memory of a contact, Mindlin's displacement and EPSD's torque: it turns with the plane of the
+// contact, keeps its length, and ends with the contact.
 
 #include "../one_contact.h"
 
@@ -19,7 +19,7 @@ void check_memory(const std::string &name, const std::string &tangential,
   const auto memory = [&] {
     return Vec3{c.history[first], c.history[first + 1], c.history[first + 2]};
   };
-  // So short that no limit is met.
+  // So short that no limit is reached.
   const double length = 1e-15;
   c.history[first] = 0.6 * length;
   c.history[first + 1] = 0.8 * length;
@@ -33,9 +33,9 @@ void check_memory(const std::string &name, const std::string &tangential,
   }
   check_relative(name + ": length after the plane has turned", norm(memory()), length, 1e-13);
   check_close(name + ": it lies in the plane", out_of_plane / length, 0., 1e-14);
-  // A vector along x, about which the plane turns, would stay; one along y follows the plane.
-  // Projection shortens only the latter, by the cosine of the step, and what restores the length
-  // stretches both: the direction errs by up to (pi/2)^2 / 4 / n_steps.
+  // The plane turns about x: the component of the memory along x stays, that along y follows the
+  // plane. Projection shortens only the latter, by the cosine of the angle of a step, and restoring
+  // the length stretches both: the direction errs by up to (pi/2)^2 / 4 / n_steps.
   check_close(name + ": direction after the plane has turned",
               relative_error({memory()}, {{0.6 * length, 0., 0.8 * length}}), 0., 1e-4);
 

@@ -1,5 +1,5 @@
 // Tangential law: stiffness 8 G sqrt(R d) and damping while it sticks, the Coulomb limit without
-// cohesion, what the variants remember of a slide, and how the memory turns and ends.
+// cohesion, and the displacement that each variant keeps after a slide.
 
 #include "../one_contact.h"
 
@@ -48,11 +48,11 @@ const double stiffness = 8. * shear_modulus / (2. * (2. - 0.3)) * std::sqrt(radi
 struct Variant
 {
   std::string name;
-  bool springs_back; ///< whether the spring keeps no more than friction lets it bear
+  bool springs_back; ///< whether the spring keeps no more than the Coulomb limit allows
   bool damps;
 };
 
-/// Damping coefficient of the tangential law that damps (N s/m).
+/// Damping coefficient of the variants with damping (N s/m).
 double damping_of(double restitution)
 {
   const double log_e = std::log(restitution);
@@ -85,7 +85,7 @@ void check_sticking(const Variant &law)
               relative_error({force}, {(stiffness * 1e-8 + damper) * c.slip}), 0., 1e-14);
 }
 
-/// A slide much longer than the spring can bear, then a small step back.
+/// A slide much longer than the displacement at the Coulomb limit, then a small step back.
 void check_sliding(const Variant &law)
 {
   const std::string &variant = law.name;
@@ -108,7 +108,7 @@ void check_sliding(const Variant &law)
               relative_error({r.shear}, {(springs_back ? 0.75 : 1.) * limit * forwards}), 0.,
               1e-13);
 
-  // With damping the whole force is limited, and the spring gets what the damper leaves of it.
+  // With damping the limit holds for the whole force, and the spring gets what the damper leaves.
   Laws damped = laws(variant, 0.5);
   c = contact(0.01 * forwards);
   c.history[0] = 6. * most;
@@ -119,7 +119,7 @@ void check_sliding(const Variant &law)
   check_relative(variant + ": spring and damper together at the limit", norm(spring(c)),
                  springs_back ? left / stiffness : 10. * most, 1e-13);
 
-  // The damper counts in the limit through the normal force, whose size it is that counts.
+  // The limit includes the normal damping force and follows the magnitude of the normal force.
   c = contact({0., 100., 0.});
   c.closing_speed = -10.;
   r = damped.apply(c, 1.);

@@ -1,5 +1,5 @@
-// What a contact remembers can be turned into that of its mirror image: a mirrored contact with a
-// mirrored memory answers with the mirrored force and torque.
+// The memory of a contact can be mirrored: a mirrored contact with a mirrored memory gives the
+// mirrored force and torque.
 
 #include "../one_contact.h"
 
@@ -7,7 +7,7 @@ using namespace test;
 
 namespace {
 
-/// A displacement or force in the mirror; spins and torques are reversed on top of that.
+/// Mirror image of a displacement or force; spins and torques change their sign as well.
 Vec3 mirrored(Vec3 v, unsigned int axis)
 {
   v[axis] = -v[axis];

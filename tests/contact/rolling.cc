@@ -63,7 +63,7 @@ void check_constant()
 
 void check_viscous()
 {
-  // Of two materials, so that no coefficient is taken for another.
+  // The two materials differ in one coefficient, so that using a wrong one would show.
   Material other = material();
   other.rolling_friction = 3. * friction;
   Laws viscous_law({material(), other}, 2, {"hertz", {"dmt"}, "mindlin_limit_overlap", "viscous"});

@@ -1,4 +1,4 @@
-// Numbers as they are said to the user.
+// Numbers as messages show them to the user.
 
 #include "../tests.h"
 

@@ -1,5 +1,5 @@
-// Registries of plug-ins: a name that is given twice and a family that does not exist end the
-// program with one sentence and an exit code; all that is registered is found by its name.
+// Registries of plug-ins: a name registered twice and a family that does not exist end the program
+// with one sentence and an exit code; everything registered is found by its name.
 
 #include <eunoe/contact/contact_model.h>
 
@@ -14,14 +14,14 @@ namespace {
 
 using Spices = Registry<std::string>;
 
-/// How a program ends, and what it says.
+/// Exit code of a process, and its error output.
 struct End
 {
   int code;
   std::string said;
 };
 
-/// The end of a process that does this and nothing else.
+/// How a process that does only this work ends.
 End end_of(const std::function<void()> &work)
 {
   int pipe_ends[2];

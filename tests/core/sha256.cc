@@ -1,4 +1,4 @@
-// SHA-256 against the examples of FIPS 180-4 and their lengths around a block.
+// SHA-256 against the examples of FIPS 180-4, and for lengths close to that of a block.
 
 #include <eunoe/core/sha256.h>
 

@@ -1,5 +1,5 @@
-// A small number that is off in its last digit: the comparison of this output with what is expected
-// must fail (`expect=diff`), or no other test's output is compared, either.
+// A small number with a wrong last digit: the comparison of this output with the expected one must
+// fail (`expect=diff`). If it does not, the outputs of the other tests are not compared, either.
 
 #include "../tests.h"
 
