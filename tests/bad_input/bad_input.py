@@ -3,7 +3,7 @@ code 2, soon, without a stack trace, and without a change to the results of an e
 
 Usage: bad_input.py path/to/many-runs folder
 
-sentences.txt holds a line a case: its name, and a part of the sentence that it must give.
+sentences.txt has one line for each case: its name, and a part of the sentence that it must give.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from forged import FORGERIES, assembled, forged
 from many_runs import ManyRuns
 
 HERE = Path(__file__).resolve().parent
-# Texts on which a reader may choke by their length alone, and their sentences.
+# Texts that a reader may fail on because of their length, and their sentences.
 LONG = {
     "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
                     "which does not fit. Give a number of at least 0."),
@@ -31,7 +31,7 @@ LONG = {
     "many_unknown_names": ("".join(f"set unknown{k} = 1\n" for k in range(3000)),
                            "entry 'unknown2999' is unknown."),
 }
-# What is quoted from an input is cut short.
+# A message quotes long parts of an input in abridged form.
 LONGEST_LINE = 2000
 failures = 0
 
@@ -63,7 +63,7 @@ def refuse(programs: list[ManyRuns], case: str, sentence: str, folder: Path, *se
 
 
 def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
-    """Checkpoints that were cut short or damaged, and inputs that do not fit to them."""
+    """Checkpoints that were cut short or damaged, and inputs that do not match them."""
     programs[0]("checkpointed.prm", "--quiet", cwd=folder).check_returncode()
     data = next((folder / "checkpointed").glob("*.checkpoint")).read_bytes()
     again = "restart/restart = true"
@@ -81,7 +81,7 @@ def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
             file.write_bytes(content)
         refuse(programs, "checkpointed", sentence, place, again, *settings, codes=codes)
 
-    # Some forgeries are found when the results are open already.
+    # Some forgeries are found only after the results were opened, which gives exit code 1.
     work = [(("another time step", data,
               "time step' is '2e-6', and was '1e-6' in the run that wrote",
               "simulation control/time step = 2e-6"), (2,)),
@@ -104,7 +104,8 @@ def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
 
 
 def accept_meshes(program: ManyRuns) -> None:
-    """What the sentences advise is taken: hexahedra in the formats of Gmsh, also of cut tetrahedra."""
+    """The meshes that the sentences advise are accepted: hexahedra in Gmsh's formats, also those
+    into which tetrahedra were divided."""
     meshes = sorted((HERE.parent / "meshes" / "gmsh").glob("*.msh"))
     settings = {"lagrangian physical properties/particle type 0/number of particles": 1,
                 "insertion info/insertion method": "list",

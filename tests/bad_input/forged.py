@@ -1,4 +1,4 @@
-"""Checkpoints with something wrong in them and the right checksum."""
+"""Checkpoints with wrong contents and a valid checksum."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def set_number(place: int, value: float) -> Callable[[dict, list], None]:
 
 
 def lengthen(values: list[float]) -> Callable[[dict, list], None]:
-    """Gives the first particle more numbers, which would be records of contacts."""
+    """Gives the first particle more numbers, in the place of its contacts' records."""
     def change(head: dict, rows: list) -> None:
         rows[0].extend(values)
         head["sections"][0]["values"] += len(values)

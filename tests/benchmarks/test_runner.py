@@ -95,7 +95,7 @@ class Bed(unittest.TestCase):
         two = bed.read(2)
         self.assertEqual(two.shape, (40000, 4))
         np.testing.assert_allclose(two[20000:, 3] - two[:20000, 3], bed.PERIOD)
-        # Gently pressed together at most: the seam is that of the period.
+        # The seam is that of the period, so particles overlap by no more than at rest.
         near = two[(two[:, 3] > 0.9e-3) & (two[:, 3] < 1.1e-3) & (two[:, 1] < 0.5e-3)]
         distance = np.linalg.norm(near[:, None, 1:] - near[None, :, 1:], axis=2)
         overlap = 0.5 * (near[:, None, 0] + near[None, :, 0]) - distance
@@ -163,7 +163,7 @@ class Runs(unittest.TestCase):
             results, page = Path(folder) / "results.json", Path(folder) / "results.md"
             done = self.run_it("--cases", "bed_20k", "--ranks", "1", "--repeats", "1", "--steps", "1",
                                "--json", str(results), "--markdown", str(page),
-                               # Open MPI shall not look for its daemon there.
+                               # Keeps Open MPI from looking for its daemon in that folder.
                                PATH=folder, OMPI_MCA_ess_singleton_isolated="1")
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
             data, text = json.loads(results.read_text()), page.read_text()

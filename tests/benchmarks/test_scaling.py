@@ -1,4 +1,5 @@
-"""The prediction of scaling: order of the cells, cuts, ghosts and costs, against answers by hand.
+"""The prediction of scaling: order of the mesh cells, cuts, ghosts and costs, against results found
+by hand.
 
 Usage: test_scaling.py
 """
@@ -33,7 +34,7 @@ def box(trees, refinement=0, periodic=(False, False, False)):
 
 
 def filled(mesh, counts):
-    """So many particles in the middle of each cell, each needed in all cells around."""
+    """So many particles in the middle of each mesh cell, each within reach of all cells around."""
     index = np.argwhere(np.ones(mesh.cells, bool))
     points = np.array(mesh.lower) + (index + 0.5) * mesh.width
     return Filling(mesh, np.repeat(points, counts.ravel(), axis=0), np.inf)
@@ -82,7 +83,8 @@ class Cuts(unittest.TestCase):
 
 class Ghosts(unittest.TestCase):
     def test_a_row_of_cells(self):
-        # 6 cells with 1 ... 6 particles; without a weight of cells 21 particles: 2 x 7 and the rest.
+        # 6 cells with 1 ... 6 particles, 21 in all; cells have no weight, so the cuts are after 7
+        # and 14 particles and move to the ends of their cells.
         mesh, counts = box((6, 1, 1)), np.arange(1, 7).reshape(6, 1, 1)
         part = divide(mesh, filled(mesh, counts), mesh.curve(), 3, cell_weight=0, particle_weight=1)
         self.assertEqual(part.owned.tolist(), [10, 5, 6])
@@ -99,8 +101,9 @@ class Ghosts(unittest.TestCase):
         self.assertEqual(part.neighbours.tolist(), [2, 2, 2])
 
     def test_only_cells_within_reach_count(self):
-        # Two cells, a rank each, and a period in z, where each cell is its own neighbour. Reaches
-        # of 0.25: the particle at 0.7 from the face stays, that at 0.25 just goes, and back.
+        # Two cells, one for each rank, and a period in z, where each cell is its own neighbour.
+        # With a reach of 0.25 a particle 0.7 from the face is no ghost, one 0.25 from it just is
+        # one, on either side.
         mesh = box((2, 1, 1), periodic=(False, False, True))
         x = [0.3, 0.75, 0.8, 1.25, 1.5, 1.9]
         points = np.array([[v, 0.5, 0.5] for v in x])
@@ -135,7 +138,7 @@ class Ghosts(unittest.TestCase):
         self.assertEqual(ghosts.messages(mesh, filling, owner, 2).tolist(), [[0, 1, 1], [1, 0, 1]])
 
     def test_the_reach_of_the_program(self):
-        # Both radii, a tenth of the largest diameter, and the range; then 0.1 per thousand.
+        # Both radii, a tenth of the largest diameter, and the range; 0.1 per thousand on top.
         np.testing.assert_allclose(reach_of(np.array([1., 2.]), 0.1, 0.05) / 1.0001,
                                    [0.5 + 1. + 0.25, 1. + 1. + 0.25])
 
@@ -184,7 +187,7 @@ class Ghosts(unittest.TestCase):
 
 
 class SettledBed(unittest.TestCase):
-    """What the program itself counted (`ghosts` of summary.json) with a cell weight of 1000."""
+    """Ghosts that the program counted (`ghosts` of summary.json) with a cell weight of 1000."""
 
     def test_ghosts_of_the_benchmark(self):
         table = np.loadtxt(BED, delimiter=",", skiprows=1) * 1e-6
