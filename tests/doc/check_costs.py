@@ -1,5 +1,5 @@
-"""What the pages say that cases take (particles, steps, core-hours) is what --check says of them now, as
-exactly as the pages give it: the tables of cluster.md and powder_spreading.md.
+"""The costs of cases (particles, steps, core-hours) in the tables of cluster.md and
+powder_spreading.md are those that --check prints now, to the digits that the pages give.
 
 Usage: check_costs.py path/to/eunoe-particles
 """
@@ -24,7 +24,7 @@ PROCEDURE = "powder spreading/feedstock "
 
 @lru_cache(maxsize=None)
 def costs(program: str, case: str, *settings: str) -> dict[str, float]:
-    """What --check says of a case of prm/spreading."""
+    """The costs that --check prints for a case of prm/spreading."""
     done = subprocess.run([program, f"prm/spreading/{case}.prm", "--check", *overrides(settings)], cwd=ROOT, text=True,
                           capture_output=True, check=False)
     found = {name: re.search(pattern, done.stdout) for name, pattern in PRINTED.items()}
@@ -34,13 +34,13 @@ def costs(program: str, case: str, *settings: str) -> dict[str, float]:
 
 
 def agrees(text: str, value: float) -> bool:
-    """A page's number, as '41 million', is the value rounded to the digits that the page gives."""
+    """Whether a page's number, such as '41 million', is the value rounded to the page's digits."""
     digits, _, unit = text.partition(" ")
     _, _, decimals = digits.partition(".")
-    # In a whole number, closing zeros may come from rounding; the estimates have two digits at least.
+    # In a whole number, trailing zeros may come from rounding; estimates have at least two digits.
     zeros = len(digits) - len(digits.rstrip("0")) if not decimals else 0
     power = min(zeros, max(len(digits) - 2, 0)) if zeros else -len(decimals)
-    # Half of the last digit, and a little as the program rounds, too.
+    # Half of the last digit, and a little more because the program rounds, too.
     return abs(float(digits) * UNITS[unit] - value) <= 0.51 * 10.**power * UNITS[unit]
 
 

@@ -1,5 +1,5 @@
-"""The catalogue of effects: every file of prm/effects says all that it must, and its patch is accepted
-by the program in the micro experiments, at its scale and at both ends of its range.
+"""The catalogue of effects: every file of prm/effects has all required entries, and its patch is
+accepted by the program in the micro experiments, at its scale and at both ends of its range.
 
 Usage: check_effects.py path/to/many-runs
 """

@@ -1,6 +1,7 @@
-"""Figures of the documentation say where they come from: beside every table of measured numbers a sentence
-"made by ... at revision ..." names the command and the revision, and the processor where the table tells
-speeds; every picture in doc/ belongs to a rule of contrib/tools pictures and is what that rule made.
+"""Figures of the documentation say where they come from: beside every table of measured numbers a
+sentence "made by ... at revision ..." names the command and the revision, and the processor where
+the table gives speeds; every picture in doc/ belongs to a rule of contrib/tools pictures and is
+what that rule made.
 
 A table is exempt if its head says that it explains (entries and their meaning, columns, options) and no
 cell has a mean with its deviation.
@@ -78,7 +79,7 @@ def tables(page: Path) -> list[Table]:
 
 
 def known_revisions(revisions: set[str]) -> set[str]:
-    """Those that the repository has; all of them where that cannot be asked."""
+    """Those that the repository has; all of them where git cannot tell."""
     def git(*words: str) -> subprocess.CompletedProcess:
         return subprocess.run(["git", "-C", str(ROOT), *words], capture_output=True, text=True, check=False)
 

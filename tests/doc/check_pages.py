@@ -1,6 +1,6 @@
 """The pages of the documentation: relative links lead to files and headings that exist, every page
-of doc/ is reached from its index, the examples marked as complete (```prm complete) and the cases of
-prm/examples and prm/verification are accepted by the program, and the sample of --check is what it prints.
+of doc/ is linked from its index, the examples marked as complete (```prm complete) and the cases of
+prm/examples and prm/verification are accepted by the program, which prints the sample of --check.
 
 Usage: check_pages.py path/to/many-runs
 """
@@ -90,8 +90,8 @@ def check_examples(program: ManyRuns) -> list[str]:
 
 
 def check_sample(program: ManyRuns) -> list[str]:
-    """The command above the sample of --check in doc/input.md prints its lines in this order; of a line with
-    '...', what stands before."""
+    """The command above the sample of --check in doc/input.md prints the lines of the sample in
+    this order; of a line that ends with '...', the part before it."""
     text = (ROOT / "doc" / "input.md").read_text(encoding="utf-8")
     sample = re.search(r"^```sh\n\S*/eunoe-particles (.* --check .*)\n```\n\n.*\n\n```\n(.*?)^```", text,
                        flags=re.M | re.S)

@@ -1,12 +1,13 @@
 """The three additions that CONTRIBUTING.md shows, from its text: they are compiled with the commands of
 this build, linked with the library, and run. Nothing else is compiled: each addition is one file.
 
-- the law: a sphere in a floor gets the velocity of Hertz's force less a share of 2 pi g_e R in one step;
+- the law: in one step a sphere that overlaps a floor gets the velocity of Hertz's force less a
+  share of 2 pi g_e R;
 - the observable: the centre of mass of two spheres of unlike mass, one of which flies;
-- the motion: places and velocities of a solid of an input text (vibration_example.cc).
+- the motion: positions and velocities of a solid of an input text (vibration_example.cc).
 
 Usage: contributing_examples.py path/to/ninja path/to/build folder
-Exit code 77 if the build is not one of Ninja, for a test that is skipped.
+Exit code 77, which skips the test, if the build does not use Ninja.
 """
 
 import csv
@@ -77,7 +78,7 @@ end
 
 
 class Page:
-    """The files that CONTRIBUTING.md adds, each of which it shows as a whole behind its name."""
+    """The files that CONTRIBUTING.md adds, each of which it shows as a whole after its name."""
 
     def __init__(self) -> None:
         self.files = shown_files()
@@ -89,7 +90,7 @@ class Page:
 
 
 def write_tree(page: Page, tree: Path) -> None:
-    """The additions in their places under a folder of their own, and what asks the motion."""
+    """Writes the additions, and the program that evaluates the motion, into a separate tree."""
     files = {**page.files, "source/solids/vibration_example.cc":
              Path(__file__).with_name("vibration_example.cc").read_text(encoding="utf-8")}
     for name, content in files.items():
@@ -144,7 +145,8 @@ def check_case(program: Path, folder: Path) -> None:
     radius, overlap, step = 0.5e-3, 1e-6, 1e-9
     young = 1e7 / (2. * (1. - 0.3**2))
     mass = 4. / 3. * math.pi * 1000. * radius**3
-    # Work of adhesion of two equal bodies: twice their surface energy. Asperities leave (2 nm / 5 nm)^2.
+    # The work of adhesion of two equal bodies is twice their surface energy; asperities leave a
+    # share of (2 nm / 5 nm)^2.
     force = 4. / 3. * young * math.sqrt(radius) * overlap**1.5 - 0.16 * 2. * math.pi * 0.1 * radius
     with open(folder / "results" / "state.csv", encoding="utf-8") as file:
         state = [[float(cell) for cell in line.strip(";\n").split(";")] for line in list(file)[1:]]
@@ -152,7 +154,7 @@ def check_case(program: Path, folder: Path) -> None:
     with open(folder / "results" / "centre_of_mass.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert [float(row["time"]) for row in rows] == [0., step], rows
-    # Masses as 1 to 8; the larger flies 300 nm.
+    # The masses are as 1 to 8; the larger sphere flies 300 nm.
     for name, places in (("x", (0., 4e-3 + 300. * step)), ("y", (0., 1e-3)), ("z", (0.499e-3, 5e-3))):
         close(f"centre of mass, {name}", float(rows[1][name]), (places[0] + 8. * places[1]) / 9., 1e-12)
 

@@ -1,5 +1,5 @@
-"""The commands of contrib/tools: each says of itself how it is called, the pages and scripts name only those that
-there are, and what is wrong is said in a sentence.
+"""The commands of contrib/tools: each states its usage, pages and scripts name only commands that
+exist, and errors are sentences.
 
 Usage: test_commands.py
 """
@@ -17,7 +17,7 @@ from eunoe.commands import MODULES
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMED = re.compile(r"contrib/tools +([a-z][a-z-]*)")
-# Of these the texts name commands.
+# Files that name commands.
 PATTERNS = ("*.md", "doc/*.md", "contrib/*.sh", "contrib/slurm/*", "contrib/eunoe/**/*.py", "source/**/*.cc",
             "tests/**/CMakeLists.txt", "tests/**/*.cc", "prm/**/*.prm")
 

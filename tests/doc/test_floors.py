@@ -1,4 +1,5 @@
-"""contrib/check_floors.py refuses a tree whose files include what stands above them, and takes a good one.
+"""contrib/check_floors.py refuses a tree in which a file includes a header that does not stand
+beneath it, and accepts a good one.
 
 Usage: test_floors.py
 """

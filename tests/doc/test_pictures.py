@@ -1,5 +1,5 @@
-"""contrib/tools pictures: what is computed is not computed again, folders do not mix revisions, and what was
-made is recorded. With rules and a program of its own, so it takes no time.
+"""contrib/tools pictures: results are not computed twice, a folder does not mix revisions, and the
+pictures made are recorded. The test has its own rules and its own program, so it takes no time.
 
 Usage: test_pictures.py
 """

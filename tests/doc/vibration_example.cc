@@ -1,4 +1,4 @@
-// Reads a solid that vibrates from an input text and asks its motion for places and velocities:
+// Reads a vibrating solid from an input text and compares its position and velocity with
 // centre + A sin(2 pi f t) and its derivative. Built by contributing_examples.py with the code of
 // CONTRIBUTING.md.
 
