@@ -1,5 +1,5 @@
-// The outlines of heaps of known shape: a cone of spheres gives back its angle, a single sphere its
-// projected area and its place in every view, on any number of ranks.
+// The outlines of heaps of known shape: a cone of spheres has its known base angle, a single sphere
+// its known projected area and place in every view, on any number of ranks.
 
 #include <eunoe/processes/heap/silhouettes.h>
 
@@ -20,9 +20,9 @@ bool is_mine(unsigned int k)
   return static_cast<int>(k) % n_ranks == rank;
 }
 
-/// Area of a triangle of base D and base angle @p slope, less what spheres of radius @p r that
-/// touch its sides from within leave out: at the tip, and at both ends of the base, where a sphere
-/// that touches base and side is the outermost.
+/// Area of a triangle of base D and base angle @p slope, less the area that spheres of radius @p r
+/// inside it cannot reach: at the tip, and at both ends of the base, where the outermost sphere
+/// touches base and side.
 double rounded_triangle(const double slope, const double r)
 {
   const double l = r / std::tan(0.5 * slope), c = std::cos(slope), s = std::sin(slope);
@@ -56,7 +56,8 @@ void examine_cone(const double angle)
     worst = std::max(worst, std::abs(views.base_angle(area) - angle));
     off_height = std::max(off_height, std::abs(views.height(view) - highest - r));
   }
-  // Columns of 2 um see the tip, a sphere, up to 1 um off its middle: 0.5 (0.1 r)^2 / r lower.
+  // The tip is a sphere. Columns of 2 um sample it up to 1 um = 0.1 r off its middle, where it is
+  // 0.5 (0.1 r)^2 / r lower.
   check_close("area of a cone", off_area, 0., 3e-4);
   check_close("base angle of a cone", worst, 0., 0.05);
   check_close("height of a cone", off_height, 0., 6e-3 * r);

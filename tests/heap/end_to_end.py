@@ -1,9 +1,9 @@
-"""A small heap from its input file to its results: the same tables and the same state on one rank and on
-two, and after an interruption in each phase; the mass adds up, and the outlines are what the picture of
-the particles shows.
+"""A small heap from its input file to its results: the same tables and the same state on one rank
+and on two, and after an interruption in each phase; the masses add up, and the outlines agree with
+those of the particles in the picture.
 
 Usage: end_to_end.py path/to/eunoe-particles folder
-Exit code 77 if numpy or VTK is missing, for a test that is skipped.
+Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
 import json
@@ -49,7 +49,7 @@ def check_same(reference: Path, other: Path, names: tuple[str, ...] = TABLES) ->
 
 
 def run_until(program: str, folder: Path, stage: str, *settings: str) -> None:
-    """Runs until the log tells of a stage, where the run is asked to stop and leaves a checkpoint."""
+    """Runs until the log names a stage; there the run is asked to stop and leaves a checkpoint."""
     settings = ("restart/checkpoint = true", "simulation control/log frequency = 2000", *settings)
     with subprocess.Popen(command(program, folder, 1, *settings), text=True,
                           stdout=subprocess.PIPE) as process:
@@ -86,7 +86,7 @@ def check_results(folder: Path) -> None:
     particles = read_vtu(read_pvd(folder / "heap_heap.pvd")[0].file, ["diameter", "mass"])
     points, radius = (np.asarray(particles[name], dtype=float) for name in ("points", "diameter"))
     radius = radius / 2.
-    # The tube has left the powder, and what clings to it hangs far above the heap.
+    # The tube has been lifted off the powder; particles that cling to it hang far above the heap.
     on_disc = (points[:, 1] > 0.) & (np.hypot(points[:, 0], points[:, 2]) < DISC / 2. + radius)
     if results["heap_mass_clinging"] > 0.:
         on_disc &= points[:, 1] < 1.1 * mean["height"]
@@ -111,7 +111,7 @@ def check_results(folder: Path) -> None:
 
 
 def check_comparison(program: str, folder: Path, reference: Path) -> None:
-    """On two ranks the same heap; and against its own profile raised by 10 um, it differs by 10 um."""
+    """Two ranks give the same heap, which differs by 10 um from its own profile raised by 10 um."""
     rows = read(reference / "heap_profile.csv")
     measured = folder.with_suffix(".csv")
     measured.write_text("x,height\n" + "".join(f"{row['x']!r},{row['mean'] + 10e-6!r}\n"

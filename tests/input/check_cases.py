@@ -1,5 +1,5 @@
-"""--check answers for every case and study that comes with the program, and for a layer of full length that
-is fifty times as wide as the paper's, and says of each that it is in order. None hangs.
+"""--check says of every case and study that comes with the program that it is in order, and of a
+layer of full length that is fifty times as wide as the paper's. None hangs.
 
 Usage: check_cases.py path/to/eunoe-particles path/to/eunoe-discovery
 """
@@ -24,15 +24,15 @@ HUNG = -signal.SIGKILL
 # Processor time (s) of a check, whatever else the machine does. It takes about one; making the mesh of a wide
 # case would take more than ten.
 MOST_WORK = 5.
-# Beds that are made first by a script, and data that are measured first on a twin.
+# Cases that read a bed that a script makes, and studies that read data measured on a twin.
 MADE_FIRST = {"column_collapse", "settled_bed", "plough", "late_pass", "study", "heap_study", "angle_only", "rolling"}
-# What is meant, and is doubtful elsewhere; and what the machine decides.
+# A warning that is right for this case, and one that depends on the machine.
 MEANT = {"stacked_pair": "would be shot off."}
 OF_THE_MACHINE = "Warning: Memory:"
 
 
 def is_input(file: Path) -> bool:
-    """Parts are included by cases, effects are patches, and a hidden truth makes data."""
+    """Not parts, which cases include, effects, which are patches, and twins, which make data."""
     return not {"parts", "effects"} & set(file.parts) and "\nsubsection twin" not in file.read_text()
 
 

@@ -1,4 +1,5 @@
-"""What --check says of doubtful cases, that the run says the same words at its start, and what is refused.
+"""The warnings of --check for doubtful cases, which a run repeats at its start, and the cases that
+are refused.
 
 Usage: check_output.py path/to/many-runs folder
 """
@@ -53,7 +54,7 @@ FEW = ["insertion info/insertion frequency = 1000",
        "insertion info/inserted number of particles at each time step = 5", TYPE + "number = 20"]
 OUTSIDE = "the solid lies outside the mesh during the whole run"
 
-# Name: settings, and the warnings that they must give, each once.
+# Name: settings, and the warnings that they must give once each.
 DOUBTFUL = {
     "nothing doubtful": ([], []),
     "much too large a step": ([ENTRY + " = 2e-3"],
@@ -113,7 +114,7 @@ REFUSED = {
                               for k in range(3))], "At most 4.29497e+09 are possible."),
 }
 
-# Name: settings, and lines or their beginnings, with whole numbers and their nouns.
+# Name: settings, and beginnings of lines, with whole numbers and their nouns.
 FACTS = {
     "one particle": ([], ["Particle type 0: diameter 1000 um; the time step",
                           "Memory: about 0.136 MB for 1 particle and 64 cells,",
@@ -127,7 +128,7 @@ FACTS = {
                                 "  steps:      1200001 of 2e-06 s", "  core-hours: about 4.2e-05 ("]),
 }
 
-# Name, file, settings, a warning, and the number of all. The widest case needs 2.6 TB.
+# Name, file, settings, a warning, and the number of all warnings. The widest case needs 2.6 TB.
 PROCESSES = [
     ("clearance", "prm/spreading/quickstart.prm", ["powder spreading/spreader clearance delta_s = 60e-6"],
      "leaves 6e-05 m below the spreader, less than the largest grain of 0.000101096 m", 1),
@@ -218,7 +219,7 @@ def main(many_runs: str, folder: Path) -> int:
     check_facts(program, folder)
     check_refused(program, folder)
     check_processes(program, folder)
-    # Without a word on gravity nothing falls, which may be meant and must then be written.
+    # Without the entry for gravity nothing falls; if that is intended, the entry must say so.
     (folder / "floating.prm").write_text(BASE.replace("  set g = 0, 0, -9.81\n", ""))
     _, out, _ = call(program, "floating.prm", "--check", settings=[], cwd=folder)
     if len(warnings(out)) != 1 or "entry 'g' (left at its default) is zero" not in out:

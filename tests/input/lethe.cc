@@ -1,5 +1,5 @@
-// Input files for Lethe in its older words mean what the same files in the present words mean; what
-// is for fluids is passed over, what is out of scope refused, each with one line.
+// Input files with Lethe's older names of entries mean the same as those with the present names;
+// entries for fluids are ignored and those out of scope refused, each with one line.
 
 #include "tests.h"
 
@@ -7,7 +7,7 @@ using namespace eunoe;
 
 namespace {
 
-/// What has always been called as it is called now.
+/// Entries whose names have not changed.
 const std::string common_words = R"(
 subsection simulation control
   set time step        = 1e-5

@@ -1,5 +1,5 @@
-"""The program takes every entry of Lethe: --check says the sentences of lethe_entries.txt and no others, and
-a run gives the same bits with and without the entries that it says it ignores.
+"""The program accepts every entry of Lethe: --check prints the sentences of lethe_entries.txt and
+no others, and a run gives the same bits with and without the entries that it says it ignores.
 
 Usage: lethe_entries.py path/to/eunoe-particles folder
 """
@@ -24,8 +24,8 @@ def run(program: str, folder: Path, *arguments: str) -> str:
 
 
 def without(lines: list[str], numbers: set[int]) -> list[str]:
-    """The lines of an input file without those of these numbers; what opens a subsection takes all of the
-    subsection with it."""
+    """The lines of an input file without those with these numbers; without the first line of a
+    subsection, the whole subsection is left out."""
     kept, depth_to_drop, depth = [], 0, 0
     for number, line in enumerate(lines, 1):
         words = line.split()

@@ -1,4 +1,4 @@
-// What is wrong in an input file is said all at once, each with its place and how to mend it.
+// All errors of an input file are reported at once, each with its place and how to mend it.
 
 #include "../tests.h"
 
@@ -132,7 +132,7 @@ void test_spreading()
          "is set, but the process ends when its last layer is weighed. Remove the entry");
 }
 
-/// What only the made domain can tell.
+/// Errors that are found only when the domain has been made.
 void test_domain()
 {
   const auto refused = [](const std::string &text) -> std::string {

@@ -1,5 +1,5 @@
-"""An installed Eunoe serves a project of its own: cmake --install into an empty folder, then that
-project, which finds the package, adds the observable of CONTRIBUTING.md to the program and runs a case.
+"""A separate project uses an installed Eunoe: after cmake --install into an empty folder, the
+project finds the package, adds the observable of CONTRIBUTING.md to the program and runs a case.
 
 Usage: install.py path/to/cmake path/to/build folder
 """
@@ -50,7 +50,7 @@ def main(cmake: str, build: Path, folder: Path) -> int:
     call(cmake, "-S", HERE / "project", "-B", own, "-DCMAKE_BUILD_TYPE=Release",
          f"-DCMAKE_PREFIX_PATH={prefix}", f"-DOBSERVABLE={observable}")
     call(cmake, "--build", own)
-    # Nothing of the tree is used.
+    # The program must use the installed library, not that of the build folder.
     libraries = subprocess.run(["ldd", own / "own-particles"], check=True, capture_output=True, text=True)
     used = [Path(path) for path in re.findall(r"libeunoe\.so => (\S+)", libraries.stdout)]
     assert used and all(prefix in path.parents for path in used), libraries.stdout
@@ -58,7 +58,7 @@ def main(cmake: str, build: Path, folder: Path) -> int:
     call(own / "own-particles", "case.prm", "--quiet", cwd=folder, env=os.environ)
     with open(folder / "results" / "centre_of_mass.csv", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    # Masses as 1 to 8.
+    # The masses are as 1 to 8.
     assert len(rows) == 2 and abs(float(rows[1]["x"]) - 32e-3 / 9.) < 1e-12, rows
     call(prefix / "bin" / "eunoe-particles", "--version")
     return 0
