@@ -1,5 +1,5 @@
-// Cylinders as background meshes: a sphere bounces along chords, rolls at rest against a wall that
-// turns, and meets the same wall from cells of any size. All against closed formulas.
+// Cylinders as background meshes: a sphere bounces along chords, with mesh cells of two sizes, and
+// a sphere at rest slips on a wall that turns. References: closed formulas.
 
 #include <eunoe/solids/half_space.h>
 #include <eunoe/solids/triangulated_surface.h>
@@ -41,7 +41,7 @@ double duration_of_impact(double speed)
 void bounces(const std::string &name, unsigned int refinement, const Vec3 &shift,
              const std::string &placement)
 {
-  // From the middle of a facet to the middle of the one a quarter of a turn further.
+  // The first chord goes from the middle of a facet to that of the facet a quarter of a turn on.
   const double angle = middle_of_facet(0.3, refinement), speed = 2.;
   const auto on_ring = [&](double a, double radius) {
     return Vec3{0., radius * std::cos(a), radius * std::sin(a)};
@@ -67,14 +67,15 @@ void bounces(const std::string &name, unsigned int refinement, const Vec3 &shift
     touched = touches;
     if (norm(x) > 0.95 * inner)
       return;
-    // The distance from the axis of the chord on which it is.
+    // Distance of the present chord from the axis.
     const double chord = norm(cross(x, v)) / norm(v);
     closest = std::min(closest, chord);
     furthest = std::max(furthest, chord);
     slowest = std::min(slowest, norm(v));
     fastest = std::max(fastest, norm(v));
   });
-  // The ways in and out would meet behind the wall, so every other chord is further out.
+  // The paths before and after an impact, extended, meet behind the wall, so every other chord is
+  // further from the axis.
   const double depth = 0.5 * std::sqrt(0.5) * speed * duration_of_impact(std::sqrt(0.5) * speed);
   const double chord = std::sqrt(0.5) * inner;
   check(name + ": it bounced", bounces >= 8, std::to_string(bounces) + " times");
@@ -84,7 +85,7 @@ void bounces(const std::string &name, unsigned int refinement, const Vec3 &shift
   check_relative(name + ": fastest", fastest, speed, 1e-3);
 }
 
-/// Facets follow the mesh, ends stay planes.
+/// The curved wall is made of the facets of the mesh, the flat ends are planes.
 void shapes()
 {
   Case test_case(control(1e-5, 1e-5) + cylinder(3) + powder(2. * r, 1., 0., "0, 0, 0"));
@@ -107,12 +108,13 @@ void shapes()
   check_relative("all of them", most, R, 1e-12);
 }
 
-/// A sphere at rest on a wall that turns slides until it rolls.
+/// A sphere at rest on a wall that turns: while it slips, friction gives its speed and spin and the
+/// torque on the wall.
 void drum()
 {
   const unsigned int refinement = 3;
   const double friction = 0.3, g = 9.81, angle = middle_of_facet(-0.5 * M_PI + 0.01, refinement);
-  // Gravity straight into the facet on which the sphere is.
+  // Gravity acts along the normal of the facet under the sphere.
   const Vec3 out = {0., std::cos(angle), std::sin(angle)}, along = cross({1., 0., 0.}, out);
   const double density = 1000., mass = density * 4. / 3. * M_PI * r * r * r;
   const double young = 1e6 / (2. * (1. - 0.09));

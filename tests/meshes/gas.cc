@@ -1,5 +1,5 @@
-// Elastic spheres fly about in meshes of every shape: nobody is lost, the energy stays, and the
-// bits are the same on any number of ranks, whatever the cells look like.
+// Elastic spheres fly in meshes of every shape: none is lost, the energy is conserved, and the bits
+// are the same on any number of ranks, whatever the shape of the mesh cells.
 
 #include <eunoe/core/random.h>
 
@@ -11,7 +11,7 @@ namespace {
 
 using Table = std::vector<std::vector<double>>;
 
-/// Places in a shape that do not overlap, with velocities of one size.
+/// Spheres at random places in a shape, without overlap and all with the same speed.
 std::string spheres_in(const std::function<bool(const Vec3 &)> &holds, const Vec3 &lower,
                        const Vec3 &upper, double diameter, std::size_t n)
 {
@@ -55,7 +55,7 @@ void fly(const std::string &name, const std::string &mesh, const std::string &sp
   };
   const Table table = run_alone_and_together<Table>(name, result_of);
   check(name + ": all are there", table.size() == n);
-  // A few may be in a contact at the end.
+  // The elastic energy of spheres that are in contact at the end is missing.
   check_relative(name + ": energy", kinetic_energy(table), static_cast<double>(n), 0.03);
 }
 
@@ -87,7 +87,7 @@ EUNOE_MPI_TEST()
       spheres_in(in_cone, lower, upper, d, 300), d, 300);
   fly("shell between balls", generated_mesh("hyper_shell", "0, 0, 0 : 4e-3 : 12e-3 : 6 : true", 2),
       spheres_in(in_shell, lower, upper, d, 300), d, 300);
-  // One that is finer in a corner, with nodes that hang on the curved wall.
+  // A mesh that is finer in a corner, with hanging nodes on the curved wall.
   fly("refined cylinder",
       generated_mesh("subdivided_cylinder", "2 : 10e-3 : 10e-3", 1) +
           refinement({"0, 0, 0 : 20e-3, 20e-3, 20e-3"}),

@@ -1,6 +1,6 @@
-// A hopper of slanted walls with a narrow mouth, periodic in depth: everything runs out, nobody is
-// lost, on any number of ranks to the last bit. And an outlet in the side of a step, whose plane
-// most particles pass without leaving through it.
+// A hopper of slanted walls with a narrow mouth, periodic in depth: all particles run out and none
+// is lost, with the same bits on any number of ranks. And an outlet in the side of a step:
+// particles that cross its plane elsewhere stay in the domain.
 
 #include "meshes.h"
 
@@ -8,7 +8,7 @@ using namespace test;
 
 namespace {
 
-/// The particles, the mass that has left, the number lost.
+/// The particles; the mass and the number that have left, and the number lost.
 using Result = std::pair<std::vector<std::vector<double>>, std::vector<double>>;
 
 Result run(const std::string &input, MPI_Comm comm)

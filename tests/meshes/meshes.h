@@ -1,7 +1,7 @@
 #ifndef eunoe_tests_meshes_h
 #define eunoe_tests_meshes_h
 
-// Background meshes to try: Gmsh files of sections that are extruded, and what the inputs share.
+// Background meshes for the tests: Gmsh files of extruded sections, and the parts of input texts.
 
 #include "../tests.h"
 
@@ -15,10 +15,10 @@ namespace test {
 struct Profile
 {
   std::vector<std::array<double, 2>> points;      ///< (m)
-  std::vector<std::array<unsigned int, 4>> quads; ///< in a turn
-  /// Ids of the edges in the boundary by their points, the smaller first; 0 without one.
+  std::vector<std::array<unsigned int, 4>> quads; ///< corners in order around
+  /// Boundary ids of edges by their points, the smaller first; other edges have the id 0.
   std::map<std::array<unsigned int, 2>, unsigned int> ids;
-  double depth; ///< z from 0 to it (m); its ends have the ids 8 and 9
+  double depth; ///< along z, from 0 (m); the ends have the ids 8 and 9
 };
 
 /// Writes the section as one layer of hexahedra, in Gmsh's format 2.2.
@@ -88,7 +88,7 @@ inline std::string gmsh_mesh(const std::string &file, unsigned int refinement)
          "\n set initial refinement = " + std::to_string(refinement) + "\nend\n";
 }
 
-/// Boxes in which the cells are cut once more.
+/// Boxes in which the mesh cells are refined once more.
 /// @param boxes two corners each
 inline std::string refinement(const std::vector<std::string> &boxes)
 {
@@ -117,7 +117,7 @@ inline std::string powder(double diameter, double restitution, double friction,
   return text.str();
 }
 
-/// Spheres in places.
+/// Inserts spheres at these positions.
 inline std::string places(const std::vector<Vec3> &positions, const std::vector<Vec3> &velocities)
 {
   std::ostringstream text;
@@ -135,7 +135,7 @@ inline std::string places(const std::vector<Vec3> &positions, const std::vector<
 }
 
 /// Runs a case alone on the first rank and on all together; both must end with the same bits.
-/// @return the particles at the end
+/// @return the result on all ranks together
 template <typename Result>
 Result run_alone_and_together(const std::string &name,
                               const std::function<Result(MPI_Comm)> &result_of)

@@ -1,7 +1,7 @@
-// Background meshes that move: what flies about in a box that is carried along at a constant
-// velocity sees no difference (Galilei), over many lengths of the box, on any number of ranks; a
-// ball that rests in the corner of a turning box is carried around by what its walls press, m w^2
-// r; what is poured out of a turning vessel leaves through its outlet wherever that is.
+// Background meshes that move. In a box with a constant velocity, spheres follow the same paths as
+// in a box at rest (Galilean invariance), over many lengths of the box and on any number of ranks.
+// A ball in the corner of a turning box is carried around by the force of the walls, m w^2 r.
+// Powder poured out of a turning vessel leaves through its outlet wherever that is.
 
 #include "meshes.h"
 
@@ -65,9 +65,9 @@ void test_carried()
   check_close("the same paths", worst, 0., 1e-8);
 }
 
-/// Grains fall and heap up in a carried box: whatever 'time end' says, and however often the run is
-/// continued, they come to the same places to the last bit. (A grain must have some contacts at
-/// once, or no order of theirs makes a difference.)
+/// Grains fall and heap up in a moving box: whatever 'time end' says, and also after a restart,
+/// they come to the same places to the last bit. (A grain must have several contacts at a time, or
+/// their order makes no difference.)
 void test_time_end()
 {
   const double end = 0.04;
@@ -111,7 +111,7 @@ void test_time_end()
 void test_turning()
 {
   const double w = 20., diameter = 1e-3, density = 1000.;
-  // In the corner of two walls of the box, where the axis z has a distance of 6 mm from both.
+  // In the corner of two walls of the box, both 6 mm from the axis z.
   Case test_case(control(1e-5, 1.) + box + powder(diameter, 0.3, 0.5, "0, 0, 0") +
                  grid_motion(" set motion type = rotational\n set grid rotational speed = 20\n"
                              " set grid rotational axis = 2\n") +

@@ -1,6 +1,6 @@
-// A mesh that is finer in boxes changes no result: a cohesive powder in a box with two periodic
-// directions, one of whose ends is finer in places than the other, against the plain mesh and, to
-// the last bit, on any number of ranks, with and without load balancing.
+// Refining the mesh in boxes changes no bit of the results: a cohesive powder in a domain with two
+// periodic directions, where a periodic face is partly finer than the opposite one, against the
+// plain mesh on one rank; on any number of ranks, with and without load balancing.
 
 #include "meshes.h"
 
@@ -61,7 +61,7 @@ Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullp
   return particle_table(*test_case);
 }
 
-/// Number of cells of a box of 3 x 4 x 12 m, whose diagonal is 13 m, refined by a target size.
+/// Number of mesh cells of a box of 3 x 4 x 12 m, whose diagonal is 13 m, refined to a target size.
 std::uint64_t cells_for(double target_size)
 {
   std::ostringstream entries;
@@ -91,7 +91,7 @@ EUNOE_MPI_TEST()
         run(std::string(boxes) + "subsection model parameters\n subsection load balancing\n" +
                 balancing + "\n end\nend\n",
             MPI_COMM_WORLD, &n_cells);
-    // 2 x 2 x 2 cells, and 1 x 1 x 2 elsewhere.
+    // The two boxes refine 2 x 2 x 2 and 1 x 1 x 2 mesh cells.
     check("10 of 64 cells are cut into eight", n_cells == 64 + 7 * 10,
           std::to_string(n_cells) + " cells");
     check("all particles are there", refined.size() == 400);

@@ -1,5 +1,5 @@
-// A mesh with a step, whose edge points into the domain: the walls touch spheres where the distance
-// to the step says, whatever the cells, and a ball balances on the edge.
+// A mesh with a step whose edge points into the domain: spheres touch the walls according to their
+// distance from the step, whatever the mesh cells, and a ball balances on the edge.
 
 #include "meshes.h"
 
@@ -24,7 +24,7 @@ void write_step()
   write_mesh(section, "step.msh");
 }
 
-/// The walls that a sphere touches: unit normals into them, sorted by the distance.
+/// Distances of the walls that a sphere touches and unit normals into them, sorted by the distance.
 std::vector<std::pair<double, Vec3>> contacts(const Domain &domain, const Vec3 &x)
 {
   std::vector<std::pair<double, Vec3>> all;
@@ -74,7 +74,7 @@ void touches(const Domain &domain)
   check("nor what is outside", !domain.contains({9e-3, 1e-3, 4e-3}));
 }
 
-/// Gravity pulls straight into the edge: nothing else may push.
+/// Gravity acts through the edge, so the force of the edge alone must balance the ball.
 void balance()
 {
   const double g = 9.81, mass = 1000. * 4. / 3. * M_PI * r * r * r;
@@ -90,7 +90,8 @@ void balance()
   check_close("it balances: y", row[c_y], place, 1e-9);
 }
 
-/// A ball rolls along the shelf, over the joints of cells, without a bump.
+/// A ball without friction slides over the shelf, across the faces between mesh cells, without a
+/// bump.
 void rolls()
 {
   const double speed = 0.1, g = 9.81, mass = 1000. * 4. / 3. * M_PI * r * r * r;
@@ -111,8 +112,8 @@ void rolls()
   check_close("it slides over the shelf: lowest", lowest, r - overlap, 1e-12);
 }
 
-/// Two boundaries in one plane: over the line between them a sphere has one contact, and a hole
-/// with an outlet is no wall.
+/// Two boundaries in one plane: over the line between them a sphere has one contact; if one of them
+/// is an outlet, it is no wall.
 void floor_of_two()
 {
   Profile section;
