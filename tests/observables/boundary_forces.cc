@@ -1,6 +1,6 @@
-// Forces on the walls of the mesh: a packing at rest weighs on its floor what its particles weigh,
-// and pushes its walls apart in balance; a sphere at rest beside the centre exerts the torque of
-// its weight. The tables are the same on any number of ranks. Reference: statics.
+// Forces on the walls of the mesh: the walls bear the weight of a packing at rest, most of it the
+// floor, and their horizontal forces balance; a sphere at rest beside the centre exerts the torque
+// of its weight. The tables are the same on any number of ranks. Reference: statics.
 
 #include <eunoe/core/files.h>
 
@@ -37,8 +37,8 @@ Table table_of(const std::string &name, MPI_Comm comm = MPI_COMM_WORLD)
   return parse_table(read_file("results/" + name, comm), name);
 }
 
-/// Largest component of the forces on particles and walls less the weight, over the weight:
-/// forces between particles cancel, so that nothing else is left.
+/// Largest component of the sum of the forces on all particles and walls, less the weight, over the
+/// weight. Contact forces cancel in this sum, so it must vanish.
 double imbalance(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
@@ -73,7 +73,7 @@ std::string packing_case(const std::string &tables, const double time_end)
       time_end, " set filename = " + tables + "\n set output frequency = 2000\n");
 }
 
-/// Sums over the particles of a wall are exact, so every digit of the tables is the same.
+/// Sums over the particles at a wall are exact, so the tables do not depend on the number of ranks.
 void test_ranks()
 {
   same_on_one_rank("forces while it falls", [](MPI_Comm comm) {

@@ -1,6 +1,6 @@
-// The forces in single contacts, as they are drawn: Hertz's force of a known overlap, also across a
-// periodic face; all contacts of a packing together give the forces on its particles and walls. To
-// look at them changes nothing.
+// The forces in single contacts, as pictures show them: Hertz's force of a known overlap, also
+// across a periodic face; those of a packing, with particles and walls, add up to the forces on its
+// particles. Evaluating them does not change the run.
 // Reference: Hertz; Newton's third law.
 
 #include "../on_one_rank.h"
@@ -20,8 +20,8 @@ double hertz(double radius, double overlap)
   return 4. / 3. * young * std::sqrt(radius) * std::pow(overlap, 1.5);
 }
 
-/// All contacts of owned first particles, of all ranks: id, id or -1, solid, overlap, force, end of
-/// the line (m).
+/// The contacts of all ranks whose first particle is owned: its id, the second one's id or -1,
+/// solid, overlap, force, end of the line (m).
 std::vector<std::vector<double>> all_contacts(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
@@ -39,7 +39,8 @@ std::vector<std::vector<double>> all_contacts(Simulation &simulation)
 
 void test_placed_spheres()
 {
-  // Two overlap across the periodic faces at x = -1 and 1 cm, the third stands 20 um in the floor.
+  // Two overlap across the periodic faces at x = -1 and 1 cm, the third overlaps the floor by 20
+  // um.
   Case placed(box_input(1e-7, 1e-7,
                         std::string("subsection lagrangian physical properties\n") + elastic +
                             "end\nsubsection DEM boundary conditions\n"
@@ -104,7 +105,8 @@ void test_packing()
       n_contacts += static_cast<std::size_t>(c.first) < p.n_owned ? 1 : 0;
     }
     for (std::size_t k = 0; k < p.n_owned; ++k) {
-      // Without damping they do not depend on velocities, which lacked half a step then.
+      // Without damping the forces do not depend on the velocities, which lacked half a step when
+      // the forces of the step were computed.
       const Vec3 force = p.force[k].vec() - Vec3{0., 0., -9.81 * p.mass(k)};
       worst = std::max(worst, norm(force - sums[k]) / std::max(scale, 1e-300));
     }

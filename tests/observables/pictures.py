@@ -1,5 +1,5 @@
-"""Pictures of cells, contacts and particles hold what they should, on one rank and on two: averages of
-particles that were placed by hand, Hertz's force of known overlaps, also across a periodic face.
+"""Pictures of mesh cells, contacts and particles, on one rank and on two: averages over particles
+that were placed by hand, and Hertz's force of known overlaps, also across a periodic face.
 
 Usage: pictures.py path/to/eunoe-particles folder
 """
@@ -18,8 +18,8 @@ from eunoe.vtk_files import read_pvd, read_vtu
 
 CASE = Path(__file__).with_name("pictures.prm")
 DIAMETER = 1e-3
-WIDTH = 5e-3  # of a cell; the mesh spans -1 cm to 1 cm
-# Of pictures, in single precision.
+WIDTH = 5e-3  # of a mesh cell; the mesh spans -1 cm to 1 cm
+# Relative tolerance of pictures, which have single precision.
 TOLERANCE = 3e-6
 CELL_FIELDS = ("velocity", "granular_temperature", "solid_fraction", "particles")
 
@@ -34,7 +34,7 @@ def last(folder: Path, name: str, fields: tuple[str, ...]) -> dict[str, np.ndarr
 
 
 def cells(folder: Path) -> dict[tuple[int, ...], dict[str, np.ndarray]]:
-    """The fields of every cell by its place in the mesh; the eight corners of each must agree."""
+    """The fields of every mesh cell by its place; the eight corners of each must agree."""
     data = last(folder, "out_cells", CELL_FIELDS)
     found = {}
     for first in range(0, len(data["points"]), 8):
@@ -61,8 +61,7 @@ def check_cells(folder: Path) -> None:
         # Three particles with velocities (1, 0, 0), (0, 2, 0), (-1, 1, 3): mean (0, 1, 1); squares
         # of the deviations 1 + 1 + 1, 0 + 1 + 1, 1 + 0 + 4.
         (0, 0, 0): (3, (0, 1, 1), (3 + 2 + 5) / 9),
-        # One that has come over from the cell below since the cells were searched, and one that
-        # lies on the face between them.
+        # One that has crossed the face x = 0 since the last search, and one that lies on it.
         (2, 2, 2): (2, (10, 0, 0), 100.),
         # Two that overlap, and two that do so across the periodic faces.
         (0, 3, 0): (1, (0, 0, 0), 0.), (3, 3, 0): (1, (0, 0, 0), 0.),
@@ -111,19 +110,20 @@ def check_contacts(folder: Path) -> None:
 
 
 def check_tangential_force(program: str, folder: Path) -> None:
-    """Mindlin's spring after two steps of slip, of two that overlap and turn in the same sense."""
+    """Mindlin's spring of two particles that overlap and spin in the same sense, after two
+    steps."""
     spin, overlap, step = 10., 2e-5, 1e-6
     run(program, folder, 1, (f"insertion info/list omega z = 0, 0, 0, 0, 0, {spin}, {spin}, 0, 0",))
     data = last(folder, "out_force_chains", ("tangential_force", "first"))
     force = float(data["tangential_force"][list(data["first"]).index(6)])
     shear_modulus = 1e6 / (4 * (2 - 0.3) * (1 + 0.3))
     expected = 8 * shear_modulus * math.sqrt(DIAMETER / 4 * overlap) * DIAMETER * spin * 2 * step
-    # The spring brakes the spins by three in a thousand meanwhile.
+    # In this time the spring slows the spins by three in a thousand.
     assert abs(force - expected) < 5e-3 * expected, f"tangential force {force} instead of {expected}"
 
 
 def check_moving_mesh(program: str, folder: Path) -> None:
-    """A mesh that turns by a right angle and 0.2 while a particle rests in its middle."""
+    """A mesh that turns by pi/2 + 0.2 rad while a particle rests near its middle."""
     angle = math.pi / 2 + 0.2
     lists = [f"insertion info/list {axis} = 1e-3" for axis in "xyz"]
     lists += [f"insertion info/list velocity {axis} = 0" for axis in "xyz"]
@@ -140,7 +140,7 @@ def check_moving_mesh(program: str, folder: Path) -> None:
     for corner in turned:
         nearest = np.linalg.norm(data["points"][far][:, :2] - corner, axis=1).min()
         assert nearest < 1e-8, f"no cell at {corner}"
-    # The particle stays where it is, and the cell that comes to it has it.
+    # The particle stays where it is and is counted in the cell that has moved there.
     holds = data["particles"] == 1
     assert np.count_nonzero(holds) == 8
     centre = data["points"][holds].mean(axis=0)

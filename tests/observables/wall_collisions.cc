@@ -1,6 +1,6 @@
-// The table of collisions with walls: a sphere that bounces between two walls has the coefficient
-// of restitution on every line; an elastic one touches for the time that Hertz gives; only walls
-// that are asked for count. Reference: the coefficient that was given; Hertz's duration of contact.
+// The table of collisions with walls: for a sphere that bounces between two walls, every line gives
+// the coefficient of restitution; an elastic sphere touches for Hertz's duration; only the chosen
+// walls have lines. Reference: the prescribed coefficient; Hertz's duration of contact.
 
 #include <eunoe/core/files.h>
 
@@ -10,7 +10,7 @@ using namespace test;
 
 namespace {
 
-/// Places of the columns.
+/// Indices of the columns.
 enum
 {
   collision,
@@ -69,7 +69,7 @@ void test_restitution()
   }
   check("walls in turn, one line each", in_turn);
   check_close("restitution on every line", worst, 0., 2e-4);
-  // Nothing acts between two walls.
+  // No force acts on the sphere between two walls.
   check("a collision begins with the velocity that the last one left", before_touch);
   check("without friction nothing else changes", untouched);
 }
@@ -87,7 +87,7 @@ void test_duration()
   const double overlap =
       std::pow(15. * s.mass(s.spheres[0]) * v * v / (16. * young * std::sqrt(radius)), 0.4);
   const double duration = 2.9432 * overlap / v;
-  // The table knows whole steps.
+  // The times in the table are whole steps.
   check_close("duration", table.rows[0][end_time] - table.rows[0][start_time], duration, 1.1e-7);
   check_close("nothing is lost", table.rows[0][end_v + 2], -2., 1e-4);
 }

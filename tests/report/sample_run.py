@@ -48,7 +48,7 @@ SUMMARY = {"version": "0.1.0", "git_revision": "abc1234", "particles": 9, "steps
 
 
 def encoded(values: np.ndarray, block_size: int = 64) -> str:
-    """Base64 of zlib blocks behind their counts, as VTK has it."""
+    """Base64 of the counts of zlib blocks, then of the blocks, as in files of VTK."""
     data = values.astype("<f4").tobytes()
     blocks = [data[k:k + block_size] for k in range(0, len(data), block_size)]
     packed = [zlib.compress(block) for block in blocks]
@@ -58,7 +58,7 @@ def encoded(values: np.ndarray, block_size: int = 64) -> str:
 
 
 def cells(n: int) -> str:
-    """As many vertices as there are points."""
+    """The cells of a VTK file: one vertex for each point."""
     arrays = {("Int32", "connectivity"): range(n), ("Int32", "offsets"): range(1, n + 1), ("UInt8", "types"): n * [1]}
     return "<Cells>\n" + "".join(
         f'<DataArray type="{kind}" Name="{name}" format="ascii">{" ".join(map(str, values))}</DataArray>\n'
@@ -66,7 +66,7 @@ def cells(n: int) -> str:
 
 
 def piece(points: np.ndarray, fields: dict[str, np.ndarray]) -> str:
-    """The share of a rank."""
+    """The piece of a VTK file that one rank writes."""
     data = "".join(
         f'<DataArray type="Float32" Name="{name}" NumberOfComponents="{FIELDS[name]}" '
         f'format="binary">\n{encoded(values)}\n</DataArray>\n' for name, values in fields.items())
@@ -103,7 +103,7 @@ def bed(layer: int, n: int = 12) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     points = np.column_stack((np.linspace(0.0022, 0.0035, n), np.full(n, 3e-5 - layer * 1e-4),
                               np.linspace(0., 4e-4, n)))
     displacement = np.zeros((n, 3))
-    displacement[old] = [3e-6, 4e-6, 1e-3]  # what counts is the x-y plane
+    displacement[old] = [3e-6, 4e-6, 1e-3]  # only x and y count
     return points, {"ID": rows, "diameter": np.full(n, 6e-5), "mass": np.full(n, 5e-10),
                     "velocity": np.ones((n, 3)), "layer": np.where(old, 0, layer),
                     "tracked": 1. * old, "displacement": displacement, "on_plate": np.ones(n)}

@@ -173,7 +173,7 @@ class Report(InFolder):
         return page
 
     def assert_says(self, text: str) -> None:
-        """That the page has a text; a failure does not print the page."""
+        """Asserts that the page has a text; a failure does not print the page."""
         self.assertTrue(text in self.page(), f"The page lacks '{text}'.")
 
     def test_whole_run(self) -> None:
