@@ -1,6 +1,6 @@
-"""Ids far beyond those that single precision knows (16.7 million) and 31 bits hold: pictures have them
-exactly, a run goes on with them from a checkpoint on any number of ranks, and when none is left it
-stops with a sentence. A checkpoint that claims that so many particles have come is forged for it.
+"""Ids beyond those that single precision represents (16.7 million) and that 31 bits hold: pictures
+have them exactly, a run continues with them from a checkpoint on any number of ranks, and when no
+id is left it stops with a sentence. The test forges a checkpoint that claims so many insertions.
 
 Usage: ids.py path/to/eunoe-particles folder
 """
@@ -64,7 +64,7 @@ def check_exhausted(begun: Case, folder: Path, ranks: int) -> None:
 def main(program: str, folder: Path) -> int:
     begun = Case(str(Path(program).resolve()), CASE, folder / "begun", [])
     begun.run(1, "simulation control/iteration end = 10")
-    for first in (2**24 + 6, 2**31 + 8, 2**32 - 5):  # the last four that there are
+    for first in (2**24 + 6, 2**31 + 8, 2**32 - 5):  # 2**32 - 5 leaves just four ids
         name = f"{first}_"
         alone = continued(begun, folder / (name + "1"), first)
         alone.run(1, RESTART)

@@ -1,5 +1,6 @@
-// The ways of insertion: grids keep particles apart and inside their box, do not depend on the
-// number of ranks, lists and files give what they say, and a written state can be read back.
+// Methods of insertion: the grid of a box keeps particles apart and inside the box and does not
+// depend on the number of ranks, lists and files give the stated particles, and a written state can
+// be read back.
 
 #include <eunoe/core/files.h>
 
@@ -21,7 +22,7 @@ std::string case_with(const std::string &insertion)
 
 void test_volume()
 {
-  // Draws belong to particles, not to ranks.
+  // Random numbers belong to particles, not to ranks.
   const Numbers all = same_on_one_rank("grid", [](MPI_Comm comm) {
     Case grid(
         case_with(" set insertion box points coordinates = -5e-3, -5e-3, -5e-3 : 5e-3, 9e-3, 9e-3\n"
@@ -46,7 +47,7 @@ void test_volume()
   }
   check("inside the box", inside);
   check("apart from each other", smallest_gap >= 0.);
-  // The draws that have been made since the beginning.
+  // Recorded, so that a change of the random numbers is noticed.
   char text[64];
   std::snprintf(text, sizeof text, "fingerprint %.9f", sum);
   print(text);
@@ -148,7 +149,7 @@ void test_acceptance()
   check("acceptance function", all.size() == 400 && inside && fills);
 }
 
-/// The removal box is emptied before every event, the first as the later ones.
+/// The removal box is emptied before every event, also before the first.
 void test_removal()
 {
   const std::string removal =
@@ -166,7 +167,8 @@ void test_removal()
   removing.run([&](Simulation &simulation) {
     numbers.push_back(static_cast<double>(particle_table(simulation).size()));
   });
-  // Particles rise by 0.5 mm a step from below -4 mm: an event is complete for four steps at most.
+  // Particles rise by 0.5 mm a step from below -4 mm, so that all those of an event are there for
+  // four steps at most.
   const double removed = removing->get_ledger().taken_out.global(MPI_COMM_WORLD).number;
   check("removal box", numbers.front() == 10. && removed >= 10. &&
                            particle_table(*removing).size() + removed == 40.);

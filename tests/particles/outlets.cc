@@ -1,4 +1,4 @@
-// Particles rain through an outlet: what was inserted is inside or has left, in number and, to the
+// Particles rain through outlets: those inserted are inside or have left, in number and, to the
 // last bit, in mass; on any number of ranks.
 
 #include "../tests.h"

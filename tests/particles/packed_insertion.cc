@@ -1,6 +1,7 @@
-// Dense random packings: all particles come at once, none overlaps another or leaves its box,
-// periodic faces are no walls, only places that are accepted are taken; the same on any number of
-// ranks, and the run goes on with them. Reference: geometry.
+// Dense random packings: all particles are inserted at once, none overlaps another or leaves its
+// box, periodic faces are no walls, and only places that the acceptance function allows are used;
+// the packing is the same on any number of ranks, and the run continues with it. Reference:
+// geometry.
 
 #include "../on_one_rank.h"
 
@@ -21,11 +22,11 @@ std::string case_of_packing(unsigned int number, const std::string &insertion,
                        insertion + "end\n" + more);
 }
 
-/// What there is to know of a packing.
+/// Properties of a packing.
 struct Result
 {
   std::size_t number = 0;
-  double largest_overlap = -1.; ///< over the sum of the radii, negative for gaps
+  double largest_overlap = -1.; ///< over the sum of the radii, negative for a separation
   double volume = 0.;           ///< of all particles (m3)
   double order = 0.;            ///< a sum that changes with any digit
   Vec3 lowest = {1., 1., 1.}, highest = {-1., -1., -1.}; ///< of the surfaces (m)
@@ -54,7 +55,7 @@ Result look_at(const Numbers &all, const PeriodicBox &box = {})
   return result;
 }
 
-/// The particles where they were put.
+/// The particles at their initial positions.
 Numbers pack(const std::string &name, const std::string &input)
 {
   return same_on_one_rank(name, [&input](MPI_Comm comm) {
@@ -70,7 +71,7 @@ Numbers pack(const std::string &name, const std::string &input)
 
 void print_fingerprint(const Result &result)
 {
-  // The packing that has been made since the beginning.
+  // Recorded, so that a change of the packing is noticed.
   char text[64];
   std::snprintf(text, sizeof text, "fingerprint %.8g", result.order);
   print(text);
@@ -87,7 +88,7 @@ void test_box()
   check("all have come", r.number == 500);
   check("none overlaps", r.largest_overlap <= 0.);
   check("many nearly touch", r.largest_overlap > -2e-3);
-  // The walls of this box take away several percent of what is possible.
+  // The walls of this box lower the attainable solid fraction by several percent.
   check("dense", fraction > 0.52 && fraction < 0.54);
   check("inside the box", r.lowest.x >= -4e-3 - 1e-15 && r.highest.y <= 4e-3 + 1e-15 &&
                               r.lowest.z >= -9e-3 - 1e-15 && r.highest.z <= -1e-3 + 1e-15);
@@ -124,7 +125,7 @@ void test_acceptance()
   check("none overlaps there", all.size() == 150 && look_at(all).largest_overlap <= 0.);
 }
 
-/// Too many to be packed, but not so many that it is known beforehand.
+/// Too many to be packed, but too few to be refused before the packing is tried.
 void test_too_many()
 {
   Case crowded(case_of_packing(
@@ -139,7 +140,7 @@ void test_too_many()
         message.find("could not be packed into the box without overlap") != std::string::npos);
 }
 
-/// The walls of a mesh that is no box, and a solid within it.
+/// The curved wall of a cylindrical mesh, and a solid within it.
 void test_walls_and_solids()
 {
   const double half_length = 5e-3, wide = 6e-3;

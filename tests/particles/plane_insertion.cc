@@ -1,6 +1,6 @@
-// The insertion on a plane: at every event one particle comes into the middle of each cell that the
-// plane cuts and in which there is none, until all have come; the same on any number of ranks.
-// Reference: counting by hand. The mesh has 4 x 4 x 4 cells of 5 mm.
+// Insertion on a plane: every event inserts one particle at the middle of each empty mesh cell that
+// the plane cuts, until all are inserted; the same on any number of ranks. Reference: counting by
+// hand. The mesh has 4 x 4 x 4 cells of 5 mm.
 
 #include "../on_one_rank.h"
 
@@ -34,7 +34,7 @@ std::vector<std::size_t> numbers_after_events(Case &run)
 
 void test_places()
 {
-  // Behind a plane along faces lie the cells to which the normal does not point.
+  // If the plane lies on faces of cells, it takes the cells on the side opposite to its normal.
   Case one(case_on_plane(1, 16,
                          " set insertion plane point = 0, 0, 5e-3\n"
                          " set insertion plane normal vector = 0, 0, -3\n"));
@@ -68,7 +68,7 @@ void test_places()
       sum += p[c_id] * from_centre + p[c_radius];
     }
   check("shifted, and all inside their cells", inside && furthest > 1.5e-3);
-  // The draws that have been made since the beginning.
+  // Recorded, so that a change of the random numbers is noticed.
   char text[64];
   std::snprintf(text, sizeof text, "fingerprint %.8g", sum);
   print(text);
@@ -83,7 +83,7 @@ void test_places()
 
 void test_events()
 {
-  // 3 mm on, after 60 steps, the first have left their cells.
+  // After 60 steps, or 3 mm, the first particles have left their cells.
   Case falling(case_on_plane(140, 40,
                              " set insertion plane point = 0, 0, 7e-3\n"
                              " set insertion plane normal vector = 0, 0, 1\n"
@@ -92,14 +92,14 @@ void test_events()
         numbers_after_events(falling) ==
             std::vector<std::size_t>({16, 16, 16, 32, 32, 32, 40, 40}));
 
-  // Sideways they go into the next cells, so that only the first four become empty.
+  // The particles move sideways into the next cells, so that only the first row of four is emptied.
   Case sideways(case_on_plane(60, 100,
                               " set insertion plane point = 0, 0, 7e-3\n"
                               " set insertion plane normal vector = 0, 0, 1\n"
                               " set initial velocity = 5, 0, 0\n"));
   check("not where others have come", numbers_after_events(sideways).back() == 20);
 
-  // What is removed makes room in the same event.
+  // Removed particles make room in the same event.
   Case emptied(case_on_plane(20, 100,
                              " set insertion plane point = 0, 0, 7e-3\n"
                              " set insertion plane normal vector = 0, 0, 1\n"
@@ -113,7 +113,7 @@ void test_events()
   check("room that was made", renewed);
 }
 
-/// A sphere that reaches into a cell from behind takes the place of a large one.
+/// A large sphere is not inserted while one that has left the cell still reaches into its place.
 void test_touching()
 {
   Case large(box_input(1e-5, 1e-3,
@@ -123,7 +123,8 @@ void test_touching()
                        " set insertion frequency = 20\n set insertion plane point = 0, 0, 7e-3\n"
                        " set insertion plane normal vector = 0, 0, 1\n"
                        " set initial velocity = 0, 0, -5\nend\n"));
-  // 3 mm on they are out of the cells, but 3.6 mm is the least distance: reached with 4 mm.
+  // After 3 mm they are out of the cells, but the next ones need a distance of 3.6 mm, which is
+  // reached at the event after 4 mm.
   const auto numbers = numbers_after_events(large);
   check("not where they would touch", numbers[3] == 16 && numbers[4] == 32);
 }

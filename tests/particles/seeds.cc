@@ -1,6 +1,6 @@
-// One seed turns all that a run draws at random: in every way in which particles come, seeds 1 and
-// 2 give other sizes and other places, and one seed gives the same bits again, on any ranks, and as
-// if it stood in each entry for a seed. A seed that gives way is named.
+// One seed changes all random numbers of a run: with every method of insertion, seeds 1 and 2 give
+// different sizes and places; the same seed gives the same bits again, on any number of ranks, and
+// the same as if it were set in each entry for a seed. A warning names a seed that it overrides.
 
 #include "../spreading/small_case.h"
 #include "../tests.h"
@@ -14,12 +14,12 @@ using Overrides = std::vector<std::string>;
 
 const std::string general = "simulation control/seed = ";
 
-/// Ends a run that has shown its first particles.
+/// Thrown to end a run when its first particles have been seen.
 struct Seen
 {
 };
 
-/// Two types whose diameters are drawn from normal distributions, 70 in all.
+/// Two types whose diameters are drawn from normal distributions, 70 particles in all.
 std::string grains(const std::string &insertion)
 {
   const auto type = [](const char *number, const char *diameter) {
@@ -38,7 +38,7 @@ std::string grains(const std::string &insertion)
                        insertion + "end\n");
 }
 
-/// The powder and the laws of the small spreading case in a tube.
+/// A heap with the powder and the laws of the small spreading case.
 std::string small_heap()
 {
   std::string text = small_spreading("results", "");
@@ -76,7 +76,7 @@ Table first_particles(const std::string &input, const Overrides &overrides,
   return table;
 }
 
-/// Share of the particles for which two tables differ in one of these columns.
+/// Share of the particles for which two tables differ in at least one of these columns.
 double share_of_others(const Table &a, const Table &b, const std::vector<Column> &columns)
 {
   const std::size_t n = std::min(a.size(), b.size());
@@ -110,7 +110,7 @@ void test_turning(const std::string &name, const std::string &input, bool is_pro
   const Table one = first_particles(input, {general + "1"});
   const Table two = first_particles(input, {general + "2"});
   check(name + ": particles come", one.size() >= 10 && two.size() >= 10);
-  // Of classes, some particles draw the same again.
+  // Where diameters come from classes, some particles draw the same class again.
   check(name + ": other sizes", share_of_others(one, two, {c_radius}) > 0.3);
   check(name + ": other places", share_of_others(one, two, {c_x, c_y, c_z}) > 0.9);
   check(name + ": the same again", first_particles(input, {general + "2"}) == two);
@@ -125,7 +125,7 @@ void test_turning(const std::string &name, const std::string &input, bool is_pro
   check(name + ": the same on any ranks", alone == two);
 }
 
-/// What a run would say of its seeds.
+/// The warnings that a run would print.
 std::string warnings(const std::string &input, const Overrides &overrides)
 {
   Problems problems;

@@ -1,4 +1,4 @@
-// Diameters drawn from every distribution have the shares, means and cut-offs that were asked for.
+// Diameters drawn from every distribution have the prescribed shares, means and cut-offs.
 
 #include <eunoe/core/random.h>
 
@@ -137,7 +137,7 @@ void test_weighting()
   double small = 0.;
   for (const double d : draw(p))
     small += d == smaller ? 1. : 0.;
-  // The shares of the number go with the inverse fifth power.
+  // The shares of the number are the given shares times the diameter to the power -5.
   const double share = 0.3 * 32. / (0.3 * 32. + 0.7);
   check_close("more fines", small / n, share, 4. * std::sqrt(share * (1. - share) / n));
 }
