@@ -1,6 +1,6 @@
-"""What a crash of the machine may leave of checkpoints: `restart = auto` continues from the newest one
-that is whole, with the same bits as a run left alone, and says so; good ones stay. Where none is
-whole it says so and touches nothing.
+"""Checkpoints as a crash of the machine may leave them: `restart = auto` continues from the newest
+intact one, with the same bits as an uninterrupted run, and says so; intact ones are kept. If none
+is intact, it says so and changes nothing.
 
 Usage: crash.py path/to/eunoe-particles folder
 """
@@ -28,7 +28,7 @@ Change = Callable[[Path], None]
 
 
 def cut(name: str, share: float) -> Change:
-    """Only the first part is there; a negative share counts bytes from the end."""
+    """Keeps only the first part of a file; a negative share counts bytes from the end."""
     def change(results: Path) -> None:
         data = (results / name).read_bytes()
         (results / name).write_bytes(data[:int(share) if share < 0 else int(share * len(data))])
@@ -36,7 +36,8 @@ def cut(name: str, share: float) -> Change:
 
 
 def zero_tail(name: str, length: int) -> Change:
-    """As a file system leaves a file whose length it knew and whose contents it had not written."""
+    """Leaves a file like a file system that had recorded its length but not written its
+    contents."""
     def change(results: Path) -> None:
         data = (results / name).read_bytes()
         kept = max(0, len(data) - length)
@@ -107,7 +108,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 def goes_on(reference: Case, stopped: Case, folder: Path, change: Change, ranks: int, step: int) -> None:
     case = crashed(stopped, folder, change)
-    # Before the first new checkpoint is complete, the old ones that are whole must stay.
+    # Until the first new checkpoint is complete, the intact old ones must stay.
     before = contents(case.results)
     short = subprocess.run(case.command(ranks, *AUTO, "simulation control/iteration end = 2110"),
                            text=True, check=False, capture_output=True)

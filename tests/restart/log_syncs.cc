@@ -1,5 +1,5 @@
-// Loaded before a program (LD_PRELOAD): writes the files that it brings to the disk and the names
-// that it gives them, in their order, to the file named in SYNC_LOG.
+// Loaded before a program (LD_PRELOAD): logs the program's calls of fsync and rename with the names
+// of the files, in their order, to the file named in SYNC_LOG.
 
 #include <cstdio>
 #include <cstdlib>

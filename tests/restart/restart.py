@@ -1,5 +1,5 @@
-"""A run gives the same bits on any number of ranks, however its work is shared out, and however
-often it is stopped and continued.
+"""A run gives the same bits on any number of ranks, with any load balancing, and however often it
+is stopped and continued.
 
 Usage: restart.py path/to/eunoe-particles folder
 """
@@ -28,16 +28,16 @@ DYNAMIC = (BALANCING + "load balance method = dynamic", BALANCING + "threshold =
            BALANCING + "dynamic check frequency = 200")
 OTHER_MESH = ("mesh/grid arguments = 3, 2, 1 : 0, 0, 0 : 10e-3, 8e-3, 4e-3 : true",)
 SPARSE = "model parameters/adaptive sparse contacts/"
-# Far too easily put to sleep for physics, so that there is much of it.
+# Particles fall asleep far more easily than is physical, so that many sleep.
 SLEEPY = (SPARSE + "enable adaptive sparse contacts = true", SPARSE + "rest time = 2e-4",
           SPARSE + "granular temperature threshold = 0.2", SPARSE + "check frequency = 20")
-# Particles come wherever there is none near a plane.
+# Particles are inserted where the mesh cells at a plane are empty.
 ON_PLANE = ("insertion info/insertion method = plane",
             "insertion info/insertion plane point = 0, 7e-3, 0",
             "insertion info/insertion plane normal vector = 0, 1, 0",
             "insertion info/insertion maximum offset = 1",
             "insertion info/insertion frequency = 2000")
-# Every law that acts across gaps, with what its contacts remember, and drag.
+# Every law that acts across a separation, with the memory of its contacts, and drag.
 PHYSICS = "lagrangian physical properties/"
 ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
             "model parameters/particle wall contact force method = JKR",
@@ -45,7 +45,7 @@ ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
             "model parameters/electrostatic charge/cut-off share = 0.2",
             PHYSICS + "particle type 0/surface charge density particles = 2e-5",
             "model parameters/drag/dynamic viscosity = 1e-3", "model parameters/drag/density = 10")
-# A background mesh that moves and pours out what is in it.
+# A background mesh that turns and pours out its particles.
 DRUM = str(Path(__file__).with_name("drum.prm"))
 BOUNDARY = "DEM boundary conditions/boundary condition 0/"
 POURED = (BOUNDARY + "type = outlet", BOUNDARY + "boundary id = 1",
@@ -62,7 +62,7 @@ def same(reference: Case, folder: Path, ranks: int, *settings: str) -> None:
 
 
 def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after: int) -> None:
-    """Stopped by a signal, continued on another number of ranks."""
+    """A run stopped by a signal continues on another number of ranks."""
     other = Case(reference.program, CASE, folder, [])
     longer = ["simulation control/iteration end = 10000000", *EVERY]
     process = other.start(ranks, *longer)
@@ -81,7 +81,7 @@ def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after:
 
 
 def write_failure(reference: Case, folder: Path) -> None:
-    """A checkpoint that cannot be written stops the run, and the one before is as it was."""
+    """A checkpoint that cannot be written stops the run, and the previous one stays intact."""
     other = Case(reference.program, CASE, folder, [])
     obstacle = other.results / "restart_000000005100.checkpoint.new"
     (obstacle / "full").mkdir(parents=True)
@@ -96,7 +96,8 @@ def write_failure(reference: Case, folder: Path) -> None:
 
 
 def locked_semaphore(program: str, folder: Path) -> None:
-    """A run that was killed while it opened a picture does not stop those after it."""
+    """The semaphore of a run that was killed while it opened a picture does not block later
+    runs."""
     name = f"left_behind_{os.getpid()}"
     left = Path(f"/dev/shm/sem.OMPIO_{name}_cells_00000.vtu")
     if not left.parent.is_dir():
@@ -123,7 +124,7 @@ def sleeping(program: str, folder: Path) -> None:
         other = Case(program, CASE, folder / str(ranks), list(SLEEPY))
         other.run(ranks, *settings)
         compare(reference, other, f"With sleep, on {ranks} ranks")
-    # Forces on solids are summed over sleepers, too, and must leave no trace in them.
+    # Forces on solids include those of sleepers; evaluating them must not change the sleepers.
     quiet = Case(program, CASE, folder / "no_forces", list(SLEEPY))
     quiet.run(1, "post-processing/solid forces/calculation = false")
     if quiet.dump.read_bytes() != reference.dump.read_bytes():
@@ -136,7 +137,8 @@ def sleeping(program: str, folder: Path) -> None:
 
 def continued(program: str, prm: str, folder: Path, settings: tuple[str, ...], stop: int, ranks: int,
               what: str) -> Case:
-    """Stopped on two ranks and continued, it gives the same bits as run without a stop, which is returned."""
+    """A run that is stopped on two ranks and continued gives the same bits as one without a stop,
+    which is returned."""
     reference = Case(program, prm, folder / "reference", list(settings))
     reference.run(1)
     other = Case(program, prm, folder / "restarted", list(settings))
@@ -153,7 +155,7 @@ def all_laws(program: str, folder: Path) -> None:
 
 
 def on_plane(program: str, folder: Path) -> None:
-    """The same bits where the places of insertion depend on the particles that are there."""
+    """The same bits where the places of insertion depend on the particles already present."""
     continued(program, CASE, folder, (*ON_PLANE, *COLLISIONS), 11111, 1, "With insertion on a plane")
 
 
@@ -187,7 +189,8 @@ def main(program: str, folder: Path) -> int:
     attempts.make("2 ranks, frequent", same, reference, folder / "2f", 2, *FREQUENT)
     attempts.make("2 ranks, dynamic", same, reference, folder / "2d", 2, *DYNAMIC)
     attempts.make("4 ranks, other mesh", same, reference, folder / "4", 4, *OTHER_MESH)
-    # Far more ranks than a machine may have cores take as long as all the others together.
+    # More ranks than a machine may have cores are slow: at full length this run would take as long
+    # as all the others together.
     brief = Case(reference.program, CASE, folder / "brief", ["simulation control/iteration end = 9000"])
     brief.run(1)
     attempts.make("8 ranks, dynamic", same, brief, folder / "8", 8, *DYNAMIC, *EVERY)

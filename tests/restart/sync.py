@@ -1,5 +1,6 @@
-"""What a restart relies on is on the disk before the index says so, so that a crash of the machine loses
-no more than one interval; and nothing waits for the disk at other times.
+"""All files that a restart needs are on the disk before the index names the checkpoint, so that a
+crash of the machine loses no more than one interval; at other times the run does not wait for the
+disk.
 
 Usage: sync.py path/to/eunoe-particles path/to/liblog-syncs.so folder
 """
