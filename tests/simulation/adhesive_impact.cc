@@ -1,6 +1,6 @@
-// Sticky bodies in motion, without damping. What a cycle of contact costs is known in closed form,
-// for the adhesion of Johnson, Kendall and Roberts (Thornton, Ning 1998) and for liquid bridges
-// (Willett et al. 2000): a body that comes with more bounces off with the rest, one that comes with
+// Adhesive bodies in motion, without damping. The work of a cycle of contact is known in closed
+// form, for the adhesion of Johnson, Kendall and Roberts (Thornton, Ning 1998) and for liquid
+// bridges (Willett et al. 2000): a body with more kinetic energy rebounds with the rest, one with
 // less sticks. A sphere hangs on up to the pull-off force 3/2 pi w R.
 
 #include "../spheres.h"
@@ -14,7 +14,7 @@ const double surface_energy = 0.05, tension = 0.01, share = 1e-3;
 struct Adhesion
 {
   std::string name, entries;
-  double time_step, work, reach; ///< work of a cycle (J) and distance at which it ends (m)
+  double time_step, work, reach; ///< work of a cycle (J) and separation at which it ends (m)
 };
 
 /// @param radius effective (m)
@@ -53,13 +53,13 @@ Scene scene(bool floor, const Adhesion &adhesion)
   s.particle.surface_energy = s.wall.surface_energy = surface_energy;
   s.spheres.resize(floor ? 1 : 2);
   s.time_step = adhesion.time_step;
-  // A skin that is less than the reach.
+  // A skin that is smaller than the range of the attraction.
   s.more = adhesion.entries + "subsection model parameters\nsubsection contact detection\n" +
            Scene::entry("neighborhood threshold", 1.0005) + "end\nend\n";
   return s;
 }
 
-/// Squared speed at which they part, 0 if they stick.
+/// Square of the relative speed at which they part, 0 if they stick.
 double square_after(Scene s, const Adhesion &adhesion, double speed)
 {
   const double touching = s.floor ? s.spheres[0].radius() : s.spheres[0].diameter;
@@ -82,12 +82,12 @@ void check_impact(const std::string &name, const Scene &s, const Adhesion &adhes
   check(name + "fast enough to part", square_after(s, adhesion, 1.02 * sticking) > 0.);
 }
 
-/// Gap to the plane of a sphere that was pulled by a share of the pull-off force.
+/// Separation of a sphere from the plane after a pull with a share of the pull-off force (m).
 double gap_after_pull(double pull)
 {
   const Material m;
   Scene s = scene(true, jkr(0.5e-3, m));
-  s.particle.restitution = s.wall.restitution = 0.; // whose damper is the strongest
+  s.particle.restitution = s.wall.restitution = 0.; // the strongest damping
   const double radius = s.spheres[0].radius();
   s.gravity = {0., 0., pull * 3. * M_PI * surface_energy * radius / s.mass(s.spheres[0])};
   s.spheres[0].x.z = radius - 1e-9;

@@ -1,6 +1,6 @@
 // Two equally charged spheres that approach each other slow down by the potential of the shifted
 // Coulomb force, turn back before they touch and leave with the speed with which they came. The
-// force is felt as soon as the gap is below its range, which exceeds the skin of the search.
+// force acts as soon as the separation is below its range, which exceeds the skin.
 
 #include "../spheres.h"
 

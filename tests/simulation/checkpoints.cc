@@ -1,4 +1,4 @@
-// When a checkpoint is due, what stops a run, and what is opened when it continues.
+// When a checkpoint is due, what stops a run, and which checkpoint is opened when it continues.
 
 #include <eunoe/core/files.h>
 #include <eunoe/simulation/checkpoints.h>
@@ -24,7 +24,7 @@ RestartParameters parameters(const std::string &restart)
   return p;
 }
 
-/// What is wrong with the start of a run of so many steps.
+/// Number of problems at the start of a run of so many steps.
 std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps)
 {
   Log log(MPI_COMM_WORLD, true);
@@ -53,7 +53,7 @@ EUNOE_MPI_TEST()
   p.minutes = 1e-9;
   check("by the clock, looked at rarely", !checkpoints.is_due(15) && checkpoints.is_due(16));
   p.minutes = 0.;
-  // One of the ranks is enough.
+  // A signal to one of the ranks is enough.
   if (is_first_rank())
     std::raise(SIGUSR1);
   MPI_Barrier(MPI_COMM_WORLD);

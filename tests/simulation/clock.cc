@@ -1,4 +1,4 @@
-// The clock of a run: steps, their time, the end, and how it goes on from a checkpoint.
+// The clock of a run: steps, their time, the end, and how it continues from a checkpoint.
 
 #include <eunoe/engine/clock.h>
 

@@ -1,6 +1,6 @@
-// DMT cohesion in motion. The attraction is felt as soon as the gap is below its range, also where
-// the range exceeds the skin of the search, with the work of A R / (6 d^2); the pull-off force is
-// 2 pi g R (Meier et al. 2019).
+// DMT cohesion in motion. The attraction acts as soon as the separation is below its range, also
+// where the range exceeds the skin, and does the work of the force A R / (6 d^2); the pull-off
+// force is 2 pi g R (Meier et al. 2019).
 
 #include "../spheres.h"
 
@@ -16,7 +16,7 @@ Scene scene(bool floor)
   s.dmt = true;
   s.floor = floor;
   s.particle.friction = s.particle.rolling_friction = 0.5;
-  s.particle.restitution = 0.; // whose damper is the strongest
+  s.particle.restitution = 0.; // the strongest damping
   s.particle.surface_energy = surface_energy;
   s.particle.hamaker_constant = hamaker;
   s.wall = s.particle;
@@ -40,7 +40,7 @@ void check_approach(const std::string &name, bool floor)
   const double cut_off = plateau / std::sqrt(0.1);
   check(name + "range above the skin", cut_off > 10e-6);
 
-  // Approach with slip and spin, which nothing may touch before contact.
+  // Approach with slip and spin, which must not change before contact.
   const double speed = 0.02;
   first.v = {0.1, 0., -speed};
   first.w = {100., 200., 0.};
@@ -70,12 +70,12 @@ void check_approach(const std::string &name, bool floor)
   });
   check(name + "they meet", arrived);
   check_close(name + "nothing before the range", early / (pull_off * plateau), 0., 1e-12);
-  // One step within the jump at the cut-off.
+  // The tolerance allows for one step across the jump of the force at the cut-off.
   check_close(name + "kinetic energy is the work of the attraction", worst, 0., 1e-3);
   check(name + "neither friction nor torque before contact", kept);
 }
 
-/// A sphere under the plane's attraction, pulled away by gravity.
+/// Separation at the end of a sphere that the plane attracts and gravity pulls away (m).
 double gap_after_pull(double share)
 {
   Scene s = scene(true);

@@ -1,6 +1,6 @@
 // Drag of a still gas. Stokes: the speed decays as exp(-t/tau) with tau = m / (6 pi mu R), and a
 // falling sphere approaches g tau. Schiller and Naumann: a sphere falls with the speed at which
-// their drag, 1/2 rho v^2 pi R^2 24/Re (1 + 0.15 Re^0.687), carries its weight.
+// their drag, 1/2 rho v^2 pi R^2 24/Re (1 + 0.15 Re^0.687), equals its weight.
 
 #include "../spheres.h"
 
@@ -69,7 +69,7 @@ EUNOE_MPI_TEST()
                         norm(now.x - tau * (1. - decayed) * v0) / (tau * norm(v0))});
       spins = spins && now.w == w0;
     });
-    // The force takes the velocity of the middle of the step for that of its end.
+    // The drag at the end of a step is that of the velocity in the middle of the step.
     check_close("Stokes: velocity and way", worst, 0., 1e-3);
     check("Stokes: spin is kept", spins);
   }

@@ -47,7 +47,7 @@ void check_impact(const std::string &name, Scene scene, double mass, double radi
   check_relative(name + ": published overlap", deepest, published.overlap, half_digit);
   check_relative(name + ": published force", strongest, published.force, half_digit);
   check_relative(name + ": published duration", duration, published.duration, half_digit);
-  // Velocity Verlet errs by a few squares of the step over the duration.
+  // The relative error of velocity Verlet is a few times (step / duration)^2.
   const double second_order = 1e-6;
   check_relative(name + ": overlap", deepest, hertz.overlap(), second_order);
   check_relative(name + ": force", strongest, hertz.force(), second_order);

@@ -23,8 +23,7 @@ Scene box(double restitution, double friction)
   return s;
 }
 
-/// Kinetic, rotational, potential and Hertz's elastic energy (J); what Mindlin's spring holds is
-/// left out.
+/// Kinetic, rotational, potential and Hertz's elastic energy (J), without that of Mindlin's spring.
 struct Energy
 {
   double total = 0., elastic = 0.;
@@ -52,15 +51,16 @@ struct Energy
 
 struct Outcome
 {
-  double drift = 0., gain = 0.; ///< largest change and growth from step to step, over the start
+  // Energies over that at the start.
+  double drift = 0., gain = 0.; ///< largest change since the start, largest growth in a step
   double gain_apart = 0.;       ///< largest growth from one time without contact to the next
-  double left = 1.;             ///< energy in the end, over the start
+  double left = 1.;             ///< at the end
   int contacts = 0;
 };
 
 Outcome bounce(const Scene &scene)
 {
-  // Energy counts from the floor, as otherwise its share would depend on the place of the box.
+  // Potential energy counts from the floor, or relative changes would depend on the box's place.
   double floor = 0.;
   for (const Sphere &s : scene.spheres)
     floor += scene.mass(s) * scene.gravity.z * half;
@@ -86,7 +86,7 @@ Outcome bounce(const Scene &scene)
   return outcome;
 }
 
-/// A sphere against the floor, without damping, at some angle from the normal.
+/// A sphere hits the floor, without damping, at angles from normal to grazing.
 void check_grazing(double friction)
 {
   Scene s;

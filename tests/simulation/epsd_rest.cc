@@ -1,5 +1,5 @@
 // A sphere with EPSD's rolling resistance on a plane rolls to rest and stays where it is (Ai et al.
-// 2011); on the way there its dashpot is felt as the formulas for either inertia say.
+// 2011); on the way its dashpot brakes it as the formulas for either inertia predict.
 
 #include "rolling_sphere.h"
 

@@ -1,4 +1,4 @@
-// Particles that go wrong: what is found, what is said, and what is done, on any number of ranks.
+// Faults of particles: which are found, the message, and the reaction, on any number of ranks.
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 
@@ -13,7 +13,7 @@ using namespace test;
 
 namespace {
 
-/// Three spheres of 1 mm in a box of 20 mm; the first does as told.
+/// Three spheres of 1 mm in a box of 20 mm; the first has the given velocity.
 std::string input(const std::string &velocity, const std::string &more = "")
 {
   return box_input(1e-5, 2e-3,
@@ -47,8 +47,8 @@ void expect(const std::string &name, const std::string &message,
     check(name, message.find(part) != std::string::npos, "got '" + message + "'");
 }
 
-/// The checkpoint of the fault holds the state that the sentence names, and the ones before it
-/// stay: the run continues from them to the same fault, or past it where that is allowed.
+/// The checkpoint of the fault holds the state that the message names, and earlier checkpoints are
+/// kept: the run continues from them to the same fault, or past it where that is allowed.
 void examine_checkpoints()
 {
   const auto text = [](const std::string &overlap, const std::string &restart) {
@@ -67,7 +67,7 @@ void examine_checkpoints()
   check("step of the fault", fault.head.at("clock").at("step") == step);
   const Rows rows = fault.rows("particles");
   std::vector<std::string> named;
-  constexpr unsigned int place = 7; // of the position in a row, behind what does not change
+  constexpr unsigned int place = 7; // of the position in a row, after the constant values
   for (std::size_t row = 0; row < rows.size(); ++row)
     named.push_back("particle " + format(rows[row][0]) + " at (" + format(rows[row][place]) + ", " +
                     format(rows[row][place + 1]) + ", " + format(rows[row][place + 2]) + ") m");
@@ -92,8 +92,8 @@ void examine_checkpoints()
   check("past the fault", continued == particle_table(*alone) && continued.size() == 3);
 }
 
-/// Batches of four that leave the box at once through its wall. A search looks for them at every
-/// 50th step only, so that they are lost when the next batch comes, every ten steps.
+/// Batches of four that leave the box at once through its wall. Searches come only every 50 steps,
+/// so the loss is found when the next batch is inserted, every ten steps.
 std::string batches(const std::string &action)
 {
   return box_input(

@@ -1,5 +1,6 @@
-// A sphere that EPSD's spring holds on a slope. With its memory it stays; each time that the
-// contact forgets, it rolls on until a new spring holds it: as far as at the start.
+// A sphere that EPSD's spring holds on a slope. As long as the contact keeps its memory, the sphere
+// stays; each time the memory is erased, it rolls on as far as at the start, until a new spring
+// holds it.
 
 #include "rolling_sphere.h"
 
@@ -9,7 +10,7 @@ namespace {
 
 constexpr double slope = 0.5 * rolling_friction;
 
-/// Way down the slope at the multiples of an interval (m).
+/// Distance down the slope at multiples of an interval of steps (m).
 std::vector<double> ways(unsigned int interval, const std::string &more)
 {
   Scene s = rolling_scene("epsd", slope, 1.);

@@ -1,5 +1,5 @@
-// When particles are inserted, which ones make room for them, and how the inserter goes on from a
-// checkpoint.
+// When particles are inserted, which ones are removed to make room for them, and how the inserter
+// continues from a checkpoint.
 
 #include <eunoe/simulation/inserter.h>
 
@@ -10,7 +10,7 @@ using namespace test;
 
 namespace {
 
-/// Supplies a particle an event, three times.
+/// Supplies one particle at each of three events.
 class Drops : public Insertion
 {
 public:

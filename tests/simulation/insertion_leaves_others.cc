@@ -1,5 +1,5 @@
-// Particles that are inserted far away leave those that touch as they are: a damped collision with
-// friction, rolling resistance and cohesion gives the same bits with and without the event.
+// Inserting a particle far away does not disturb particles in contact: a damped collision with
+// friction, rolling resistance and cohesion gives the same bits with and without the insertion.
 
 #include "../spheres.h"
 

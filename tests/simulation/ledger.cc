@@ -1,4 +1,5 @@
-// What came and went is the same after a restart, however many ranks had counted it.
+// The ledger of particles that came and went is the same after a restart, however many ranks had
+// counted them.
 
 #include <eunoe/engine/ledger.h>
 

@@ -1,4 +1,4 @@
-// Head-on impact with linear springs: a damped oscillator from touch to separation. Duration,
+// Head-on impact with linear springs: a damped oscillator from first to last touch. Duration,
 // largest overlap and restitution in closed form, at any speed.
 
 #include "../spheres.h"

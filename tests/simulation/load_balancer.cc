@@ -1,4 +1,4 @@
-// At which searches the cells are shared out anew, also after a restart.
+// At which searches the load is balanced, also after a restart.
 
 #include <eunoe/engine/load_balancer.h>
 
@@ -11,8 +11,8 @@ namespace {
 
 unsigned int n_asked = 0;
 
-/// Steps at which it shares out if there is a search every ten steps.
-/// @param restart step after which another one goes on, from what this one saves; 0: none
+/// Steps at which the load is balanced if there is a search every ten steps.
+/// @param restart step after which a new balancer continues from the saved state; 0: none
 std::string steps(const LoadBalancingParameters &parameters, double imbalance,
                   unsigned long long restart = 0)
 {

@@ -9,7 +9,7 @@
 
 namespace test {
 
-/// A floor that rises along z from a moment on, never turning.
+/// A floor that rises along z from a given time on.
 class Rise : public Motion
 {
 public:

@@ -1,6 +1,6 @@
-// Oblique and spinning impacts that slide throughout: friction is mu times the normal impulse, in
-// the direction against the slip, whose torque acts at the radius (Chung and Ooi 2011, tests 4, 6
-// and 7). These decide all signs of slip, friction and torque.
+// Oblique and spinning impacts that slide throughout: the impulse of friction is mu times the
+// normal impulse, against the slip, and its lever arm is the radius (Chung and Ooi 2011, tests 4, 6
+// and 7). They determine all signs of slip, friction and torque.
 
 #include "../spheres.h"
 
@@ -8,8 +8,8 @@ using namespace test;
 
 namespace {
 
-// The impulse of friction is mu times that of |F_n|, and the damper makes F_n attractive in the
-// end: for e = 0.98 that adds some 1e-4 of the impulse.
+// The impulse of friction is mu times that of |F_n|, and damping makes F_n attractive at the end of
+// the impact: for e = 0.98 that adds some 1e-4 of the impulse.
 const double tolerance = 5e-4;
 const double speed = 3.9, radius = 2.5e-3;
 
@@ -49,7 +49,7 @@ void oblique(const std::string &metal, double young, double poisson, double dens
       s.limit_force = limit_force;
       const double angle = degrees * M_PI / 180., v_n = speed * std::cos(angle),
                    v_t = speed * std::sin(angle);
-      // Into the plane in a direction that is no axis.
+      // The tangential direction is not along an axis.
       const Vec3 along = {0.6, -0.8, 0.};
       s.spheres[0].v = v_t * along - Vec3{0., 0., v_n};
       const Sphere after = collide(s, v_n).at(0);
@@ -89,8 +89,8 @@ void spinning_pair(const std::string &name, const Vec3 &normal, const Vec3 &turn
   s.spheres = {{-radius * normal, v * normal, spin * turn, 2. * radius},
                {radius * normal, -v * normal, {}, 2. * radius}};
   std::vector<Sphere> after = collide(s, 2. * v);
-  // The first one's surface pushes the second one along, and both are left with less spin about
-  // the same axis. The line of the centres turns by a thousandth while they touch.
+  // The surface of the first drags that of the second along, and both spins decrease by the same
+  // amount. The line of the centres turns by a thousandth while they touch.
   const double pair_tolerance = 1e-3;
   const Vec3 kick = mu * (1. + e) * v * cross(turn, normal);
   check_relative(name + "velocity of the first", dot(after[0].v, kick), -dot(kick, kick),
@@ -115,8 +115,8 @@ void spinning_pair(const std::string &name, const Vec3 &normal, const Vec3 &turn
   check_relative(name + "restitution", dot(after[1].v - after[0].v, normal), v, 1e-3);
 }
 
-/// Two unlike spheres meet off their line and slide throughout: friction takes mu (1 + e) of the
-/// normal momentum along the slip, and each turns by its own radius times that over its inertia.
+/// Oblique impact of two unlike spheres that slide throughout: the impulse of friction, against the
+/// slip, is mu (1 + e) times the normal momentum; times radius over inertia it changes each spin.
 void unlike_pair()
 {
   const double mu = 0.1, e = 0.98, v_n = 1., v_t = 1.;

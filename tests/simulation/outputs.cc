@@ -17,8 +17,8 @@ ControlParameters control()
   return c;
 }
 
-/// Steps of 0.1 s of which there are pictures.
-/// @param restart step after which another one goes on, from what this one saves
+/// Steps of 0.1 s at which pictures are due.
+/// @param restart step after which a new object continues from the saved state
 std::string pictures(const ControlParameters &c, unsigned long long restart = 0)
 {
   Timers timers;

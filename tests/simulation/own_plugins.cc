@@ -1,6 +1,6 @@
 // A load, an integrator, an insertion method, a size distribution and a motion of solids, each with
-// an entry of its own and each in one piece of code, which names nothing outside of itself: here
-// they all stand in the test. A particle that they make and move is where it must be.
+// an entry of its own and each in one piece of code that no other code names: all are in this file.
+// A particle that they insert and move is at the expected place.
 
 #include <eunoe/core/declare.h>
 
@@ -10,7 +10,7 @@ using namespace test;
 
 namespace {
 
-/// The same acceleration of all along x.
+/// The same acceleration of all particles along x.
 class Wind : public Load
 {
 public:
@@ -46,7 +46,7 @@ private:
 const LoadRegistry::Registration wind(loads(), "wind",
                                       [] { return std::make_unique<WindSection>(); });
 
-/// Euler's method in syrup: particles go by a share of their velocities.
+/// Euler's method, but particles move by only a share of their velocities.
 class Syrup : public Integrator
 {
 public:
@@ -89,7 +89,7 @@ private:
 const IntegratorRegistry::Registration syrup(integrators(), "syrup",
                                              [] { return std::make_unique<SyrupSection>(); });
 
-/// One particle in one place.
+/// One particle at a given place.
 class Single : public Insertion
 {
 public:
@@ -183,7 +183,7 @@ private:
 const SizeDistributionRegistry::Registration pair(size_distributions(), "pair",
                                                   [] { return std::make_unique<PairSection>(); });
 
-/// To a place and back, all of a sudden.
+/// Jumps from its centre to the opposite point after 1 s.
 class Flicker : public Motion
 {
 public:
@@ -219,7 +219,7 @@ private:
 const MotionRegistry::Registration flicker(solid_motions(), "flicker",
                                            [] { return std::make_unique<FlickerSection>(); });
 
-/// @param values that are given to the entries
+/// An input text that uses all of them, with these values of their entries.
 std::string input(const std::string &share, const std::string &height, const std::string &other,
                   const std::string &method = "single")
 {
@@ -243,7 +243,7 @@ std::string problems_of(const std::string &text)
   return all;
 }
 
-/// The solid's motion, or what is wrong with it.
+/// Place of the solid at a time, or what is wrong with its entries.
 std::string moves(const std::string &entries, double time)
 {
   SolidObjectParameters solids(1);

@@ -1,5 +1,5 @@
-// What is done about particles that go wrong, decided by all ranks together, and the warning of
-// contacts that are too stiff.
+// The reaction to faults of particles, which all ranks decide together, and the warning of contacts
+// that are too stiff.
 // Reference: half period of an oscillator, pi over the root of stiffness over mass.
 
 #include <eunoe/engine/particle_guard.h>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double dt = 1e-3;
 
-/// What is found of the particles 10, 11, ... of the first rank and 20, 21, ... of the second.
+/// A guard of the particles 10, 11, ... on the first rank and 20, 21, ... on the second.
 struct Trial
 {
   explicit Trial(const Domain &domain) : domain(domain), materials({Material()}, 1)
@@ -51,7 +51,7 @@ EUNOE_MPI_TEST()
   InspectionResult result = trial.judge({});
   check("nothing is wrong", !result.stops && !result.warns && result.number == 0);
 
-  // On the last rank only, where the smaller id stands behind the larger.
+  // Faults on the last rank only; the particle with the smaller id comes second.
   Faults lost;
   if (is_last)
     lost.lost = {{2, "is lost"}, {0, "is lost, too"}};
@@ -74,7 +74,7 @@ EUNOE_MPI_TEST()
   check("squeezed ones stop the run in any case", result.stops && result.number == 1);
   check("and are named", result.first == "particle 11 is squeezed", result.first);
 
-  // Ten steps a half period, and a little less, on one rank.
+  // A half period of about ten steps, on one rank.
   ParticleGuard guard = trial.guard();
   const auto stiffness = [&](double half_period) {
     return is_last ? M_PI * M_PI / (half_period * half_period) : 0.;

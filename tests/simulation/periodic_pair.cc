@@ -1,4 +1,5 @@
-// A pair that meets across the periodic face of the domain moves as one that meets in its middle.
+// A pair that collides across a periodic face of the domain moves as one that collides in its
+// middle.
 //
 // The domain spans [4, 8] in units of a power of two, where all coordinates are multiples of the
 // same smallest number; so the shift between both places is exact and the bits must be the same.
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double unit = 0x1p-9;
 
-/// @param spread of the spheres from where they meet, over their radius
+/// @param spread initial distance of the spheres from where they meet, over their radius
 Scene collision(double shift, unsigned int axis, double spread = 1.5)
 {
   Scene s = dissipative_scene();
@@ -42,7 +43,7 @@ Scene collision(double shift, unsigned int axis, double spread = 1.5)
   return s;
 }
 
-/// Difference of two positions but for whole periods.
+/// Length of the difference of two positions, less whole periods.
 double distance(Vec3 d, unsigned int axis)
 {
   d[axis] = std::remainder(d[axis], 4. * unit);
@@ -76,8 +77,8 @@ EUNOE_MPI_TEST()
       }
     }
 
-    // Where a centre passes the face it is wrapped at the next search, and the memory of the
-    // contact must go along. Beyond the face other bits are rounded.
+    // A centre that passes the face is wrapped at the next search, and the memory of the contact
+    // must be kept. Beyond the face coordinates are rounded differently.
     for (const std::string search : {"constant", "dynamic"}) {
       Scene crossing = collision(2. * unit, axis, 0.97), straight = collision(0., axis, 0.97);
       for (Scene *s : {&crossing, &straight}) {

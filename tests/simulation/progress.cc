@@ -1,4 +1,4 @@
-// When the user is told how far a run is, and what is counted of its work.
+// When the progress of a run is reported, and what is counted of its work.
 
 #include <eunoe/simulation/progress.h>
 

@@ -1,7 +1,7 @@
 // A run gives the same bits on any number of ranks, with and without load balancing: a cohesive
 // powder rains into a periodic box, is stirred by a turning paddle, slides on a moving floor and
-// leaves over an outlet, while more is inserted. The same with every law that acts across gaps and
-// with drag. Every rank runs the case alone first, then all run it together.
+// leaves through an outlet, while more is inserted. The same with every law that acts across a
+// separation and with drag. The first rank runs the case alone, then all ranks run it together.
 
 #include "../tests.h"
 
@@ -109,7 +109,7 @@ struct Result
   unsigned long long balances;
 };
 
-/// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to be felt.
+/// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to matter.
 const char *const all_laws = R"(
     subsection lagrangian physical properties
       subsection particle type 0
@@ -156,7 +156,6 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
 
 void compare(const std::string &laws, const std::vector<const char *> &balancings)
 {
-  // Ranks that run alone share the folder of the results but not its files' names.
   Result alone;
   if (is_first_rank())
     alone = run(laws, "set load balance method = none", MPI_COMM_SELF);

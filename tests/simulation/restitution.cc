@@ -1,9 +1,9 @@
-// The prescribed restitution comes back from pairs and from walls, at any speed and any ratio of
+// Impacts of pairs and on walls have the prescribed restitution, at any speed and any ratio of
 // sizes, and the overlap is that of the damped impact (Tsuji 1992; Chung and Ooi 2011, test 3).
 //
 // For e = 0 the damping is critical: the overlap of the oscillator in `Impact` is then
-// y = v t exp(-t / t_0). It ends never; the speed of rebound rises to exp(-2) of that of impact and
-// from there falls to zero, with the overlap tending to zero from above.
+// y = v t exp(-t / t_0). The contact never ends; the speed of rebound rises to exp(-2) of that of
+// impact and then falls to zero, while the overlap tends to zero from above.
 
 #include "../spheres.h"
 

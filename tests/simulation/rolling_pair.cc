@@ -65,9 +65,9 @@ void check_viscous()
                  momentum(a, b), 1e-12);
 }
 
-/// One short step of two unlike spheres that overlap and turn: EPSD's spring is not yet there, its
-/// dashpot is 2 eta_r sqrt(I_r k_r) with k_r = 2.25 k_n (mu_r R_e)^2, where I_r has 7/5 m R^2 of
-/// each.
+/// One short step of two unlike spheres that overlap and turn: EPSD's spring is not loaded yet, its
+/// dashpot is 2 eta_r sqrt(I_r k_r) with k_r = 2.25 k_n (mu_r R_e)^2, where I_r is made of 7/5 m
+/// R^2 of both.
 void check_epsd_dashpot()
 {
   Scene s;

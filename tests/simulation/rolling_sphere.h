@@ -32,7 +32,7 @@ inline Scene rolling_scene(const std::string &rolling, double slope = 0.,
   return s;
 }
 
-/// Spin about the axis up to the first time, and at the end.
+/// Spin about the axis at the time @p first and at the end.
 inline std::array<double, 2> spins(const Scene &scene, double first)
 {
   std::array<double, 2> spin = {};

@@ -1,5 +1,5 @@
-// When contacts are searched: as soon as two bodies together may have gone the allowed share of the
-// skin, on whatever rank they are.
+// When contacts are searched: as soon as two bodies together may have moved by the allowed share of
+// the skin, on whatever rank they are.
 
 #include <eunoe/engine/search_criterion.h>
 

@@ -1,5 +1,5 @@
-"""A settled bed of 20,000 particles stays at rest: loaded with forgotten contacts, it moves by far
-less than a particle's size and loses nobody.
+"""A settled bed of 20,000 particles stays at rest: read without the memory of its contacts, it
+moves by far less than a particle's size and loses no particle.
 
 Usage: settled_bed.py path/to/eunoe-particles bed.csv.gz folder
 The bed has the columns diameter, x, y, z (um).
@@ -42,12 +42,12 @@ def main() -> int:
         shift[2] -= period * round(shift[2] / period)
         moved.append(sum(s * s for s in shift) ** 0.5)
     moved.sort()
-    # The friction springs start relaxed, so the bed sags a little before they carry, and some that
-    # lie on the surface roll.
+    # The friction springs start relaxed, so the bed sags a little before they carry load, and some
+    # particles on the surface roll.
     assert moved[len(moved) // 2] < 0.2e-6, f"half of all moved by {1e6 * moved[10000]:.2f} um"
     assert moved[-20] < 5e-6, f"one in a thousand moved by {1e6 * moved[-20]:.2f} um"
     assert moved[-1] < 50e-6, f"a particle moved by {1e6 * moved[-1]:.2f} um"
-    weight_work = 1.529e-5 * 9.81 * 70e-6  # of the whole bed falling by one particle
+    weight_work = 1.529e-5 * 9.81 * 70e-6  # of the whole bed falling by one diameter
     assert summary["kinetic_energy"] < 1e-2 * weight_work, "the bed does not rest"
     print("ok")
     return 0

@@ -1,10 +1,9 @@
-// Sleeping particles (adaptive sparse contacts) wake in time: whatever stirs a bed at rest, it
-// answers as if nobody had slept.
+// Sleeping particles (adaptive sparse contacts) wake in time: whatever disturbs a bed at rest, it
+// responds as if no particle had slept.
 //
-// First a few grains in order, whose motion is no chaos, so that each must come to the same place
-// as without sleep, and to where a formula or the solid that moves it says. Then a bed of some 130
-// grains, which a difference however small sends other ways: it is compared while that is still
-// small.
+// First a few grains in order, whose motion is not chaotic: each must come to the same place as
+// without sleep, and to the place that a formula or the moving solid determines. Then a bed of some
+// 130 grains, whose motion is chaotic: it is compared while the differences are still small.
 
 #include "../tests.h"
 
@@ -14,7 +13,8 @@ using namespace test;
 
 namespace {
 
-/// The plate lies clear of the bottom of the mesh, which is a wall, too (m).
+/// Time of the event (s), diameter of most grains, and height of the plate over the bottom of the
+/// mesh, which is a wall, too (m).
 constexpr double event = 0.2, diameter = 0.9e-3, floor_height = 1e-3;
 
 /// A horizontal pull that begins at the event, as if gravity tilted.
@@ -50,7 +50,7 @@ struct Grain
 };
 
 /// A plate of 8 mm under a trough 6 mm long that is periodic in z, a blade beside it, and what
-/// stirs what lies there.
+/// disturbs the grains.
 struct Story
 {
   std::string name;
@@ -60,7 +60,7 @@ struct Story
   double end = 0.3;
 };
 
-/// Grains in rows and layers, slightly out of order, that rain on the plate.
+/// Grains in rows and layers, slightly out of order, that fall on the plate.
 std::vector<Grain> bed(double width = 6e-3)
 {
   std::vector<Grain> grains;
@@ -73,7 +73,7 @@ std::vector<Grain> bed(double width = 6e-3)
   return grains;
 }
 
-/// One on the other.
+/// Grains on top of each other.
 std::vector<Grain> column(unsigned int n)
 {
   std::vector<Grain> grains;
@@ -140,7 +140,7 @@ using Places = std::vector<Vec3>;
 struct Course
 {
   Places before, soon, end; ///< of all grains at the event, 10 ms later, and at the end (m)
-  double asleep = 0.;       ///< share just before the event
+  double asleep = 0.;       ///< share of sleepers just before the event
 };
 
 Course run(const Story &story, bool sleep)
@@ -172,8 +172,8 @@ double largest_difference(const Places &a, const Places &b)
 }
 
 /// Runs a story with sleep and without and compares all grains.
-/// @param n_flying grains that are no part of what sleeps
-/// @param check_end looks at what came of it
+/// @param n_flying number of grains that fly and so cannot sleep
+/// @param check_end further checks of a course
 void tell(const Story &story, unsigned int n_flying, double tolerance,
           const std::function<void(const Course &, bool)> &check_end = {})
 {
@@ -193,11 +193,11 @@ void tell(const Story &story, unsigned int n_flying, double tolerance,
                 largest_difference(course[0].end, course[1].end) / diameter, 0., tolerance);
 }
 
-// Who falls asleep loses its last velocity, up to 0.3 mm/s, and stays some 1e-4 grains from where
-// it would have come to rest; nothing in these stories makes that grow.
+// A grain that falls asleep loses its last velocity, up to 0.3 mm/s, and stays some 1e-4 diameters
+// from where it would have come to rest; nothing in these stories makes that distance grow.
 constexpr double regular = 1e-3;
 
-/// Of a grain on the floor.
+/// Height of the centre of a grain on the plate (m).
 const double height = floor_height + 0.5 * diameter;
 
 void test_stone()
@@ -205,9 +205,10 @@ void test_stone()
   Story stone;
   stone.name = "a stone on a column";
   stone.grains = column(4);
-  stone.grains.push_back({2e-3, 12e-3, 1.5e-3, 0.981, 1.3e-3}); // comes back at the event
-  // In the half millisecond between two looks the blow runs further down than the two rings of
-  // those who are awake, and sleepers do not give way to it; the stone bounces a little otherwise.
+  stone.grains.push_back({2e-3, 12e-3, 1.5e-3, 0.981, 1.3e-3}); // falls back at the event
+  // In the half millisecond between two checks of who sleeps, the impact travels further down than
+  // the two rings of awake grains, and sleepers do not yield; so the stone bounces a little
+  // differently.
   tell(stone, 1, 0.05);
 }
 
@@ -234,7 +235,7 @@ void test_blade()
   spreader.blade = "if(t>0.2, 0.03, 0); 0; 0";
   spreader.blade_bottom = "1.1e-3";
   tell(spreader, 0, 10. * regular, [&](const Course &c, bool) {
-    // The blade stands at 2 mm in the end.
+    // The blade stands at 2 mm at the end.
     check(spreader.name + ": none is in the blade",
           c.end[0].x > 2e-3 + (0.5 - regular) * diameter && c.end[1].x > c.end[0].x &&
               c.end[2].x > c.end[1].x);
@@ -266,8 +267,8 @@ void test_tilt()
   tilt.rolling = "none";
   tilt.end = event + 2e-2;
   tell(tilt, 0, 0., [&](const Course &c, bool sleep) {
-    // A load is looked at with the sleepers, 50 steps after the event here. The spring of the
-    // contact takes some 1e-3 of the way.
+    // A change of a load is noticed at the next check of who sleeps, here 50 steps after the event.
+    // The spring of the contact shortens the path by some 1e-3.
     const double time = 2e-2 - (sleep ? 50e-5 : 0.);
     check_relative(tilt.name + ": it rolls", c.end[0].x - c.before[0].x,
                    0.5 * 5. / 7. * 8. * time * time, 5e-3);
@@ -297,7 +298,7 @@ void test_bed(const Story &story)
   };
   const double far = norm(moved(awake, &Course::end));
   check(story.name + ": the bed moves", far > 0.02 * diameter, format(far) + " m");
-  // A bed that does not answer is off by all that the other one moves.
+  // If the sleeping bed did not respond, the difference would be all that the other one moves.
   check_close(story.name + ": soon after",
               norm(moved(asleep, &Course::soon) - moved(awake, &Course::soon)) / far, 0., 0.02);
 }
@@ -327,7 +328,7 @@ EUNOE_MPI_TEST()
 
   Story stone = still;
   stone.name = "a stone falls";
-  stone.grains.push_back({3e-3, 12e-3, 1.5e-3, 0.981, 1.3e-3}); // comes back at the event
+  stone.grains.push_back({3e-3, 12e-3, 1.5e-3, 0.981, 1.3e-3}); // falls back at the event
   test_bed(stone);
   Story plate = still;
   plate.name = "the plate starts to move";

@@ -1,5 +1,5 @@
-// When it is looked at who sleeps, and what counts as having stirred since the last look, also
-// after a restart.
+// When it is checked who sleeps, and what counts as a disturbance since the last check, also after
+// a restart.
 
 #include <eunoe/engine/sleeper.h>
 
@@ -10,7 +10,7 @@ using namespace test;
 
 namespace {
 
-/// A load that changes at a moment.
+/// A load that changes at a given time.
 class Gust : public Load
 {
 public:
@@ -23,8 +23,8 @@ private:
   const double moment;
 };
 
-/// What a sleeper says of steps of 1 s with a floor that begins to rise at 15 s and a gust at 25 s,
-/// with a check frequency of 10.
+/// The checks of a sleeper and the disturbances that they find, in steps of 1 s, with a floor that
+/// begins to rise at 15 s, a gust at 25 s and a check frequency of 10.
 std::string looks(unsigned long long restart)
 {
   SparseContactParameters parameters;

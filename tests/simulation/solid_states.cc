@@ -1,6 +1,6 @@
-// The solids of a run: where they are, how far they have gone since the last search, what particles
-// do to them on all ranks, and their return from a checkpoint.
-// Reference: the way of a steady motion.
+// The solids of a run: where they are, how far they have moved since the last search, the loads of
+// the particles on all ranks, and their state after a restart.
+// Reference: the path of a steady motion.
 
 #include <eunoe/engine/moving_solids.h>
 

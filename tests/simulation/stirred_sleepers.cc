@@ -1,7 +1,7 @@
-// What sleeps must answer in time to what comes from outside: a plate that reaches a grain which
-// has drifted since the search, a plate that starts to move between two looks at who sleeps, and
-// the end of a neighbour. References: collisions with a wall that moves (a grain at rest leaves an
-// elastic one with twice its speed), free fall, and the same without sleep.
+// Sleepers must respond in time to disturbances: a plate that reaches a grain which has drifted
+// since the search, a plate that starts to move between two checks of who sleeps, and the loss of a
+// neighbour. References: collisions with a wall that moves (a grain at rest leaves an elastic one
+// with twice the speed of the wall), free fall, and the same case without sleep.
 
 #include "../spheres.h"
 
@@ -40,8 +40,8 @@ std::size_t n_asleep(Simulation &simulation)
   return n;
 }
 
-/// A grain drifts towards a plate by 0.4 of the skin and falls asleep 0.3 mm above it; the two come
-/// together before another search would have been due for the plate's way alone.
+/// A grain drifts towards a plate by 0.4 of the skin and falls asleep 0.3 mm above it; the two
+/// touch before the displacement of the plate alone would make another search due.
 Scene drifting(const std::string &integration, bool sleep)
 {
   Scene scene;
@@ -49,7 +49,7 @@ Scene drifting(const std::string &integration, bool sleep)
   scene.time_step = 1e-6;
   scene.time_end = 0.05;
   Sphere grain;
-  // Beyond the skin of 0.5 mm, so that it is no candidate at the first search.
+  // Beyond the skin of 0.5 mm, so that the first search does not list the pair.
   grain.x = {0.1e-3, 0.2e-3, 0.505e-3 + grain.radius()};
   grain.v.z = -7.5e-3;
   scene.spheres = {grain};
@@ -59,7 +59,7 @@ Scene drifting(const std::string &integration, bool sleep)
   return scene;
 }
 
-/// The particle that came last, wherever it is.
+/// The row of the particle with the highest id, which may be on any rank.
 std::vector<double> last_of(Simulation &simulation)
 {
   return particle_table(simulation).back();
@@ -76,8 +76,8 @@ void test_drift(const std::string &integration)
         asleep = n_asleep(simulation);
     });
     check(name + "it " + (sleep ? "sleeps" : "is awake"), asleep == (sleep ? 1 : 0));
-    // Asleep it has lost its drift, with which it meets the plate otherwise. With a hundred steps a
-    // contact the error is some 1e-4 of velocity Verlet and some 1e-2 of Euler.
+    // A sleeper has lost its drift, with which a grain that is awake meets the plate. With a
+    // hundred steps a contact the error is some 1e-4 for velocity Verlet and some 1e-2 for Euler.
     check_relative(name + "it leaves the plate, " + (sleep ? "after sleep" : "without sleep"),
                    last_of(*test_case)[c_vz], sleep ? 0.2 : 0.2 + 7.5e-3,
                    integration == "velocity_verlet" ? 1e-3 : 3e-2);
@@ -99,7 +99,7 @@ void test_restart()
   check("the same bits after a restart", result_of(every + " set restart = true\nend\n") == whole);
 }
 
-/// A grain rests on a plate that starts to rise 13 steps after a look at who sleeps.
+/// A grain rests on a plate that starts to rise 13 steps after a check of who sleeps.
 void test_start()
 {
   const double speed = 0.2, start = 0.05 + 13.5e-6;
@@ -122,12 +122,12 @@ void test_start()
     });
   }
   check("the plate starts: it throws the grain", fastest[0] > speed);
-  // In both cases the grain is at rest when it is hit; what differs is what is left of its
+  // In both cases the grain is at rest when it is hit; they differ by the last motion of its
   // settling.
   check_close("the plate starts: as it does without sleep", fastest[1], fastest[0], 1e-5);
 }
 
-/// One of two grains that lie on each other is taken out, and the other one falls.
+/// The lower one of two grains on top of each other is removed, and the upper one falls.
 void test_support()
 {
   const double gravity = 9.81;
@@ -162,7 +162,8 @@ void test_support()
   });
   check("the support goes: it is gone", since > 0. && particle_table(*test_case).size() == 1);
   const double time = scene.time_end - since;
-  // From rest; in the step in which the other one goes there may be a force still or none.
+  // The fall starts from rest; in the step in which the lower grain goes, it may still exert a
+  // force.
   check_close("the support goes: free fall", last_of(*test_case)[c_z] - before,
               -0.5 * gravity * time * time, gravity * time * scene.time_step);
 }

@@ -1,6 +1,6 @@
 // An off-centre collision of two unlike spheres with friction, rolling resistance and cohesion: the
 // same bits whichever sphere has the lower id and in a mirror, and momentum and angular momentum
-// are kept.
+// are conserved.
 
 #include "../spheres.h"
 
@@ -83,15 +83,15 @@ EUNOE_MPI_TEST()
             same(mirrored(image[0], axis), end[0]) && same(mirrored(image[1], axis), end[1]));
     }
 
-    // What changes hands in the collision is the scale of what may be lost.
+    // The momentum and spin exchanged in the collision are the scale of the errors.
     const double passed = scene.mass(end[0]) * norm(end[0].v - scene.spheres[0].v);
     const double turned = scene.inertia(end[0]) * norm(end[0].w - scene.spheres[0].w);
     check(rolling + ": spin changes hands", norm(end[0].w - scene.spheres[0].w) > 10.);
     check_close(rolling + ": momentum",
                 norm(momentum(scene, end) - momentum(scene, scene.spheres)) / passed, 0., 1e-12);
     // The lever arms of friction are the radii, together longer than the distance by the overlap;
-    // the moment that this leaves is at most overlap times Coulomb's limit. The factor covers the
-    // attractive end of the contact, in which the limit is that of the size of the force.
+    // the resulting moment is at most the overlap times the Coulomb limit. The factor covers the
+    // attractive end of the contact, where the limit follows the magnitude of the force.
     const double moment = 1.3 * deepest * scene.particle.friction * passed;
     check(rolling + ": that is little", moment < 0.05 * turned);
     check_close(rolling + ": angular momentum over what the radii as lever arms allow",

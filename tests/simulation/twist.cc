@@ -1,6 +1,6 @@
 // Twist, relative spin about the normal, is not rolling: neither rolling resistance nor friction
-// brakes it. In the plane of the contact there is then no direction but that of rounding errors, in
-// which the constant torque must not act for long.
+// brakes it. The relative spin in the plane of the contact is then only round-off, in whose
+// direction the constant torque must not act for long.
 
 #include "../spheres.h"
 

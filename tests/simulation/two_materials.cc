@@ -1,5 +1,5 @@
 // Two types of particles and walls, all of different materials: every contact takes the constants
-// of its own pair. A sphere of each type meets the floor, and they meet each other.
+// of its own pair. A sphere of each type hits the floor, and the two hit each other.
 
 #include "../spheres.h"
 
@@ -7,7 +7,7 @@ using namespace test;
 
 namespace {
 
-/// A body that is met from above: a sphere, or the floor.
+/// The body that is hit from above: a sphere, or the floor for a negative index.
 Sphere lower_body(const std::vector<Sphere> &spheres, int index)
 {
   Sphere floor;
@@ -17,7 +17,8 @@ Sphere lower_body(const std::vector<Sphere> &spheres, int index)
 
 constexpr double radius = 0.5e-3, other_radius = 0.3e-3, other_density = 4000., speed = 0.5;
 
-/// A sphere of type 0 over the floor, without its place; the material of type 1 is another one.
+/// A case with a floor and without spheres.
+/// @param other becomes the material of type 1
 Scene make_scene(Material &other)
 {
   Scene scene;
@@ -55,8 +56,8 @@ void insert_guest(Simulation &simulation, const Sphere &sphere)
   simulation.insert_and_remove(delivery, {});
 }
 
-/// Sphere 0 is the host of type 0, sphere 1 the guest of type 1, -1 the floor; who is neither upper
-/// nor lower is far away.
+/// Sphere 0 is the host of type 0, sphere 1 the guest of type 1, -1 the floor; a sphere that is
+/// neither upper nor lower is far away.
 void collide(const Scene &scene, const std::string &name, int upper, int lower,
              const Impact &reference)
 {
@@ -67,7 +68,7 @@ void collide(const Scene &scene, const std::string &name, int upper, int lower,
   start[1].x.z = 15e-3;
   const Sphere below = lower_body(start, lower);
   const double touching = start[upper].radius() + below.radius();
-  // Just out of touch: the guest comes later than the host, which does not feel it at once.
+  // Just out of contact: the guest is inserted after the host, on which it does not act at once.
   start[upper].x.z = below.x.z + touching * (1. + 1e-12);
   start[upper].v.z = -speed;
 

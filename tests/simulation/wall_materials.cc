@@ -1,6 +1,6 @@
-// Walls and solids of their own material: spheres meet a floating wall, a boundary and a solid of
-// three materials, and a boundary of the common one. Each rebounds with the restitution of its
-// pair; what a material does not set is that of the common one.
+// Walls and solids with materials of their own: spheres hit a floating wall, a boundary and a solid
+// of three materials, and a boundary of the common wall material. Each rebounds with the
+// restitution of its pair; properties that a material does not set are those of the common one.
 
 #include "../spheres.h"
 
