@@ -1,6 +1,6 @@
 // A moving solid is found in time, however far away it was and however fast it comes; one at rest
-// asks for no searches. Reference: elastic impact of a solid that nothing slows down, which gives a
-// sphere twice the velocity of its surface, also that of a turning one, w x r.
+// causes no searches. Reference: elastic impact of a solid with a prescribed motion, which gives a
+// sphere twice the velocity of the solid's surface, w x r if the solid turns.
 
 #include "surfaces.h"
 
@@ -8,7 +8,7 @@ using namespace test;
 
 namespace {
 
-/// A solid hits a sphere at rest; gives its velocity after the impact.
+/// Velocity of a sphere that was at rest, after a solid has hit it.
 Vec3 hit(const std::string &solid, const Vec3 &position, double dt, double time)
 {
   Powder powder;
@@ -52,10 +52,10 @@ EUNOE_MPI_TEST()
                         {2e-3, 0., 0.}, 2e-6, 6e-3);
   check_relative("speed after a fast plate", fast.x, 2. * 2., 1e-4);
   check_close("direction after a fast plate", std::hypot(fast.y, fast.z), 0., 1e-12);
-  // The arm of a paddle at the distance of 5 mm from its axis, a quarter of a turn away.
+  // The sphere is 5 mm from the axis of a paddle, a quarter of a turn away from its arm.
   const Vec3 paddle = hit(shape_input("plane", "0,-2e-3,-7e-3 : 0,4e-3,0 : 0,0,14e-3",
                                       motion_input("0; 0; 0", "0; 40; 0", {})),
                           {5e-3, 0., 0.}, 2e-6, 0.06);
-  // It turns by another 0.01 while it touches.
+  // It turns by another 0.01 rad while it touches.
   check_relative("speed after a paddle", norm(paddle), 2. * 40. * 5e-3, 0.01);
 }

@@ -7,7 +7,7 @@ using namespace test;
 
 namespace {
 
-/// Lowest sphere of a groove or corner that touches all walls with a distance.
+/// Spheres along a groove, in its middle and slightly beside it, that touch both walls.
 void examine_groove(double angle)
 {
   const double R = 1e-3, d = 0.97 * R;

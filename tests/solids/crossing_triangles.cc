@@ -1,7 +1,7 @@
 // Spheres that slide and roll across hundreds of triangles, along edges, over corners and
-// obliquely, feel exactly what they feel on two large triangles and on an infinite plane, with
-// friction, its memory, cohesion and rolling resistance; on a tilted plane the three agree to
-// round-off. Regression: peers had double contacts and lost memories at the shared edges of
+// obliquely, move exactly as on two large triangles and on an infinite plane, with friction, its
+// memory, cohesion and rolling resistance; on a tilted plane the three agree to round-off.
+// Regression: other programs had double contacts and lost the memory at the shared edges of
 // triangles.
 
 #include "surfaces.h"
@@ -71,8 +71,8 @@ EUNOE_MPI_TEST()
   const TriangleMesh mesh = uneven_plate(corner, u, v, 40, 20);
   const double height = corner.y + powder.radius() - powder.overlap(powder.mass() * 9.81);
 
-  // Along a row of edges; slantwise with spin; rolling; from over a corner, driven by its spin;
-  // falling and bouncing.
+  // One slides along a row of edges; one obliquely, with spin; one rolls; one starts over a corner,
+  // driven by its spin; one falls and bounces.
   const Vec3 over_corner = mesh.vertices[41 * 18 + 30];
   const std::vector<Start> starts = {
       {{-7e-3, height, 0.}, {0.5, 0., 0.}, {}},

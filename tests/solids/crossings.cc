@@ -1,4 +1,4 @@
-// Surfaces that pass through each other are told from those that only touch.
+// Surfaces that pass through each other are distinguished from those that only touch.
 
 #include <eunoe/solids/crossings.h>
 

@@ -1,7 +1,7 @@
-// A faceted cylinder is felt as one curved wall, inside and outside: one contact, with the distance
-// of the nearest facet, a normal that is radial to half the angle of a facet, and a force that is
-// continuous over the edges between facets. Reference: geometry of a regular polygon.
-// Regression: the 24 edges of a cylinder of 24 facets were a matter of round-off.
+// A faceted cylinder acts as one curved wall, inside and outside: one contact, with the distance of
+// the nearest facet, a normal that is radial to within half the angle of a facet, and a force that
+// is continuous over the edges between facets. Reference: geometry of a regular polygon.
+// Regression: at the 24 edges of a cylinder of 24 facets round-off decided on the contacts.
 
 #include "surfaces.h"
 

@@ -1,5 +1,5 @@
-// Vibrations and excursions on top of another motion: places in closed form, and velocities that
-// are the derivatives of the places.
+// Vibrations and excursions on top of another motion: positions in closed form, and velocities that
+// are the derivatives of the positions.
 
 #include <eunoe/solids/disturbed_motion.h>
 #include <eunoe/solids/scheduled_motion.h>

@@ -1,6 +1,6 @@
-// A motion given by expressions for its velocities: constant, in terms of time and of its place,
-// turning about fixed and moving axes. Reference: the solutions of the equations of motion. What it
-// gives for a time has the same bits whatever it was asked before, as a restart needs.
+// A motion given by expressions for its velocities: constant, depending on time and on position,
+// turning about fixed and moving axes. Reference: the solutions of the equations of motion. The
+// state at a time has the same bits whichever times were evaluated before, as a restart needs.
 
 #include <eunoe/solids/expression_motion.h>
 
@@ -30,7 +30,7 @@ void examine_error(const std::string &velocity, const std::string &constants,
                    const std::string &sentence)
 {
   std::string answer = "nothing";
-  // The parser says more on its own, which is no part of the answer.
+  // The parser also writes messages of its own, which are not part of the answer.
   std::ostringstream aside;
   std::streambuf *const errors = std::cerr.rdbuf(aside.rdbuf());
   try {
@@ -54,7 +54,7 @@ const Vec3 start = {1e-2, 2e-2, -3e-2};
 /// @param when for the names of the checks
 void examine_paths(const double t, const std::string &when)
 {
-  // The sums of 7000 steps leave about 1e-14.
+  // The sums over 7000 steps have an error of about 1e-14.
   const RigidState constant = motion(start, "0.1; -0.2; 0.3", "0; 0; 0").at(t);
   check_close("constant velocity" + when, norm(constant.centre - start - t * Vec3{0.1, -0.2, 0.3}),
               0., 1e-13);
@@ -70,7 +70,7 @@ void examine_paths(const double t, const std::string &when)
               1e-13);
 }
 
-/// Likewise of solids that turn.
+/// The same for solids that turn.
 void examine_turns(const double t, const std::string &when)
 {
   // Turning about an axis through the moving centre.

@@ -2,7 +2,7 @@
 // normal may have any length. A floating wall acts from its start to its end: a sphere rests on it,
 // then falls; one that overlaps is pushed off when it starts. Reference: geometry; free fall in the
 // steps of velocity Verlet; the elastic energy of the overlap.
-// Regression: a peer's walls had a wrong overlap with a normal that was not normalised.
+// Regression: another program's walls had a wrong overlap if their normal was not a unit vector.
 
 #include "surfaces.h"
 
@@ -55,7 +55,8 @@ void rest_and_fall()
       largest_move = std::max(largest_move, std::abs(s.position.y - rest));
     } else {
       is_free = is_free && s.normals.empty();
-      // In the last step of the wall nothing pulled, so the first half kick is missing.
+      // In the last step of the wall the forces balanced, so the first half step of gravity is
+      // missing.
       const double t = (n - end) * dt;
       const double fall = 0.5 * 9.81 * (t * t - t * dt);
       worst_fall = std::max(worst_fall, std::abs(rest - fall - s.position.y));
@@ -67,7 +68,7 @@ void rest_and_fall()
   check_close("it falls freely after it", worst_fall, 0., 1e-14);
 }
 
-/// A sphere within a wall that starts.
+/// A sphere that overlaps a wall when the wall starts.
 void be_pushed()
 {
   Powder powder;

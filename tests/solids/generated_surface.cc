@@ -1,5 +1,5 @@
-// Surfaces of deal.II's generators: a sphere of the right size without gaps, a rectangle like the
-// plane that is made in code; and what is no generator is refused.
+// Surfaces of deal.II's generators: a closed sphere of the right size, and a rectangle like the
+// plane that is made in code; an unknown generator is refused.
 
 #include <eunoe/solids/solid_parameters.h>
 

@@ -19,7 +19,7 @@ const std::string no_triangle =
     "switch recombination off in Gmsh.";
 
 /// A tetrahedron in format 2.2, with a point and lines among its elements and a node that only a
-/// line uses. The nodes have uneven numbers.
+/// line uses. The numbers of the nodes are not consecutive.
 const std::string closed_22 = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"
                               "$PhysicalNames\n1\n2 7 \"blade\"\n$EndPhysicalNames\n"
                               "$Nodes\n5\n11 0 0 0\n2 1 0 0\n30 0 2 0\n4 0 0 3\n5 -9 -9 -9\n"

@@ -1,5 +1,5 @@
-// What cannot be a surface is found, and what is no defect is accepted; corners that lie together
-// become one, so that patches made one by one are one surface.
+// Defects of surfaces are found, and surfaces without a defect are accepted; corners that coincide
+// are merged, so that patches made separately form one surface.
 
 #include "surfaces.h"
 
@@ -66,7 +66,7 @@ void examine_flat_triangles()
 
 void examine_merging()
 {
-  // The first three of those near the origin form a chain with links of 1 and 1.4 mm.
+  // The three corners near the origin form a chain with links of 1 and 1.4 mm.
   TriangleMesh row;
   row.vertices = {{3., 0., 0.}, {0., 0., 0.},          {0., 0.5, 0.}, {1e-3, 0., 0.},
                   {3., 0., 0.}, {-1e-3, 0., 0.999e-3}, {3., 1., 0.},  {3., 2e-3, 0.}};
@@ -81,7 +81,7 @@ void examine_merging()
 
 void examine_seam()
 {
-  // Two plates made one by one, whose common edge is equal to round-off only.
+  // Two plates made separately, whose common edges agree to round-off only.
   const double R = 1e-4, gap = 1e-15;
   TriangleMesh plates = shapes::plane({-1e-3, 0., 0.}, {1e-3, 0., 0.}, {0., 0., 1e-3});
   plates.add_quad({gap, 0., 0.}, {gap, gap, 1e-3}, {1e-3, 0., 1e-3}, {1e-3, 0., 0.});

@@ -1,7 +1,7 @@
 // The velocity of a surface at the place of contact, v_c + w x r, acts on a sphere that lies on it.
-// Reference: slipping and then rolling on a belt of velocity U, a = mu g until t = 2 U / (7 mu g),
+// References: slipping and then rolling on a belt of velocity U, a = mu g until t = 2 U / (7 mu g),
 // then 2/7 U; spin from rolling resistance alone, 5 mu_r g t / (2 R) up to the spin of a drum; a
-// turning plate does what a floor does that turns in place.
+// turning plate moves spheres as a floor does that turns in place.
 
 #include "surfaces.h"
 
@@ -46,7 +46,7 @@ void ride(const std::string &name, const std::string &belt, double height)
   const Sphere s = spheres(*test_case)[0];
   check_close(name + ": velocity while it slips", worst_velocity / speed, 0., 1e-12);
   check_close(name + ": spin while it slips", worst_spin / speed, 0., 1e-12);
-  // The elastic contact swings for a while when it sticks.
+  // The elastic contact oscillates for a while when it sticks.
   check_close(name + ": no slip then", slip / speed, 0., 1e-4);
   check_relative(name + ": velocity in the end", s.velocity.x, 2. / 7. * speed, 1e-10);
   check_close(name + ": path aside", std::abs(s.position.z) + std::abs(s.position.y - y), 0.,
@@ -73,7 +73,7 @@ std::vector<std::vector<Sphere>> turn(const std::string &floor, double height)
   return track;
 }
 
-/// A sphere without friction over the axis of a drum, which only its rolling resistance turns.
+/// A sphere without friction over the axis of a drum; only rolling resistance makes it spin.
 void drum()
 {
   Powder powder = make_powder();
@@ -97,7 +97,7 @@ void drum()
   });
   const Sphere s = spheres(*test_case)[0];
   check_close("drum: spin while it is taken along", worst / spin, 0., 1e-10);
-  // The torque turns over in every step then.
+  // At the end the torque changes its sign in every step.
   check_close("drum: spin in the end", s.spin.z, spin, rate * 1e-5);
   check_close("drum: spin about the normal", twist / 70., 0., 1e-12);
   check_close("drum: it stays in its place", std::abs(s.position.x - 2e-3), 0., 1e-15);

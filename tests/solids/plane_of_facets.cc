@@ -1,6 +1,6 @@
-// Facets near a sphere that are the inner part of a plane are taken for the plane until the next
-// search. Reference: the contacts with the facets themselves, for spheres anywhere within the reach
-// of that search; the plate's border and its fold, which no plane can stand for.
+// If the facets near a sphere form the inner part of a plane, the plane replaces them until the
+// next search. Reference: the contacts with the facets themselves, for spheres anywhere within the
+// reach of that search. The border of the plate and its fold must not be replaced.
 
 #include <eunoe/core/random.h>
 #include <eunoe/solids/triangulated_surface.h>
@@ -30,7 +30,7 @@ TriangleMesh folded_plate()
   return mesh;
 }
 
-/// Distance to the border of the lower half, its fold left out.
+/// Distance to the border of the lower half, without its fold.
 double distance_to_border(const Vec3 &x)
 {
   const double beyond_x = std::max(0., -x.x), beyond_y = std::max({0., -x.y, x.y - 6.});
@@ -66,7 +66,7 @@ EUNOE_TEST()
   unsigned int n_planes = 0, n_contacts = 0, n_other = 0;
   bool same = true, no_border = true, all_inner = true;
   for (unsigned int k = 0; k < 20000; ++k) {
-    // Nearer to the lower half than to what of the upper one is by itself.
+    // At heights at which the lower half is always within reach, never the upper half alone.
     const Vec3 centre = {numbers.between(-0.5, 4.), numbers.between(-0.5, 6.5),
                          numbers.between(-0.39, 0.39)};
     const double near = radius + skin;

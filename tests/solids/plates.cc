@@ -1,6 +1,7 @@
 // A plate is one surface whatever its triangles: a sphere over it has one contact, with the nearest
 // point. Reference: the nearest point of a rectangle by clamping; over the inside a single plane.
-// Regression: double contacts on the shared edges of triangles, other bits on other meshes.
+// Regression: double contacts on the shared edges of triangles, different bits for different
+// meshes.
 
 #include "surfaces.h"
 
@@ -120,12 +121,12 @@ void examine_flat(const TriangleMesh &mesh)
   check("same bits with an infinite plane", f.other_than_plane == 0,
         std::to_string(f.other_than_plane) + " differ");
   check_close("distance to the nearest point", f.worst_distance, 0., 1e-14);
-  // Places whose distances differ by less than round-off cannot be told apart; at a height of 1e-3
-  // radii they are up to 5e-7 radii apart, hence the normal.
+  // Points whose distances differ by less than round-off cannot be told apart; for a height of 1e-3
+  // radii they are up to 5e-7 radii apart, hence the tolerance of the normal.
   check_close("normal to the nearest point", f.worst_normal, 0., 1e-6);
 }
 
-/// A tilted plate has one normal, not one a triangle.
+/// A tilted plate has one normal, not one for each triangle.
 void examine_tilted(const TriangleMesh &mesh)
 {
   TriangleMesh tilted = mesh;

@@ -77,7 +77,7 @@ EUNOE_MPI_TEST()
        shape_input("box", "0,0,0 : 5e-3,5e-3,5e-3"), {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}},
        powder.mass() * third);
 
-  // Along a flat groove, whose two normals are near each other.
+  // Along a flat groove, whose two normals are nearly parallel.
   const double angle = 10. * degree;
   powder.gravity = {-1., -9.81, 0.};
   powder.friction = 0.3;
@@ -87,7 +87,7 @@ EUNOE_MPI_TEST()
           {{0., R / std::cos(angle) - 2e-7, -1.5e-3}, {0., 0., 0.1}, {0., 90., 5.}},
           gmsh_input("groove.msh"), {std::sin(angle), std::cos(angle), 0.},
           {-std::sin(angle), std::cos(angle), 0.});
-  // Over a floor and so fast against a wall that this is at once the deeper contact.
+  // Over a floor and so fast against a wall that the wall has the larger overlap at once.
   compare("corner", powder, {{2e-3, R - 2e-7, 2e-3}, {-0.4, 0., 0.1}, {0., 0., -300.}},
           shape_input("box", "0,0,-9e-3 : 9e-3,9e-3,9e-3"), {1., 0., 0.}, {0., 1., 0.});
 }

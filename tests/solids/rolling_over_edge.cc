@@ -1,6 +1,7 @@
-// A sphere that rolls over the edge of a box without slipping: one contact all the time, its memory
-// lives on, the forces are those of a rigid sphere that turns about the edge, and it leaves where
-// that does. Reference: energy and angular momentum about the edge; with the speed v0 before,
+// A sphere that rolls over the edge of a box without slipping: one contact all the time, which
+// keeps its memory, the forces of a rigid sphere that turns about the edge, and the same place
+// where the sphere leaves. Reference: energy and angular momentum about the edge; with the speed v0
+// before,
 //   v^2 = v0^2 + 10/7 g R (1 - cos a),  N = m g cos a - m v^2 / R,  F = 2/7 m g sin a,
 // and N = 0 at cos a = 10/17 + 7/17 v0^2 / (g R). Without friction v^2 = v0^2 + 2 g R (1 - cos a)
 // and N = 0 at cos a = 2/3 + v0^2 / (3 g R).
@@ -64,7 +65,7 @@ Result run(const Powder &powder, const Way &way, double v0)
     const double v2 = v0 * v0 + gain * g * R * (1. - cosine);
     const double normal_force = weight * cosine - powder.mass() * v2 / R;
     const double friction = powder.friction > 0. ? 2. / 7. * weight * sine : 0.;
-    // The load jumps at the edge and the contact needs a while to come to rest again.
+    // The load jumps at the edge, and the contact takes a while to settle again.
     if (sine > 0.2 && normal_force > 0.1 * weight) {
       result.worst_normal_force = std::max(
           result.worst_normal_force, std::abs(dot(contact, outwards) - normal_force) / weight);
@@ -96,7 +97,7 @@ EUNOE_MPI_TEST()
       const std::string name = motion + std::string(where);
       check("one contact while " + name, result.other_numbers == 0,
             std::to_string(result.other_numbers) + " steps with another number");
-      // Overlap and dashpot hold back by this much against a rigid sphere.
+      // Overlap and dashpot cause deviations of this size from a rigid sphere.
       check_close("normal force while " + name, result.worst_normal_force, 0., 0.01);
       check_close("friction while " + name, result.worst_friction, 0., 0.004);
       check_close("leaves when " + name, result.leaving_cosine,

@@ -1,5 +1,5 @@
-// Surfaces made in code have the area, the extent and the open edges of what they are named after,
-// by formulas; arguments that make no sense are answered by a sentence.
+// Surfaces made in code have the area, the extent and the open edges that formulas give for their
+// shapes; arguments that make no sense are refused with a sentence.
 
 #include "surfaces.h"
 
@@ -7,7 +7,7 @@ using namespace test;
 
 namespace {
 
-/// Compares a named shape with what it should be.
+/// Compares a named shape with the expected values.
 void examine(const std::string &name, const std::string &text, double expected_area,
              double expected_open_length, const Box &expected_box)
 {
@@ -24,7 +24,7 @@ void examine(const std::string &name, const std::string &text, double expected_a
               1e-15);
 }
 
-/// What is said about arguments that make no sense.
+/// Compares the message about arguments that make no sense.
 void examine_error(const std::string &name, const std::string &text, const std::string &sentence)
 {
   std::string answer = "nothing";

@@ -1,5 +1,6 @@
-// Force and torque on a solid: the weight of what rests on it, also in the file of the solid; what
-// a sphere loses in an impact with friction, cohesion and rolling resistance the solid receives.
+// Force and torque on a solid: the weight of the spheres that rest on it, also in the file of the
+// solid; the momentum that a sphere loses in an impact with friction, cohesion and rolling
+// resistance goes to the solid.
 // Reference: statics; the momentum and the angular momentum of the sphere.
 
 #include "surfaces.h"
@@ -91,7 +92,7 @@ void exchange_momentum(double plate_spin)
     const Load load = load_of(simulation);
     impulse += 0.5 * dt * (load.force + last_force);
     last_force = load.force;
-    // Sphere and solid feel the force at places that are the overlap apart.
+    // The force acts on sphere and solid at points that are the overlap apart.
     const Vec3 torque = load.torque + cross(s.position - centre, s.force) + s.torque;
     const double overlap = std::max(0., powder.radius() - s.position.y);
     const double shear = std::hypot(load.force.x, load.force.z);

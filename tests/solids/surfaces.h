@@ -1,7 +1,7 @@
 #ifndef eunoe_tests_surfaces_h
 #define eunoe_tests_surfaces_h
 
-// What the tests of solid surfaces share: surfaces to try, and the pieces of input texts.
+// What the tests of solid surfaces share: surfaces, and parts of input texts.
 
 #include <eunoe/core/files.h>
 #include <eunoe/solids/half_space.h>
@@ -210,12 +210,12 @@ inline std::string walls_input(const std::vector<Wall> &walls)
   return text + "end\n";
 }
 
-/// A sphere as a test sees it, with what it remembers of its contacts with solids.
+/// State of a sphere, with the memory of its contacts with solids.
 struct Sphere
 {
   Vec3 position, velocity, spin, force, torque;
-  std::vector<Vec3> normals;                 ///< one a contact
-  std::vector<std::vector<double>> memories; ///< one a contact
+  std::vector<Vec3> normals;                 ///< one for each contact
+  std::vector<std::vector<double>> memories; ///< one for each contact
 };
 
 /// The spheres of a run on one rank, by id.
@@ -241,7 +241,7 @@ inline std::vector<Sphere> spheres(Simulation &simulation)
   return all;
 }
 
-/// Of all triangles (m2).
+/// Area of all triangles (m2).
 inline double area(const TriangleMesh &mesh)
 {
   double sum = 0.;
