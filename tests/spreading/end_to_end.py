@@ -1,9 +1,9 @@
 """A small spreading run from its input file to its results, checked against itself: the mass on the
-plate is what the pictures say, the densities follow from it, the plate falls by one layer after
-another, and nothing is lost unaccounted.
+plate is that in the pictures, the densities follow from it, the plate sinks by one layer at a time,
+and all mass is accounted for.
 
 Usage: end_to_end.py path/to/eunoe-particles case.prm folder ranks
-Exit code 77 if numpy or VTK is missing, for a test that is skipped.
+Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
 import csv
@@ -39,14 +39,15 @@ def close(name: str, value: float, reference: float, relative: float) -> None:
 
 
 def check_displacements(before: dict, after: dict, kept: np.ndarray) -> None:
-    """Displacements are those of the places in the pictures, against the plate, which sinks by a layer."""
+    """Displacements agree with the positions in the pictures, relative to the plate, which sinks by
+    one layer."""
     order = np.argsort(before["ID"])
     rank = order[np.searchsorted(before["ID"], after["ID"][kept], sorter=order)]
     assert np.array_equal(before["ID"][rank], after["ID"][kept]) and (before["on_plate"][rank] == 1).all()
     way = after["points"][kept].astype(float) - before["points"][rank].astype(float)
     way[:, 1] += LAYER_THICKNESS
     way[:, 2] -= DEPTH * np.rint(way[:, 2] / DEPTH)
-    # Places in the pictures are single precision; the weighing falls within the first step of a stroke.
+    # Positions in the pictures are single precision; the weighing is in the first step of a stroke.
     error = np.abs(after["displacement"][kept] - way).max()
     assert error < 1e-8, f"displacements are off by {error} m"
     # The spreader drags the powder along.

@@ -1,5 +1,5 @@
-// The bed that later feeds are copied from reaches its level all over: grains that stand or fly
-// over a lower surface do not end its filling.
+// The bed from which later feeds are copied reaches its level everywhere: grains that stand or fly
+// above a lower surface do not end its filling.
 
 #include <eunoe/processes/powder_spreading/apparatus.h>
 
@@ -15,7 +15,7 @@ constexpr double largest = 80e-6, column = 2. * largest, reservoir = 1.2e-3;
 const char *const long_reservoir = "  set feedstock platform length W1 = 1.2e-3\n"
                                    "  set first feedstock stroke = 0.25e-3\n";
 
-/// The particles when what stood above the bed's level has just been taken away.
+/// The particles just after those above the level of the bed were removed.
 std::vector<std::vector<double>> with_levelled_bed()
 {
   Case bed(small_spreading("results", long_reservoir));

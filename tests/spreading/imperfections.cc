@@ -1,5 +1,5 @@
-// A spreading apparatus that departs from the one that was meant: where its surfaces are, how they
-// move, and a run with all departures at once.
+// A spreading apparatus with imperfections: where its surfaces are, how they move, and a run with
+// all imperfections at once.
 
 #include <eunoe/processes/powder_spreading/apparatus.h>
 
@@ -29,7 +29,7 @@ Solid spreader_of(const SpreadingParameters &p)
   return solids[handles.spreaders[0].number];
 }
 
-/// Height of the spreader's lowest point at a place in z, from its edges that pass there (m).
+/// Height of the spreader's lowest point at a position z, from its edges that cross it (m).
 double clearance_at(const SpreadingParameters &p, const double z)
 {
   const Solid spreader = spreader_of(p);
@@ -81,7 +81,7 @@ void examine_vibration()
   check_close("its speed", spreader.motion->at(2e-3).velocity.y, -p.vibration_speed(), 1e-12);
 }
 
-/// What a run of two layers shows of plate, platform, spreader and walls.
+/// Extreme positions of plate, platform, spreader and powder in a run of two layers.
 struct Seen
 {
   double lowest_plate = 0., final_plate = 0., highest_platform = -1.;

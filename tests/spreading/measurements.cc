@@ -1,5 +1,5 @@
-// What a spreading run has measured: the same bits on one rank and on all, and after a restart,
-// with and without side walls; and no observable without a description.
+// Measurements of a spreading run: the same bits on one rank and on all, and after a restart, with
+// and without side walls; and every observable has a description.
 
 #include "small_case.h"
 #include "tests.h"
@@ -39,7 +39,7 @@ void examine(const std::string &name, const std::string &more)
     alone.run();
     check(name + ": on one rank", are_same(measured, alone->measurements()));
   }
-  // Goes on from the last checkpoint.
+  // Continues from the last checkpoint.
   Case again(small_spreading(folder, more, checkpoints + " set restart = true\nend\n"));
   std::size_t n_before = 0;
   again.run([&n_before](Simulation &simulation) {

@@ -1,6 +1,6 @@
-// A process is made anew for every simulation, from a section that stays as it was read: what it
-// decides is in the simulation's own parameters, and two simulations of one case know nothing of
-// each other. Each field and each solid is where its handle says.
+// A process is made anew for every simulation, from a section that stays as it was read: what the
+// process decides is in the simulation's own parameters, and two simulations of one case do not
+// influence each other. Each field and each solid is found by its handle.
 
 #include <eunoe/processes/powder_spreading/layer_log.h>
 

@@ -8,7 +8,7 @@ namespace test {
 constexpr double layer_thickness = 100e-6, slice_depth = 0.3e-3, plate_length = 0.6e-3,
                  density = 4386., later_stroke = 0.25e-3, margin = 0.15e-3, clearance = 110e-6;
 
-/// Two layers on a plate of 0.6 mm; entries are added behind it.
+/// An input text for two layers on a plate of 0.6 mm.
 /// @param more entries of subsection powder spreading
 /// @param others further subsections
 inline std::string small_spreading(const std::string &folder, const std::string &more,
