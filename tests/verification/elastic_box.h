@@ -1,8 +1,8 @@
 #ifndef eunoe_tests_elastic_box_h
 #define eunoe_tests_elastic_box_h
 
-// A gas of a thousand spheres in a closed box without gravity and friction, at a third of the
-// volume, so that they collide often. Elastic spheres keep their energy; with damping it never
+// A gas of a thousand spheres in a closed box without gravity and friction. They fill a third of
+// the volume, so that they collide often. Elastic spheres keep their energy; with damping it never
 // grows.
 
 #include "../spheres.h"
@@ -20,8 +20,8 @@ public:
     scene.particle.restitution = scene.wall.restitution = restitution;
     scene.half_width = half;
     scene.time_step = time_step;
-    // Numbers of the generator itself are the same with every library, those of distributions are
-    // not.
+    // The numbers of the generator are the same with every standard library, those of the
+    // distributions are not.
     std::mt19937 generator(3);
     const auto random = [&] { return generator() / 4294967295. - 0.5; };
     for (int k = 0; k < n * n * n; ++k) {
@@ -34,13 +34,13 @@ public:
     }
   }
 
-  /// What a run has shown. Energies are over that of the start.
+  /// Results of a run. Energies are relative to that at the start.
   struct Outcome
   {
     double drift = 0.;      ///< largest change
-    double growth = 0.;     ///< largest growth from one look to the next
-    double left = 1.;       ///< in the end
-    double collisions = 0.; ///< at least so many
+    double growth = 0.;     ///< largest growth between two looks
+    double left = 1.;       ///< at the end
+    double collisions = 0.; ///< a lower bound of their number
   };
 
   /// @param steps_between_looks at the energy
@@ -56,9 +56,9 @@ public:
     Case gas(scene.text());
     gas.run([&](Simulation &simulation) {
       const ParticleArrays &p = simulation.complete_step();
-      // Without loads a velocity changes only while its sphere touches something. A collision of
-      // two begins for both of them, one with a wall for one; where a sphere meets several others
-      // in a row without a step apart it counts as one. So half of the beginnings is a lower bound.
+      // Without loads the velocity of a sphere changes only while it touches something. A collision
+      // of two spheres is a start for both, one with a wall for one; collisions of a sphere without
+      // a step between them count as one. So half the number of starts is a lower bound.
       for (std::size_t k = 0; k < p.n_owned; ++k) {
         const std::size_t who = p.id[k] - 1;
         const Vec3 v = p.velocity[k].vec();

@@ -1,6 +1,6 @@
-"""Diameters that were drawn cost no memory once their particles are gone: a run that inserts a million
-particles, 300 at a time, needs no more than one that inserts a tenth of them.
-Regression: a peer stored every diameter that it ever drew, eight bytes each.
+"""Diameters that were drawn use no memory once their particles are gone: a run that inserts a
+million particles, 300 at a time, needs no more than one that inserts a tenth of them.
+Regression: another program stored every diameter that it ever drew, eight bytes each.
 
 Usage: many_diameters.py path/to/eunoe-particles folder
 """
@@ -15,10 +15,10 @@ CASE = Path(__file__).with_name("many_diameters.prm")
 
 
 def largest_memory(program: str, folder: Path, steps: int) -> tuple[float, int]:
-    """Of a run (MB), and the number of particles that it inserted."""
+    """Largest memory of a run (MB), and the number of particles that it inserted."""
     command = [program, str(CASE), "--quiet", "--set", f"simulation control/iteration end = {steps}",
                "--set", f"simulation control/output path = {folder}"]
-    # Under the address sanitizer, what is freed must not be held back.
+    # The address sanitizer must not hold back memory that was freed.
     environment = {**os.environ, "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=0"}
     with subprocess.Popen(command, env=environment) as process:
         _, status, usage = os.wait4(process.pid, 0)

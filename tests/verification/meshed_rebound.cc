@@ -1,6 +1,6 @@
-// A sphere that bounces, slips and rolls over a floor does so on a wall of the domain, on a
-// floating wall, on two triangles and on a plate of many uneven ones, to the last bit. Regression:
-// a peer's rebound from a meshed plane differed from that of an analytic one.
+// A sphere that bounces, slips and rolls over a floor ends in the same state, to the last bit, on a
+// wall of the domain, on a floating wall, on two triangles and on a plate of many uneven ones.
+// Regression: another program's rebound from a meshed plane differed from that of an analytic one.
 
 #include "../solids/surfaces.h"
 

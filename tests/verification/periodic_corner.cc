@@ -1,7 +1,7 @@
 // Several periodic directions at once, on any number of ranks and in any order of declaration: a
 // pair that meets over an edge or a corner of the domain moves as one that meets in its middle.
-// Regression: peers had one periodic pair only, applied its force twice in parallel, and overlooked
-// it unless it was declared last.
+// Regression: other programs had only one pair of periodic boundaries, applied its force twice in
+// parallel runs, and overlooked it unless it was declared last.
 //
 // As in simulation/periodic_pair.cc the domain spans [4, 8] in units of a power of two, so that the
 // shift is exact and the bits must be the same.
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double unit = 0x1p-9;
 
-/// A kind of boundary of the sides of one axis.
+/// A boundary condition of the faces across one axis.
 std::string boundary(unsigned int number, unsigned int axis, bool periodic, bool upper)
 {
   const std::string id = std::to_string(2 * axis), next = std::to_string(2 * axis + 1);

@@ -1,9 +1,9 @@
-// A contact outlives the search for contacts: the lists are built anew at every step or hardly
-// ever, and the bits are the same. With slip and rolling that are remembered, with attraction over
-// a gap that is wider than the skin, and with necks and liquid bridges that hold only because they
-// were made before. Regression: a peer lost cohesive contacts whose range exceeds the radii when it
-// built its lists anew, and had no numbers where it took the damping of cohesive contacts from the
-// restitution.
+// A contact outlives the search for contacts: the motion is the same whether the lists are built
+// anew at every step or hardly ever. With slip and rolling that are remembered, with attraction
+// across a separation that is wider than the skin, and with necks and liquid bridges that hold only
+// because the bodies have touched before. Regression: another program lost cohesive contacts whose
+// range exceeds the radii when it built its lists anew, and got values that are not finite where it
+// took the damping of cohesive contacts from the restitution.
 
 #include "../spheres.h"
 
@@ -20,7 +20,7 @@ const std::string sticky = "subsection model parameters\n"
 struct Outcome
 {
   std::vector<Sphere> end;
-  double widest = 0.; ///< gap of the pair while it is held together (m)
+  double widest = 0.; ///< largest separation of the first two spheres (m)
 };
 
 Outcome meet(const std::string &laws, const std::string &search)
@@ -36,7 +36,7 @@ Outcome meet(const std::string &laws, const std::string &search)
   s.floor = true;
   s.gravity = {0.5, 0., -9.81};
   const double d = Sphere().diameter;
-  // Two on the floor side by side that meet, spinning, and one that falls on top of them.
+  // Two that spin and meet side by side on the floor, and one that falls on top of them.
   s.spheres = {{{-0.51 * d, 0., 0.4999 * d}, {0.05, 0.02, 0.}, {0., 50., 30.}, d},
                {{0.51 * d, 0., 0.4999 * d}, {-0.05, 0., 0.}, {20., 0., 0.}, d},
                {{0., 0.1 * d, 1.5 * d}, {0., 0., -0.1}, {0., 0., 90.}, d}};

@@ -1,7 +1,7 @@
-// A wall is met in time wherever it is met: beside its edges, over every kind of cell, from any
-// direction, also by a sphere that came through many cells. Each elastic rebound has the overlap
-// and the speed of Hertz's theory. Regression: a peer found walls too late in cells that touch them
-// by an edge only, and threw particles about.
+// A wall is found in time everywhere: beside its edges, in every kind of mesh cell, from any
+// direction, also by a sphere that came through many mesh cells. Each elastic rebound has the
+// overlap and the speed of Hertz's theory. Regression: another program found walls too late in mesh
+// cells that touch them with an edge only, and shot particles off.
 
 #include "../spheres.h"
 
@@ -23,7 +23,7 @@ Errors rebound(unsigned int axis, double direction, const std::string &search)
   s.half_width = half;
   Sphere sphere;
   const double radius = sphere.radius(), side = half - 1.0001 * radius;
-  // Columns beside the walls, over the edges of cells, and anywhere.
+  // Columns beside the walls, over the edges of mesh cells, and anywhere.
   const double places[] = {-side, -0.5 * half, -0.15 * half, 0.27 * half, side};
   for (const double a : places)
     for (const double b : places) {
