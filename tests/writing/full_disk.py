@@ -1,4 +1,4 @@
-"""A disk that is full, at the start or while a run writes tables, pictures and checkpoints: one sentence
+"""A full disk, at the start or while a run writes tables, pictures and checkpoints: one sentence
 that says what could not be written, an exit code on all ranks, and results from which the run
 continues with the same bits when there is space.
 
@@ -27,7 +27,7 @@ SETTINGS = [f"simulation control/iteration end = {LAST}", "simulation control/ou
             "post-processing/final state/calculation = true"]
 EVERY = ("restart/checkpoint = true", "restart/frequency = 700")
 FULL = "cannot be written: No space left on device"
-# What cannot be written, and the step of the last checkpoint before.
+# The file that cannot be written, and the step of the last checkpoint before that.
 FILES = {
     "used.prm.new": 0, "out_00000.vtu.new": 0, "out.pvd.new": 0, "out_solids.pvd.new": 0,
     "restart_000000000700.checkpoint.new": 0, "restart.latest.new": 0,
@@ -35,7 +35,7 @@ FILES = {
     "out_force_chains_00004.vtu.new": 2100, "restart_000000002100.checkpoint.new": 1400,
     "measurements.csv.new": 2800, "particles.csv.new": 2800, "summary.json.new": 2800,
 }
-# Tables that cannot even be begun, and files of processes.
+# Tables whose first line cannot be written, and files of processes.
 AT_START = {"energies.csv": STIRRED, "force_0.csv": STIRRED,
             "apparatus.json.new": str(TESTS / "spreading" / "tiny.prm"),
             "layers.csv": str(TESTS / "spreading" / "tiny.prm"),
@@ -43,7 +43,7 @@ AT_START = {"energies.csv": STIRRED, "force_0.csv": STIRRED,
 
 
 def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None:
-    """Runs on two ranks, which must say that @p what is full, once."""
+    """Runs on two ranks, which must say once that there is no space for @p what."""
     try:
         run = subprocess.run(case.command(2, *settings), text=True, check=False, capture_output=True,
                              timeout=60)
@@ -77,7 +77,7 @@ def start_is_full(program: str, folder: Path, link: str, prm: str) -> None:
 
 
 def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
-    """No table can grow any more."""
+    """From some step on no table can grow, as files have reached the limit of their size."""
     case = Case(program, STIRRED, folder, [*settings, "simulation control/output frequency = 0"])
     table = case.results / "energies.csv"
     process = case.start(2, "restart/checkpoint = true", "restart/frequency = 3000",

@@ -1,5 +1,5 @@
-"""Ranks that cannot go on end those that wait for them, and one of them says why; and no rank but the
-first needs to see the files of a case.
+"""Ranks that fail end those that wait for them, and one of them says why; and only the first rank
+needs to see the files of a case.
 
 Usage: lone_error.py path/to/lone-error path/to/eunoe-particles folder
 """
@@ -56,7 +56,7 @@ def lone_error(program: str) -> None:
 
 
 def one_sees_the_files(program: str, folder: Path) -> None:
-    """As on nodes that share no folder."""
+    """Only the first rank sees the mesh and the input, as on nodes that share no folder."""
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("first", "second"):
         (folder / name).mkdir(parents=True)
