@@ -29,6 +29,6 @@ class Attempts:
                 waiting.result()
 
     def exit_code(self) -> int:
-        """Prints the failures; 1 if there are any."""
+        """Prints the failures and returns 1 if there are any, else 0."""
         print(*self.failures, sep="\n")
         return 1 if self.failures else 0

@@ -39,8 +39,8 @@ std::vector<std::vector<double>> all_contacts(Simulation &simulation)
 
 void test_placed_spheres()
 {
-  // Two overlap across the periodic faces at x = -1 and 1 cm, the third overlaps the floor by 20
-  // um.
+  // Two overlap across the periodic faces at x = -1 and 1 cm; the third and the floor overlap by
+  // 20 um.
   Case placed(box_input(1e-7, 1e-7,
                         std::string("subsection lagrangian physical properties\n") + elastic +
                             "end\nsubsection DEM boundary conditions\n"

@@ -66,8 +66,8 @@ void check_viscous()
 }
 
 /// One short step of two unlike spheres that overlap and turn: EPSD's spring is not loaded yet, its
-/// dashpot is 2 eta_r sqrt(I_r k_r) with k_r = 2.25 k_n (mu_r R_e)^2, where I_r is made of 7/5 m
-/// R^2 of both.
+/// dashpot is 2 eta_r sqrt(I_r k_r) with k_r = 2.25 k_n (mu_r R_e)^2, where I_r is the effective
+/// inertia of 7/5 m R^2 of each.
 void check_epsd_dashpot()
 {
   Scene s;

@@ -19,7 +19,7 @@ ExpressionMotion motion(const Vec3 &centre, const std::string &velocity,
   return {centre, velocity, constants, angular_velocity, constants, time_step};
 }
 
-/// Where a point of the solid that was at x at the start is now.
+/// Position of the point of the solid that was at @p x at the start.
 Vec3 point(const Motion &motion, const Vec3 &x, double time)
 {
   const RigidState state = motion.at(time);

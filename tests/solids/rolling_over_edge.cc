@@ -1,7 +1,7 @@
-// A sphere that rolls over the edge of a box without slipping: one contact all the time, which
-// keeps its memory, the forces of a rigid sphere that turns about the edge, and the same place
-// where the sphere leaves. Reference: energy and angular momentum about the edge; with the speed v0
-// before,
+// A sphere that rolls over the edge of a box without slipping: it has one contact all the time,
+// whose memory is kept, the forces are those of a rigid sphere that turns about the edge, and it
+// leaves where a rigid sphere does. Reference: energy and angular momentum about the edge; with the
+// speed v0 before,
 //   v^2 = v0^2 + 10/7 g R (1 - cos a),  N = m g cos a - m v^2 / R,  F = 2/7 m g sin a,
 // and N = 0 at cos a = 10/17 + 7/17 v0^2 / (g R). Without friction v^2 = v0^2 + 2 g R (1 - cos a)
 // and N = 0 at cos a = 2/3 + v0^2 / (3 g R).
