@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from eunoe.launch import Failure
+
+# Factor on limits of time: 1 for a release build, more for builds that are much slower.
+PATIENCE = int(os.environ.get("EUNOE_PATIENCE", "1"))
 
 
 class Attempts:

@@ -15,15 +15,16 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from attempts import PATIENCE
 from eunoe.launch import overrides
 
 ROOT = Path(__file__).resolve().parents[2]
 # Far above what a check takes on a busy machine.
-HANG = 120
+HANG = 120 * PATIENCE
 HUNG = -signal.SIGKILL
 # Processor time (s) of a check, whatever else the machine does. It takes about one; making the mesh of a wide
 # case would take more than ten.
-MOST_WORK = 5.
+MOST_WORK = 5. * PATIENCE
 # Cases that read a bed that a script makes, and studies that read data measured on a twin.
 MADE_FIRST = {"column_collapse", "settled_bed", "plough", "late_pass", "study", "heap_study", "angle_only", "rolling"}
 # A warning that is right for this case, and one that depends on the machine.

@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from attempts import Attempts
+from attempts import PATIENCE, Attempts
 from eunoe.endurance.kill_and_restart import Case, compare, kill_all
 from eunoe.launch import Failure
 
@@ -46,7 +46,7 @@ def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None
     """Runs on two ranks, which must say once that there is no space for @p what."""
     try:
         run = subprocess.run(case.command(2, *settings), text=True, check=False, capture_output=True,
-                             timeout=60)
+                             timeout=60 * PATIENCE)
     except subprocess.TimeoutExpired:
         raise Failure("it hangs") from None
     if run.returncode not in codes:
@@ -82,14 +82,14 @@ def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
     table = case.results / "energies.csv"
     process = case.start(2, "restart/checkpoint = true", "restart/frequency = 3000",
                          "simulation control/iteration end = 10000000")
-    end = time.monotonic() + 60
+    end = time.monotonic() + 60 * PATIENCE
     while case.last_step() == 0 and time.monotonic() < end:
         time.sleep(0.01)
     limit = table.stat().st_size + 100
     for number in case.processes():
         resource.prlimit(number, resource.RLIMIT_FSIZE, (limit, limit))
     try:
-        output = process.communicate(timeout=60)[0]
+        output = process.communicate(timeout=60 * PATIENCE)[0]
     except subprocess.TimeoutExpired:
         kill_all(case, process)
         raise Failure("it hangs") from None
