@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace eunoe {
 
@@ -114,6 +115,27 @@ void MeshBoundary::find_sides(const Triangulation &triangulation)
       }
       side_of_face[cell->index()][f] = static_cast<int>(number);
     }
+  order_sides();
+}
+
+void MeshBoundary::order_sides()
+{
+  std::vector<std::size_t> order(all_sides.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::stable_sort(order.begin(), order.end(), [this](const std::size_t a, const std::size_t b) {
+    return all_sides[a].id < all_sides[b].id;
+  });
+  std::vector<int> place(order.size());
+  std::vector<Side> ordered;
+  for (const std::size_t side : order) {
+    place[side] = static_cast<int>(ordered.size());
+    ordered.push_back(all_sides[side]);
+  }
+  all_sides = ordered;
+  for (std::array<int, 6> &sides : side_of_face)
+    for (int &side : sides)
+      if (side >= 0)
+        side = place[static_cast<std::size_t>(side)];
 }
 
 bool MeshBoundary::is_alone(const std::size_t side) const

@@ -61,6 +61,9 @@ public:
 private:
   bool is_alone(std::size_t side) const;
   void find_sides(const Triangulation &triangulation);
+  /// By boundary id, so that the order of walls, and with it the last bits of their forces, does
+  /// not depend on the cells.
+  void order_sides();
   /// Whether the edges of all sides are sharp and the coarse mesh lies on one side of each.
   bool is_convex_before_refinement(const Triangulation &triangulation) const;
   bool has_strayed(const Triangulation &triangulation) const;

@@ -89,7 +89,7 @@ void test_ranks()
 
 void test_packing()
 {
-  Case packing(packing_case("packing", 0.4));
+  Case packing(packing_case("packing", 0.8));
   double worst = 0.;
   packing.run([&worst](Simulation &simulation) {
     if (simulation.step_number() % 2000 == 0 && simulation.step_number() > 0)
@@ -102,13 +102,13 @@ void test_packing()
   Vec3 sum;
   for (const char *const id : {"0", "1", "2", "3", "4", "5"}) {
     const Table table = table_of(std::string("packing_") + id + ".csv");
-    check(std::string("rows of boundary ") + id, table.rows.size() == 21);
+    check(std::string("rows of boundary ") + id, table.rows.size() == 41);
     const auto &row = table.rows.back();
     time = row[0];
     sum += Vec3{row[1], row[2], row[3]};
   }
   const auto bottom = table_of("packing_4.csv").rows.back();
-  check_close("time of the last row", time, 0.4, 1e-12);
+  check_close("time of the last row", time, 0.8, 1e-12);
   check_close("weight on all walls", sum.z / weight, -1., 1e-6);
   check_close("the side walls balance", std::hypot(sum.x, sum.y) / weight, 0., 1e-6);
   check("the floor bears most of it", -bottom[3] > 0.9 * weight && -bottom[3] <= 1.05 * weight);
