@@ -34,7 +34,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     if (!found.empty())
       throw UserError(found);
     Log silent(comm, true);
-    Simulation simulation(of_run, comm, silent, Simulation::Purpose::check);
+    Simulation simulation(of_run, comm, silent);
     simulation.make_observables();
     described = simulation.described_observables();
     cost = simulation.estimate();

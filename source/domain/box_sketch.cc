@@ -18,48 +18,40 @@ std::vector<std::string> parts_of(const std::string &arguments)
   return parts;
 }
 
-/// Whole numbers from 1, separated by commas; empty for any other text.
-std::vector<unsigned int> counts_in(const std::string &text)
+/// How many whole numbers from 1, separated by commas; 0 if they are no such thing.
+std::size_t n_counts(const std::string &text)
 {
-  std::vector<unsigned int> counts;
+  std::size_t n = 0;
   std::istringstream stream(text);
-  for (std::string word; std::getline(stream, word, ',');) {
+  for (std::string word; std::getline(stream, word, ','); ++n) {
     char *end;
     const double value = std::strtod(word.c_str(), &end);
     while (*end == ' ')
       ++end;
     if (*end != '\0' || !(value >= 1. && value < 2e9) || value != std::floor(value))
-      return {};
-    counts.push_back(static_cast<unsigned int>(value));
+      return 0;
   }
-  return counts;
+  return n;
 }
 
 } // namespace
 
-std::optional<BoxSketch> sketch_of(const MeshParameters &mesh)
+std::optional<MeshParameters> sketch_of(const MeshParameters &mesh)
 {
   if (mesh.type != "dealii" || mesh.has_target || mesh.placement.angle != 0.)
     return std::nullopt;
-  BoxSketch sketch = {mesh, {1., 1., 1.}};
-  sketch.mesh.refinement = 0;
-  const double cuts = std::pow(2., mesh.refinement);
-  for (double &n : sketch.n_cells)
-    n *= cuts;
+  MeshParameters sketch = mesh;
+  sketch.refinement = 0;
   if (mesh.grid_type == "hyper_rectangle" || mesh.grid_type == "hyper_cube")
     return sketch;
   const bool cube = mesh.grid_type == "subdivided_hyper_cube";
   std::vector<std::string> parts = parts_of(mesh.grid_arguments);
-  const std::vector<unsigned int> counts =
-      parts.empty() ? std::vector<unsigned int>() : counts_in(parts[0]);
-  if ((!cube && mesh.grid_type != "subdivided_hyper_rectangle") ||
-      counts.size() != (cube ? 1u : 3u))
+  if ((!cube && mesh.grid_type != "subdivided_hyper_rectangle") || parts.empty() ||
+      n_counts(parts[0]) != (cube ? 1u : 3u))
     return std::nullopt;
-  for (unsigned int d = 0; d < 3; ++d)
-    sketch.n_cells[d] *= counts[cube ? 0 : d];
-  sketch.mesh.grid_arguments = cube ? "1" : "1, 1, 1";
+  sketch.grid_arguments = cube ? "1" : "1, 1, 1";
   for (std::size_t k = 1; k < parts.size(); ++k)
-    sketch.mesh.grid_arguments += ":" + parts[k];
+    sketch.grid_arguments += ":" + parts[k];
   return sketch;
 }
 

@@ -4,8 +4,6 @@
 #include <eunoe/solids/saved_states.h>
 #include <eunoe/solids/surface_part.h>
 
-#include <deal.II/fe/mapping_cartesian.h>
-#include <deal.II/fe/mapping_q1.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include "mesh_boundary.h"
@@ -20,28 +18,6 @@ namespace eunoe {
 namespace {
 
 using Triangulation = dealii::parallel::distributed::Triangulation<3>;
-
-/// deal.II asks for the particles of every cell at each search, and its mapping prepares for those
-/// of cells that have none, too: most of the time of a search in a mesh of many more cells than
-/// particles.
-class ParticleMapping : public dealii::MappingQ1<3>
-{
-public:
-  using Points = dealii::ArrayView<const dealii::Point<3>>;
-
-  std::unique_ptr<dealii::Mapping<3>> clone() const override
-  {
-    return std::make_unique<ParticleMapping>(*this);
-  }
-
-  void transform_points_real_to_unit_cell(
-      const Triangulation::cell_iterator &cell, const Points &points,
-      const dealii::ArrayView<dealii::Point<3>> &unit) const override
-  {
-    if (points.size() > 0)
-      dealii::MappingQ1<3>::transform_points_real_to_unit_cell(cell, points, unit);
-  }
-};
 
 /// Refines the cells that meet the box around a region's mesh by more than a face; collective.
 void refine(Triangulation &triangulation, const RefinementParameters::Region &region)
@@ -65,8 +41,7 @@ void refine(Triangulation &triangulation, const RefinementParameters::Region &re
     triangulation.execute_coarsening_and_refinement();
     if (static_cast<double>(triangulation.n_global_active_cells()) > most_cells)
       throw UserError(describe(region.mesh.path, "") + ": the mesh has more than " +
-                      format(most_cells) +
-                      " cells. Refine less; 8 to 10 particles a cell are best.");
+                      format(most_cells) + " cells. Refine less: the cells change no result.");
   }
 }
 
@@ -78,10 +53,10 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
 {
   Triangulation &triangulation = mesh_data->triangulation;
   check_mesh_size(background.mesh);
-  const auto sketch = background.is_only_looked_at && background.refinement.regions.empty()
+  const auto sketch = !background.needs_cells && background.refinement.regions.empty()
                           ? sketch_of(background.mesh)
                           : std::nullopt;
-  const MeshParameters &mesh = sketch ? sketch->mesh : background.mesh;
+  const MeshParameters &mesh = sketch ? *sketch : background.mesh;
   create_mesh(triangulation, mesh, comm);
   const auto bounding_box = dealii::GridTools::compute_bounding_box(triangulation);
   lower_corner = to_vec3(bounding_box.get_boundary_points().first);
@@ -91,11 +66,11 @@ Domain::Domain(const Background &background, const BoundaryParameters &boundarie
   triangulation.refine_global(global_refinement(triangulation, mesh));
   for (const RefinementParameters::Region &region : background.refinement.regions)
     refine(triangulation, region);
-  measure_cells();
-  if (sketch)
-    take_cells_of(*sketch);
+  measure();
   boundary.refine(triangulation, periodic, box, moves());
   make_boundaries(boundaries, wall_material, boundary, periodic);
+  if (!background.needs_cells)
+    mesh_data.reset();
 }
 
 void Domain::move_to(const double time)
@@ -127,17 +102,13 @@ Box Domain::box_from_centre() const
   return {{-radius, -radius, -radius}, {radius, radius, radius}};
 }
 
-void Domain::measure_cells()
+void Domain::measure()
 {
-  const Triangulation &triangulation = mesh_data->triangulation;
   const double tolerance = 1e-10 * norm(upper_corner - lower_corner);
   bool boxes = true;
-  double width = std::numeric_limits<double>::max();
   Vec3 lower = lower_corner, upper = upper_corner;
-  for (const auto &cell : triangulation.active_cell_iterators())
+  for (const auto &cell : mesh_data->triangulation.active_cell_iterators())
     if (cell->is_locally_owned()) {
-      for (unsigned int d = 0; d < 3; ++d)
-        width = std::min(width, cell->extent_in_direction(d));
       const auto cell_box = cell->bounding_box().get_boundary_points();
       for (const unsigned int v : cell->vertex_indices())
         for (unsigned int d = 0; d < 3; ++d) {
@@ -148,33 +119,23 @@ void Domain::measure_cells()
           boxes = boxes && std::abs(x - end) < tolerance;
         }
     }
+  number_of_cells = mesh_data->triangulation.n_global_active_cells();
   mesh_data->has_boxes = dealii::Utilities::MPI::min(boxes ? 1 : 0, comm) == 1;
-  mesh_data->is_plain = mesh_data->has_boxes && !triangulation.has_hanging_nodes() && !moves();
-  if (!mesh_data->has_boxes)
-    width = std::min(width, smallest_distance_of_cells_apart(*mesh_data, box));
-  cell_width = dealii::Utilities::MPI::min(width, comm);
   // On a manifold the refined mesh reaches further than the coarse one.
   for (unsigned int d = 0; d < 3; ++d) {
     lower_corner[d] = dealii::Utilities::MPI::min(lower[d], comm);
     upper_corner[d] = dealii::Utilities::MPI::max(upper[d], comm);
   }
-  if (mesh_data->has_boxes)
-    mesh_data->mapping = std::make_unique<dealii::MappingCartesian<3>>();
-  else
-    mesh_data->mapping = std::make_unique<ParticleMapping>();
-}
-
-void Domain::take_cells_of(const BoxSketch &sketch)
-{
-  double number = 1.;
-  for (unsigned int d = 0; d < 3; ++d) {
-    number *= sketch.n_cells[d];
-    cell_width = std::min(cell_width, (upper_corner[d] - lower_corner[d]) / sketch.n_cells[d]);
-  }
-  sketched_cells = static_cast<std::uint64_t>(number);
 }
 
 Domain::~Domain() = default;
+
+const Domain::Mesh &Domain::mesh() const
+{
+  if (!mesh_data)
+    throw std::logic_error("somebody asks for cells of the mesh without needs_cells()");
+  return *mesh_data;
+}
 
 bool Domain::contains(const Vec3 &x) const
 {
@@ -192,11 +153,6 @@ int Domain::passed_outlet(const Vec3 &from, const Vec3 &x) const
     if (dot(x - outlet_list[o].point, outlet_list[o].inward) < 0.)
       return static_cast<int>(o);
   return -1;
-}
-
-std::uint64_t Domain::n_cells() const
-{
-  return sketched_cells > 0 ? sketched_cells : mesh_data->triangulation.n_global_active_cells();
 }
 
 namespace {
@@ -237,6 +193,22 @@ std::set<unsigned int> find_periodic_ids(const BoundaryParameters &boundaries,
 
 } // namespace
 
+namespace {
+
+/// Area of a flat boundary before refinement (m2).
+double area_of(const Triangulation &triangulation, const unsigned int id)
+{
+  double area = 0.;
+  for (const auto &cell : triangulation.cell_iterators_on_level(0))
+    for (const unsigned int f : cell->face_indices())
+      if (cell->face(f)->at_boundary() && cell->face(f)->boundary_id() == id)
+        area += 0.5 * norm(cross(to_vec3(cell->face(f)->vertex(3) - cell->face(f)->vertex(0)),
+                                 to_vec3(cell->face(f)->vertex(2) - cell->face(f)->vertex(1))));
+  return area;
+}
+
+} // namespace
+
 std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
                                                   const std::vector<Side> &all_sides)
 {
@@ -244,7 +216,6 @@ std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boun
   Triangulation &triangulation = mesh_data->triangulation;
   const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
   Problems problems;
-  std::vector<dealii::GridTools::PeriodicFacePair<Triangulation::cell_iterator>> pairs;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
     if (c.type != "periodic")
@@ -267,18 +238,15 @@ std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boun
                    "Choose two opposite boundaries and their axis.");
       continue;
     }
-    try {
-      dealii::GridTools::collect_periodic_faces(triangulation, first, second, d, pairs);
-    } catch (const std::exception &) {
-      problems.add(where, "the faces of the two boundaries do not match.",
-                   "Make the mesh the same on both.");
-    }
+    if (const double one = area_of(triangulation, first), other = area_of(triangulation, second);
+        std::abs(one - other) > 1e-6 * one)
+      problems.add(where, "the two boundaries do not have the same shape.",
+                   "Make the mesh the same at both ends.");
     box.length[d] = upper_corner[d] - lower_corner[d];
     box.origin[d] = lower_corner[d];
   }
   if (!problems.empty())
     throw UserError(problems);
-  triangulation.add_periodicity(pairs);
   return periodic_ids;
 }
 

@@ -47,7 +47,7 @@ void check_size(const MeshParameters &mesh, const double coarse, const unsigned 
     throw UserError(describe(mesh.path, "") + ": the mesh would have " + format(cells) +
                     " cells, " + format(coarse) + " of them before the refinement. Give at most " +
                     format(most_cells) + " and " + format(most_coarse) +
-                    "; 8 to 10 particles a cell are best.");
+                    ": the cells change no result.");
 }
 
 /// A manifold that is put where the mesh on it is.

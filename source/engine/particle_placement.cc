@@ -1,90 +1,41 @@
-// How new particles find the ranks and cells that they belong to.
-
-#include <deal.II/grid/filtered_iterator.h>
-#include <deal.II/grid/grid_tools.h>
+// How particles find the ranks and cells that they belong to.
 
 #include "particle_store_implementation.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 
 namespace eunoe {
 
-void ParticleStore::Implementation::insert_by_handler(
-    const std::vector<std::vector<double>> &properties, const std::vector<NewParticle> &particles)
+void ParticleStore::Implementation::take(const std::vector<double> &rows)
 {
-  MPI_Comm comm = domain.communicator();
-  const auto owned = dealii::IteratorFilters::LocallyOwnedCell();
-  const auto boxes = dealii::Utilities::MPI::all_gather(
-      comm,
-      dealii::GridTools::compute_mesh_predicate_bounding_box(
-          triangulation,
-          std::function<bool(const dealii::Triangulation<3>::active_cell_iterator &)>(owned)));
-  // In portions, as each is copied several times on its way.
-  constexpr std::size_t portion = 50000;
-  const std::size_t most =
-      dealii::Utilities::MPI::max(static_cast<std::uint64_t>(particles.size()), comm);
-  for (std::size_t begin = 0; begin < most; begin += portion) {
-    std::vector<dealii::Point<3>> positions;
-    std::vector<std::vector<double>> share;
-    for (std::size_t k = begin; k < std::min(begin + portion, particles.size()); ++k) {
-      positions.push_back(to_point(domain.periods().wrap(particles[k].position)));
-      share.push_back(properties[k]);
-    }
-    // Ids go with the properties: given apart, they are exchanged only among ranks that have
-    // particles to insert, and these wait for the others forever (deal.II 9.4).
-    handler.insert_global_particles(positions, boxes, share);
-  }
-}
-
-void ParticleStore::Implementation::insert_by_locator(
-    const std::vector<std::vector<double>> &properties)
-{
-  MPI_Comm comm = domain.communicator();
-  constexpr std::size_t portion = 50000;
-  const std::size_t most =
-      dealii::Utilities::MPI::max(static_cast<std::uint64_t>(properties.size()), comm);
-  for (std::size_t begin = 0; begin < most; begin += portion) {
-    std::vector<double> mine;
-    for (std::size_t k = begin; k < std::min(begin + portion, properties.size()); ++k)
-      mine.insert(mine.end(), properties[k].begin(), properties[k].end());
-    std::vector<double> all;
-    for (const auto &part : dealii::Utilities::MPI::all_gather(comm, mine))
-      all.insert(all.end(), part.begin(), part.end());
-    take_best_fitting(all);
-  }
-  handler.update_cached_numbers();
-}
-
-void ParticleStore::Implementation::take_best_fitting(const std::vector<double> &rows)
-{
-  MPI_Comm comm = domain.communicator();
-  const std::size_t n_values = property::extra + n_extra + 3, n = rows.size() / n_values;
-  const bool has_cells = triangulation.n_locally_owned_active_cells() > 0;
-  std::vector<double> outside(n, std::numeric_limits<double>::max());
-  std::vector<unsigned int> found(n);
-  for (std::size_t k = 0; has_cells && k < n; ++k) {
-    const Vec3 x =
-        domain.to_own_frame(load(&rows[k * n_values + property::extra + n_extra], 0.).vec());
-    found[k] = locator->find(x);
-    outside[k] = locator->outside(found[k], x);
-  }
-  std::vector<double> least = outside;
-  MPI_Allreduce(MPI_IN_PLACE, least.data(), static_cast<int>(n), MPI_DOUBLE, MPI_MIN, comm);
-  std::vector<int> owner(n, std::numeric_limits<int>::max());
-  for (std::size_t k = 0; k < n; ++k)
-    if (outside[k] == least[k])
-      owner[k] = rank;
-  MPI_Allreduce(MPI_IN_PLACE, owner.data(), static_cast<int>(n), MPI_INT, MPI_MIN, comm);
-  for (std::size_t k = 0; k < n; ++k) {
-    if (owner[k] != rank)
-      continue;
-    const CellLocator::Cell &cell = locator->cell(found[k]);
-    const double *const values = &rows[k * n_values];
-    handler.insert_particle(cell->center(), dealii::Point<3>(0.5, 0.5, 0.5),
+  const std::size_t n_values = property::extra + n_extra;
+  for (std::size_t begin = 0; begin < rows.size(); begin += n_values) {
+    const double *const values = &rows[begin];
+    const Forest::Place place = place_of(load(values + property::position, 0.).vec());
+    const Forest::ActiveCell cell = forest.find(place);
+    if (!cell->is_locally_owned())
+      throw std::logic_error("a particle has come to a rank that does not own its place");
+    const dealii::Point<3> centre = forest.centre(place);
+    handler.insert_particle(centre, forest.get_mapping().transform_real_to_unit_cell(cell, centre),
                             static_cast<dealii::types::particle_index>(values[property::id]), cell,
                             dealii::ArrayView<const double>(values, n_values));
   }
+}
+
+void ParticleStore::Implementation::hand_over(std::map<unsigned int, std::vector<double>> &rows)
+{
+  const auto own = rows.find(rank);
+  if (own != rows.end()) {
+    take(own->second);
+    rows.erase(own);
+  }
+  for (const auto &[from, parcel] :
+       dealii::Utilities::MPI::some_to_some(domain.communicator(), rows))
+    take(parcel);
+  rows.clear();
+  handler.update_cached_numbers();
+  particles.clear();
 }
 
 void ParticleStore::insert(const std::vector<NewParticle> &particles,
@@ -92,7 +43,6 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
 {
   Implementation &impl = *implementation;
   MPI_Comm comm = impl.domain.communicator();
-  // Refused here, as the search for the cells of such points never returns.
   const std::uint64_t outside = dealii::Utilities::MPI::sum(
       static_cast<std::uint64_t>(
           std::count_if(particles.begin(), particles.end(),
@@ -102,21 +52,74 @@ void ParticleStore::insert(const std::vector<NewParticle> &particles,
     throw UserError("Of the particles to insert, " + std::to_string(outside) +
                     " lie outside the mesh. Enlarge the mesh or move the place of insertion.");
 
-  std::vector<std::vector<double>> properties;
-  for (std::size_t k = 0; k < particles.size(); ++k)
-    properties.push_back(
-        impl.properties_of(particles[k], origins.empty() ? Origin() : origins[k], extra));
-  const std::uint64_t expected =
-      n_global() + dealii::Utilities::MPI::sum(static_cast<std::uint64_t>(particles.size()), comm);
-  if (impl.locator)
-    impl.insert_by_locator(properties);
-  else
-    impl.insert_by_handler(properties, particles);
-  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
-    particle->set_id(
-        static_cast<dealii::types::particle_index>(particle->get_properties()[property::id]));
-  if (n_global() != expected)
-    throw std::logic_error("the mesh did not take over all inserted particles");
+  std::map<unsigned int, std::vector<double>> rows;
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const std::vector<double> values =
+        impl.properties_of(particles[k], origins.empty() ? Origin() : origins[k], extra);
+    std::vector<double> &row = rows[impl.forest.owner(impl.place_of(particles[k].position))];
+    row.insert(row.end(), values.begin(), values.end());
+  }
+  impl.hand_over(rows);
+}
+
+bool ParticleStore::Implementation::mark_cells()
+{
+  // Eight to ten particles a cell are best; between the bounds cells stay as they are, so that what
+  // flows does not change the mesh all the time. Where a rank has few particles, smaller cells
+  // balance the load.
+  const std::uint64_t of_rank =
+      handler.n_global_particles() / dealii::Utilities::MPI::n_mpi_processes(domain.communicator());
+  const auto most = static_cast<unsigned int>(
+      std::min<std::uint64_t>(24, std::max<std::uint64_t>(8, of_rank / 128)));
+  const unsigned int fewest_of_eight = most / 2;
+  std::vector<Forest::ActiveCell> crowded;
+  std::map<Forest::Cell, std::pair<unsigned int, unsigned int>> families;
+  std::array<std::uint64_t, 2> counts = {{0, 0}}; // Particles in crowded cells; cells to unite.
+  for (const auto &cell : forest.mesh().active_cell_iterators()) {
+    if (!cell->is_locally_owned())
+      continue;
+    const auto n = static_cast<unsigned int>(handler.n_particles_in_cell(cell));
+    if (n > most && !forest.is_finest(cell)) {
+      crowded.push_back(cell);
+      counts[0] += n;
+    } else if (cell->level() > 0 && n <= fewest_of_eight) {
+      auto &[n_cells, n_particles] = families[cell->parent()];
+      ++n_cells;
+      n_particles += n;
+    }
+  }
+  const auto is_sparse = [fewest_of_eight](const auto &family) {
+    return family.second.first == 8 && family.second.second <= fewest_of_eight;
+  };
+  counts[1] = 8 * std::count_if(families.begin(), families.end(), is_sparse);
+  const auto pays = [&](const std::uint64_t in_vain) {
+    std::array<std::uint64_t, 2> sums = counts;
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_UINT64_T, MPI_SUM, domain.communicator());
+    return 10 * sums[0] > handler.n_global_particles() ||
+           2 * sums[1] > forest.mesh().n_global_active_cells() + 2 * in_vain;
+  };
+  if (!pays(cannot_be_united))
+    return false;
+  for (const Forest::ActiveCell &cell : crowded)
+    cell->set_refine_flag();
+  for (const auto &family : families)
+    if (is_sparse(family))
+      for (unsigned int c = 0; c < 8; ++c)
+        family.first->child(c)->set_coarsen_flag();
+  // Cells beside finer ones cannot be united.
+  forest.mesh().prepare_coarsening_and_refinement();
+  cannot_be_united = dealii::Utilities::MPI::sum(counts[1], domain.communicator());
+  counts[1] = 0;
+  for (const auto &cell : forest.mesh().active_cell_iterators())
+    counts[1] += cell->is_locally_owned() && cell->coarsen_flag_set() ? 1 : 0;
+  cannot_be_united -= dealii::Utilities::MPI::sum(counts[1], domain.communicator());
+  if (pays(0))
+    return true;
+  for (const auto &cell : forest.mesh().active_cell_iterators()) {
+    cell->clear_refine_flag();
+    cell->clear_coarsen_flag();
+  }
+  return false;
 }
 
 } // namespace eunoe

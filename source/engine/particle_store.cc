@@ -1,72 +1,15 @@
 #include <eunoe/core/compat.h>
 #include <eunoe/engine/load_balancing.h>
 
-#include <deal.II/grid/grid_tools.h>
-
 #include "particle_store_implementation.h"
 
 #include <algorithm>
-#include <set>
 
 namespace eunoe {
 
-void ParticleStore::Implementation::find_foreign_neighbours()
-{
-  // Vertices that coincide, also across periodic faces, count as one.
-  std::map<unsigned int, std::vector<unsigned int>> groups;
-  std::map<unsigned int, unsigned int> group_of;
-  dealii::GridTools::collect_coinciding_vertices(triangulation, groups, group_of);
-  const auto representative = [&](unsigned int v) {
-    const auto it = group_of.find(v);
-    return it == group_of.end() ? v : groups.at(it->second).front();
-  };
-  std::vector<std::set<unsigned int>> foreign_at(triangulation.n_vertices());
-  for (const auto &cell : triangulation.active_cell_iterators())
-    if (cell->is_ghost())
-      for (const unsigned int v : cell->vertex_indices())
-        foreign_at[representative(cell->vertex_index(v))].insert(cell->active_cell_index());
-  std::vector<ForeignCell> foreign(triangulation.n_active_cells());
-  for (const auto &cell : triangulation.active_cell_iterators())
-    if (cell->is_ghost()) {
-      const dealii::BoundingBox<3> box = cell->bounding_box();
-      const auto &corners = box.get_boundary_points();
-      const Vec3 lower = to_vec3(corners.first), upper = to_vec3(corners.second);
-      foreign[cell->active_cell_index()] = {static_cast<int>(cell->subdomain_id()),
-                                            0.5 * (lower + upper), 0.5 * (upper - lower)};
-    }
-  near_cell.assign(triangulation.n_active_cells(), {});
-  for (const auto &cell : triangulation.active_cell_iterators())
-    if (cell->is_locally_owned()) {
-      std::set<unsigned int> cells_around;
-      for (const unsigned int v : cell->vertex_indices()) {
-        const auto &at = foreign_at[representative(cell->vertex_index(v))];
-        cells_around.insert(at.begin(), at.end());
-      }
-      std::vector<ForeignCell> &near = near_cell[cell->active_cell_index()];
-      for (const unsigned int c : cells_around)
-        near.push_back(foreign[c]);
-      std::stable_sort(
-          near.begin(), near.end(),
-          [](const ForeignCell &one, const ForeignCell &two) { return one.rank < two.rank; });
-    }
-}
-
-void ParticleStore::Implementation::measure_gaps(const ParticleArrays &arrays)
-{
-  largest_gap = 0.;
-  for (std::size_t row = 0; row < arrays.n_owned; ++row)
-    largest_gap = std::max(
-        largest_gap, locator->gap(cells[row], domain.to_own_frame(arrays.position[row].vec())));
-  largest_gap = dealii::Utilities::MPI::max(largest_gap, domain.communicator());
-  if (largest_gap > 0.5 * domain.smallest_cell_width())
-    throw UserError("A particle is " + format(largest_gap) +
-                    " m away from the cells of the mesh. Check the time step and the solids, or "
-                    "make the cells at the boundary smaller, so that they follow it more closely.");
-}
-
-ParticleStore::ParticleStore(Domain &domain, const unsigned int n_extra,
-                             const std::optional<FieldHandle> asleep)
-    : implementation(std::make_unique<Implementation>(domain, n_extra, asleep))
+ParticleStore::ParticleStore(const Domain &domain, const double least_width,
+                             const unsigned int n_extra, const std::optional<FieldHandle> asleep)
+    : implementation(std::make_unique<Implementation>(domain, least_width, n_extra, asleep))
 {
 }
 
@@ -77,6 +20,11 @@ std::uint64_t ParticleStore::n_global() const
   return implementation->handler.n_global_particles();
 }
 
+std::uint64_t ParticleStore::n_cells() const
+{
+  return implementation->forest.mesh().n_global_active_cells();
+}
+
 void ParticleStore::write(const ParticleArrays &particles, const std::vector<double> &work)
 {
   Implementation &impl = *implementation;
@@ -85,17 +33,13 @@ void ParticleStore::write(const ParticleArrays &particles, const std::vector<dou
     auto &particle = *impl.particles[row];
     const auto values = particle.get_properties();
     const Vec3 x = box.wrap(particles.position[row].vec());
-    if (impl.locator) {
-      const Vec3 own = impl.domain.to_own_frame(x);
-      particle.set_location(impl.locator->cell(impl.locator->walk(impl.cells[row], own))->center());
-      store(x, &values[property::extra + impl.n_extra]);
-    } else
-      particle.set_location(to_point(x));
+    store(x, &values[property::position]);
     store(particles.velocity[row].vec(), &values[property::velocity]);
     store(particles.spin[row].vec(), &values[property::spin]);
     store(particles.force[row].vec(), &values[property::force]);
     store(particles.torque[row].vec(), &values[property::torque]);
-    values[property::origin] = encode({impl.rank, static_cast<std::int32_t>(row)});
+    values[property::origin] =
+        encode({static_cast<int>(impl.rank), static_cast<std::int32_t>(row)});
     values[property::work] = work[row];
     for (unsigned int e = 0; e < impl.n_extra; ++e)
       values[property::extra + e] = particles.extra[e][row];
@@ -115,49 +59,55 @@ void ParticleStore::remove(const std::vector<std::size_t> &rows)
 void ParticleStore::migrate()
 {
   Implementation &impl = *implementation;
-  const std::uint64_t before = n_global();
-  std::string lost;
-  const auto connection =
-      impl.handler.signals.particle_lost.connect([&](const auto &particle, const auto &) {
-        if (lost.empty()) {
-          std::ostringstream text;
-          text << "particle " << particle->get_id() << " at (" << particle->get_location() << ")";
-          lost = text.str();
-        }
-      });
-  impl.handler.sort_particles_into_subdomains_and_cells();
-  connection.disconnect();
-  impl.particles.clear();
-  if (n_global() == before)
-    return;
-  const std::vector<std::string> all =
-      dealii::Utilities::MPI::all_gather(impl.domain.communicator(), lost);
-  const auto first = std::find_if(all.begin(), all.end(), [](const auto &s) { return !s.empty(); });
-  throw UserError(std::to_string(before - n_global()) + " particle(s) left the mesh" +
-                  (first == all.end() ? std::string() : ", " + *first + " m among them") +
-                  ". Check the time step and the solids, or make the boundary an outlet.");
+  std::vector<Implementation::Handler::particle_iterator> leaving;
+  std::map<unsigned int, std::vector<double>> rows;
+  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle) {
+    const auto values = particle->get_properties();
+    const Forest::Place place = impl.place_of(load(&values[property::position], 0.).vec());
+    const Forest::ActiveCell cell = impl.forest.find(place);
+    if (cell == particle->get_surrounding_cell()) {
+      particle->set_location(impl.forest.centre(place));
+      continue;
+    }
+    const unsigned int owner = cell->is_locally_owned() ? impl.rank : impl.forest.owner(place);
+    rows[owner].insert(rows[owner].end(), values.begin(), values.end());
+    leaving.push_back(particle);
+  }
+  impl.handler.remove_particles(leaving); // Collective.
+  impl.hand_over(rows);
+}
+
+bool ParticleStore::adapt()
+{
+  Implementation &impl = *implementation;
+  bool is_changed = false;
+  // A level at a time.
+  while (impl.mark_cells()) {
+    const auto before = impl.forest.mesh().n_global_active_cells();
+    impl.change_mesh([](Forest::Triangulation &mesh) { mesh.execute_coarsening_and_refinement(); });
+    if (impl.forest.mesh().n_global_active_cells() == before)
+      break;
+    is_changed = true;
+  }
+  return is_changed;
 }
 
 void ParticleStore::repartition(const LoadBalancingParameters &parameters)
 {
   Implementation &impl = *implementation;
-  const auto connection = compat::connect_weight(impl.triangulation, [&](const auto &cell) {
+  const auto connection = compat::connect_weight(impl.forest.mesh(), [&](const auto &cell) {
     return static_cast<unsigned int>(impl.cell_weight(to_vec3(cell->center()), parameters) +
                                      impl.weight(impl.handler.particles_in_cell(cell), parameters));
   });
-  impl.handler.prepare_for_coarsening_and_refinement();
-  impl.triangulation.repartition();
-  impl.handler.unpack_after_coarsening_and_refinement();
+  impl.change_mesh([](Forest::Triangulation &mesh) { mesh.repartition(); });
   connection.disconnect();
-  impl.look_at_cells();
-  impl.particles.clear();
 }
 
 double ParticleStore::imbalance(const LoadBalancingParameters &parameters) const
 {
   Implementation &impl = *implementation;
   double load = impl.weight(impl.handler, parameters);
-  for (const auto &cell : impl.triangulation.active_cell_iterators())
+  for (const auto &cell : impl.forest.mesh().active_cell_iterators())
     if (cell->is_locally_owned())
       load += impl.cell_weight(to_vec3(cell->center()), parameters);
   const auto loads = dealii::Utilities::MPI::min_max_avg(load, impl.domain.communicator());
@@ -179,7 +129,7 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   const std::size_t n = impl.handler.n_locally_owned_particles();
   entries.reserve(n);
   for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
-    entries.push_back({grid.key(impl.position_of(*particle)),
+    entries.push_back({grid.key(load(&particle->get_properties()[property::position], 0.).vec()),
                        static_cast<ParticleId>(particle->get_id()),
                        particle->get_surrounding_cell()->active_cell_index(), particle});
   std::sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
@@ -195,7 +145,7 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
     impl.particles[row] = entry.particle;
     impl.cells[row] = entry.cell;
     const auto values = entry.particle->get_properties();
-    const Vec3 x = impl.position_of(*entry.particle);
+    const Vec3 x = load(&values[property::position], 0.).vec();
     const double radius = values[property::radius], mass = values[property::mass];
     arrays.position[row] = {x.x, x.y, x.z, radius};
     arrays.velocity[row] = load(&values[property::velocity], mass);
@@ -209,20 +159,14 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
     for (unsigned int e = 0; e < impl.n_extra; ++e)
       arrays.extra[e][row] = values[property::extra + e];
   }
-  if (impl.locator)
-    impl.measure_gaps(arrays);
-}
-
-unsigned int ParticleStore::cell(const std::size_t row) const
-{
-  return implementation->cells[row];
 }
 
 void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, const double reach,
                                std::vector<int> &ranks) const
 {
   const PeriodicBox &box = implementation->domain.periods();
-  const Vec3 x = implementation->domain.to_own_frame(position);
+  // Particles that stick out of the domain are in its outermost cells.
+  const Vec3 x = implementation->forest.clamp(implementation->domain.to_own_frame(position));
   ranks.clear();
   for (const auto &cell : implementation->near_cell[implementation->cells[row]]) {
     if (!ranks.empty() && ranks.back() == cell.rank)
@@ -233,8 +177,7 @@ void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, cons
       const double outside = std::max(0., std::abs(away[d]) - cell.half[d]);
       distance2 += outside * outside;
     }
-    const double far = reach + implementation->largest_gap;
-    if (distance2 <= far * far)
+    if (distance2 <= reach * reach)
       ranks.push_back(cell.rank);
   }
 }

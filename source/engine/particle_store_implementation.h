@@ -4,24 +4,25 @@
 // The deal.II side of ParticleStore, for source files only.
 
 #include <eunoe/core/expressions.h>
-#include <eunoe/domain/cell_locator.h>
 #include <eunoe/domain/mesh.h>
+#include <eunoe/engine/forest.h>
 #include <eunoe/engine/load_balancing.h>
 #include <eunoe/engine/particle_store.h>
 
 #include <deal.II/particles/particle_handler.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 #include <vector>
 
 namespace eunoe {
 
-/// Places of a particle's data among its properties in the handler. Behind the extra doubles comes
-/// the position, in meshes where the handler is told that of the cell's centre instead.
+/// Places of a particle's data among its properties in the handler. The position is one of them, as
+/// the handler is told the centre of a lattice cell instead.
 namespace property {
-constexpr unsigned int velocity = 0, spin = 3, force = 6, torque = 9, radius = 12, mass = 13,
-                       type = 14, origin = 15, id = 16, work = 17, extra = 18;
+constexpr unsigned int position = 0, velocity = 3, spin = 6, force = 9, torque = 12, radius = 15,
+                       mass = 16, type = 17, origin = 18, id = 19, work = 20, extra = 21;
 } // namespace property
 
 inline void store(const Vec3 &v, double *values)
@@ -54,33 +55,25 @@ struct ParticleStore::Implementation
 {
   using Handler = dealii::Particles::ParticleHandler<3>;
 
-  Implementation(Domain &domain, unsigned int n_extra, std::optional<FieldHandle> asleep)
-      : domain(domain), triangulation(domain.mesh().triangulation), n_extra(n_extra),
-        asleep(asleep),
-        locator(domain.mesh().is_plain ? nullptr : std::make_unique<CellLocator>(domain)),
-        handler(triangulation, *domain.mesh().mapping,
-                property::extra + n_extra + (locator ? 3 : 0))
+  Implementation(const Domain &domain, double least_width, unsigned int n_extra,
+                 std::optional<FieldHandle> asleep)
+      : domain(domain), forest(domain, least_width), n_extra(n_extra), asleep(asleep),
+        handler(forest.mesh(), forest.get_mapping(), property::extra + n_extra),
+        rank(dealii::Utilities::MPI::this_mpi_process(domain.communicator())),
+        near_cell(forest.foreign_neighbours())
   {
-    MPI_Comm_rank(domain.communicator(), &rank);
-    look_at_cells();
   }
 
-  /// Called after load balancing.
-  void look_at_cells()
+  Forest::Place place_of(const Vec3 &position) const
   {
-    if (locator)
-      locator->rebuild();
-    find_foreign_neighbours();
+    return forest.place(domain.to_own_frame(position));
   }
-
-  void find_foreign_neighbours();
-  /// Measures the distances of particles from their cells, which must be small; collective.
-  void measure_gaps(const ParticleArrays &arrays);
 
   std::vector<double> properties_of(const NewParticle &p, const Origin &origin,
                                     const std::vector<double> &extra) const
   {
     std::vector<double> values(property::extra, 0.);
+    store(domain.periods().wrap(p.position), &values[property::position]);
     store(p.velocity, &values[property::velocity]);
     store(p.spin, &values[property::spin]);
     values[property::radius] = p.radius;
@@ -90,32 +83,28 @@ struct ParticleStore::Implementation
     values[property::id] = p.id;
     values[property::work] = 1.;
     values.insert(values.end(), extra.begin(), extra.end());
-    if (locator) {
-      const Vec3 x = domain.periods().wrap(p.position);
-      values.insert(values.end(), {x.x, x.y, x.z});
-    }
     return values;
   }
 
-  template <typename Particle>
-  Vec3 position_of(const Particle &particle) const
-  {
-    if (!locator)
-      return to_vec3(particle.get_location());
-    const auto values = particle.get_properties();
-    return load(&values[property::extra + n_extra], 0.).vec();
-  }
+  /// Gives particles to the ranks that own their places, by their properties; collective.
+  /// @param rows the properties of one particle after another, by rank; emptied
+  void hand_over(std::map<unsigned int, std::vector<double>> &rows);
+  /// Takes particles into this rank's cells.
+  void take(const std::vector<double> &rows);
 
-  /// Inserts particles by their properties, with deal.II's search for their cells or our own;
-  /// collective.
-  ///@{
-  void insert_by_handler(const std::vector<std::vector<double>> &properties,
-                         const std::vector<NewParticle> &particles);
-  void insert_by_locator(const std::vector<std::vector<double>> &properties);
-  ///@}
-  /// Of rows of properties that all ranks have, inserts those whose positions stick out least of
-  /// one of this rank's cells; collective.
-  void take_best_fitting(const std::vector<double> &rows);
+  /// Marks cells to be cut or united, so that each has some particles.
+  /// @return whether so many are marked that it pays, on all ranks; collective
+  bool mark_cells();
+  /// Lets the handler follow a change of the mesh.
+  template <typename Change>
+  void change_mesh(const Change &change)
+  {
+    handler.prepare_for_coarsening_and_refinement();
+    change(forest.mesh());
+    handler.unpack_after_coarsening_and_refinement();
+    near_cell = forest.foreign_neighbours();
+    particles.clear();
+  }
 
   /// Cost of particles, as they were when they were last written.
   template <typename Range>
@@ -144,24 +133,17 @@ struct ParticleStore::Implementation
     return std::min(most, std::max(1., cell_weights->value(0, centre, 0.)));
   }
 
-  Domain &domain;
-  dealii::parallel::distributed::Triangulation<3> &triangulation;
+  const Domain &domain;
+  Forest forest;
   const unsigned int n_extra;
   const std::optional<FieldHandle> asleep;
-  const std::unique_ptr<CellLocator> locator; ///< null where the handler finds the cells itself
   Handler handler;
-  int rank;
+  const unsigned int rank;
   std::unique_ptr<const Expressions> cell_weights;
-  double largest_gap = 0.; ///< between a particle and the box around its cell (m)
-
-  /// A cell of another rank: its owner and its box.
-  struct ForeignCell
-  {
-    int rank;
-    Vec3 centre, half;
-  };
-  /// Neighbours of a cell that others own, ordered by rank, by active cell index.
-  std::vector<std::vector<ForeignCell>> near_cell;
+  /// Cells of all ranks with few particles that could not be united when this was last tried.
+  std::uint64_t cannot_be_united = 0;
+  /// What others own around each cell, by active index.
+  std::vector<std::vector<Forest::ForeignCell>> near_cell;
   /// The particles of the last read and their cells, in the order of the arrays.
   std::vector<Handler::particle_iterator> particles;
   std::vector<unsigned int> cells;

@@ -12,7 +12,9 @@ ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const d
                                const double largest_diameter, Timers &timers)
     : domain(domain), physics(std::move(physics_)), model(physics.model), skin(skin),
       ledger(domain.outlets().size()), timers(timers),
-      store(domain, physics.fields.n_components(), physics.asleep), halo(domain.communicator()),
+      store(domain, 1.001 * (largest_diameter + skin + model.range()),
+            physics.fields.n_components(), physics.asleep),
+      halo(domain.communicator()),
       grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
            largest_diameter + skin + model.range()),
       pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
@@ -260,9 +262,9 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
                              const LoadBalancingParameters *balance)
 {
   store.migrate();
+  store.adapt();
   if (balance != nullptr) {
     store.repartition(*balance);
-    store.migrate();
     ++balances;
   }
   const std::vector<Origin> origins = build_lists(solids);

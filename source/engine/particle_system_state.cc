@@ -105,11 +105,9 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
     kept.push_back({rank, static_cast<std::int32_t>(k)});
   }
   store.insert(list, extra_defaults, kept);
-  store.migrate();
-  if (store.imbalance(balancing) > balancing.threshold_at_start) {
+  store.adapt();
+  if (store.imbalance(balancing) > balancing.threshold_at_start)
     store.repartition(balancing);
-    store.migrate();
-  }
   const RowViews mine = fetch_rows(share, build_lists(solids), comm);
 
   Rows contacts;

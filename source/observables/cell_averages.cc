@@ -1,3 +1,4 @@
+#include <eunoe/domain/cell_locator.h>
 #include <eunoe/domain/mesh.h>
 #include <eunoe/simulation/patch_list.h>
 #include <eunoe/simulation/simulation.h>
@@ -10,51 +11,11 @@ namespace eunoe {
 namespace {
 
 using Cell = dealii::Triangulation<3>::active_cell_iterator;
-using CellOfAnyLevel = dealii::Triangulation<3>::cell_iterator;
-
-/// The cell that holds a point near one of box-shaped cells; a point on a face belongs to the cell
-/// on the upper side, and one beyond the boundary to the cell inside.
-Cell cell_of(Cell cell, const Vec3 &x)
-{
-  // A particle goes less than a cell's width between two searches: a step in each direction at
-  // most.
-  for (unsigned int steps = 0; steps < 6; ++steps) {
-    bool stays = true;
-    for (const unsigned int f : cell->face_indices()) {
-      const Vec3 out = to_vec3(cell->face(f)->center() - cell->center());
-      unsigned int d = std::abs(out.x) > std::abs(out.y) ? 0 : 1;
-      d = std::abs(out.z) > std::abs(out[d]) ? 2 : d;
-      const double at = cell->face(f)->vertex(0)[d];
-      const bool is_beyond = out[d] > 0. ? x[d] >= at : x[d] < at;
-      if (!is_beyond || cell->at_boundary(f))
-        continue;
-      CellOfAnyLevel next = cell->neighbor(f);
-      const auto distance = [&x](const CellOfAnyLevel &c) {
-        return norm_square(to_vec3(c->center()) - x);
-      };
-      while (next->has_children()) {
-        CellOfAnyLevel nearest = next->child(0);
-        for (unsigned int c = 1; c < next->n_children(); ++c)
-          if (distance(next->child(c)) <= distance(nearest))
-            nearest = next->child(c);
-        next = nearest;
-      }
-      if (next->is_artificial())
-        continue;
-      cell = next;
-      stays = false;
-      break;
-    }
-    if (stays)
-      break;
-  }
-  return cell;
-}
-
 /// What counts of a particle.
 struct Row
 {
   ParticleId id = 0;
+  Vec3 place;         ///< in the frame of the mesh (m)
   Vec3 velocity;      ///< (m/s)
   double volume = 0.; ///< (m3)
   bool is_awake = true;
@@ -63,7 +24,7 @@ struct Row
   template <typename Archive>
   void serialize(Archive &archive, unsigned int /*version*/)
   {
-    archive &id &velocity.x &velocity.y &velocity.z &volume &is_awake;
+    archive &id &place.x &place.y &place.z &velocity.x &velocity.y &velocity.z &volume &is_awake;
   }
 };
 
@@ -125,20 +86,118 @@ public:
   }
 };
 
+/// Particles by the mesh cells that they are in, wherever these are.
+class Sorting
+{
+public:
+  explicit Sorting(const Domain &domain)
+      : domain(domain), comm(domain.communicator()), locator(domain)
+  {
+    const Box &own = locator.box();
+    const std::array<double, 6> numbers = {
+        {own.lower.x, own.lower.y, own.lower.z, own.upper.x, own.upper.y, own.upper.z}};
+    for (const auto &n : dealii::Utilities::MPI::all_gather(comm, numbers))
+      boxes.push_back({{n[0], n[1], n[2]}, {n[3], n[4], n[5]}});
+  }
+
+  /// The particles in each of this rank's mesh cells, by active index; collective.
+  std::vector<std::vector<Row>> operator()(const ParticleArrays &p) const
+  {
+    std::map<unsigned int, std::vector<Row>> asked;
+    for (std::size_t k = 0; k < p.n_owned; ++k) {
+      const Row row = {p.id[k], domain.to_own_frame(domain.periods().wrap(p.position[k].vec())),
+                       p.velocity[k].vec(), sphere_mass(p.radius(k), 1.), p.is_awake(k)};
+      for (const unsigned int rank : ranks_of(row.place))
+        asked[rank].push_back(row);
+    }
+    std::map<ParticleId, Candidate> candidates;
+    for (const auto &[rank, parcel] : dealii::Utilities::MPI::some_to_some(comm, asked))
+      for (const Row &row : parcel) {
+        Candidate candidate;
+        candidate.row = row;
+        candidate.fit = locator.find(row.place, candidate.cell);
+        candidates.emplace(row.id, candidate);
+      }
+    leave_out_worse(candidates);
+    std::vector<std::vector<Row>> rows(domain.mesh().triangulation.n_active_cells());
+    for (const auto &[id, candidate] : candidates)
+      rows[candidate.cell->active_cell_index()].push_back(candidate.row);
+    return rows;
+  }
+
+private:
+  /// A particle in the best of this rank's cells.
+  struct Candidate
+  {
+    Row row;
+    Cell cell;
+    CellLocator::Fit fit;
+  };
+
+  /// The ranks whose boxes a place is in, or nearest to; the same on every rank.
+  std::vector<unsigned int> ranks_of(const Vec3 &x) const
+  {
+    std::vector<double> squares;
+    for (const Box &box : boxes) {
+      double square = 0.;
+      for (unsigned int d = 0; d < 3; ++d) {
+        const double out = std::max({0., box.lower[d] - x[d], x[d] - box.upper[d]});
+        square += out * out;
+      }
+      squares.push_back(square);
+    }
+    const double least = *std::min_element(squares.begin(), squares.end());
+    std::vector<unsigned int> ranks;
+    for (unsigned int rank = 0; rank < squares.size(); ++rank)
+      if (squares[rank] <= least)
+        ranks.push_back(rank);
+    return ranks;
+  }
+
+  /// Leaves out particles for which another rank has a better cell; collective.
+  void leave_out_worse(std::map<ParticleId, Candidate> &candidates) const
+  {
+    const unsigned int own = dealii::Utilities::MPI::this_mpi_process(comm);
+    // Id, how far outside, centre of the cell.
+    using Answer = std::array<double, 5>;
+    std::map<unsigned int, std::vector<Answer>> answers;
+    for (const auto &[id, candidate] : candidates)
+      for (const unsigned int rank : ranks_of(candidate.row.place))
+        if (rank != own) {
+          const CellLocator::Fit &fit = candidate.fit;
+          answers[rank].push_back(
+              {{static_cast<double>(id), fit.outside, fit.centre.x, fit.centre.y, fit.centre.z}});
+        }
+    for (const auto &[rank, parcel] : dealii::Utilities::MPI::some_to_some(comm, answers))
+      for (const Answer &a : parcel) {
+        const auto found = candidates.find(static_cast<ParticleId>(a[0]));
+        const CellLocator::Fit other = {a[1], {a[2], a[3], a[4]}};
+        if (found != candidates.end() && other.is_better_than(found->second.fit))
+          candidates.erase(found);
+      }
+  }
+
+  const Domain &domain;
+  MPI_Comm comm;
+  const CellLocator locator;
+  std::vector<Box> boxes; ///< around the cells of each rank
+};
+
 /// Mean velocity, granular temperature and solid fraction of the cells of the mesh, as pictures.
 class CellAverages : public Observable
 {
 public:
   CellAverages(const SwitchSection &, Simulation &simulation)
       : pictures(simulation.output_folder().pictures(
-            simulation.get_parameters().control.output_name + "_cells"))
+            simulation.get_parameters().control.output_name + "_cells")),
+        sort(simulation.get_domain())
   {
   }
 
   void draw(Simulation &simulation) override
   {
     const Domain &domain = simulation.get_domain();
-    const std::vector<std::vector<Row>> rows = rows_of_cells(simulation);
+    const std::vector<std::vector<Row>> rows = sort(simulation.complete_step());
     CellPatches patches;
     for (const auto &cell : domain.mesh().triangulation.active_cell_iterators())
       if (cell->is_locally_owned())
@@ -147,41 +206,20 @@ public:
   }
 
 private:
-  /// The particles in each of this rank's cells, by active index; collective.
-  static std::vector<std::vector<Row>> rows_of_cells(Simulation &simulation)
-  {
-    const Domain::Mesh &mesh = simulation.get_domain().mesh();
-    const ParticleStore &store = simulation.get_system().get_store();
-    std::vector<Cell> cells;
-    for (const auto &cell : mesh.triangulation.active_cell_iterators())
-      cells.push_back(cell);
-    std::vector<std::vector<Row>> rows(cells.size());
-    // Particles have moved since they were sorted into cells, perhaps to those of other ranks.
-    std::map<unsigned int, std::vector<std::pair<dealii::CellId, Row>>> foreign;
-    const ParticleArrays &p = simulation.complete_step();
-    for (std::size_t k = 0; k < p.n_owned; ++k) {
-      const Cell found = cells[store.cell(k)];
-      const Cell cell = mesh.has_boxes ? cell_of(found, p.position[k].vec()) : found;
-      const Row row = {p.id[k], p.velocity[k].vec(), sphere_mass(p.radius(k), 1.), p.is_awake(k)};
-      if (cell->is_locally_owned())
-        rows[cell->active_cell_index()].push_back(row);
-      else
-        foreign[cell->subdomain_id()].emplace_back(cell->id(), row);
-    }
-    for (const auto &[rank, parcel] :
-         dealii::Utilities::MPI::some_to_some(simulation.communicator(), foreign))
-      for (const auto &[id, row] : parcel) {
-        const Cell cell = mesh.triangulation.create_cell_iterator(id);
-        rows[cell->active_cell_index()].push_back(row);
-      }
-    return rows;
-  }
-
   const std::shared_ptr<PictureSeries> pictures;
+  const Sorting sort;
+};
+
+/// What the input file says of them.
+class CellAveragesSection : public SectionOf<CellAverages, SwitchSection>
+{
+public:
+  using SectionOf<CellAverages, SwitchSection>::SectionOf;
+  bool needs_cells() const override { return calculation; }
 };
 
 const ObservableRegistry::Registration registration(observables(), "cell averages", [] {
-  return std::make_unique<SectionOf<CellAverages, SwitchSection>>(
+  return std::make_unique<CellAveragesSection>(
       "lagrangian post-processing",
       "Whether mean velocity, granular temperature and solid fraction of every "
       "cell of the mesh are drawn with every picture.");

@@ -15,7 +15,7 @@ void announce_mesh(const Background &background, Log &log)
 {
   constexpr double many_cells = 3e5, many_bytes = 2e7;
   const MeshParameters &mesh = background.mesh;
-  const bool is_sketched = background.is_only_looked_at && background.refinement.regions.empty() &&
+  const bool is_sketched = !background.needs_cells && background.refinement.regions.empty() &&
                            sketch_of(mesh).has_value();
   if (is_sketched)
     return;

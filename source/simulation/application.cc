@@ -55,8 +55,7 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     for (const Problem &warning : problems.warnings())
       log.warning(warning.text());
     // Building the parts finds what reading alone cannot; it writes nothing.
-    simulation = std::make_unique<Simulation>(
-        parameters, comm, log, line.check ? Simulation::Purpose::check : Simulation::Purpose::run);
+    simulation = std::make_unique<Simulation>(parameters, comm, log);
     const Forecast forecast = simulation->foresee();
     forecast.print(log);
     if (!forecast.problems.empty())

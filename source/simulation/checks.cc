@@ -46,28 +46,13 @@ void check_crossings(const std::vector<Solid> &solids, const std::size_t n_given
 void check_domain(const Domain &domain, const Parameters &parameters, const double reach,
                   Problems &problems)
 {
-  // A process makes its mesh so that only the skin can be the cause.
-  const bool is_own = parameters.process_name == "none";
-  const std::string cells = is_own ? "subsection 'mesh':"
-                                   : "subsection 'model parameters' / subsection 'contact "
-                                     "detection' / entry 'neighborhood threshold':";
-  if (domain.smallest_cell_width() < reach)
-    problems.add(
-        cells,
-        "the cells are " + format(domain.smallest_cell_width()) + " m wide, less than the " +
-            format(reach) +
-            " m that particles can reach (largest diameter, skin and range of cohesion), so "
-            "more than one layer of ghost cells would be needed.",
-        is_own ? "Use fewer or larger cells (8 to 10 particles a cell are best), or lower the "
-                 "'neighborhood threshold'."
-               : "Lower the threshold, or make the apparatus larger.");
   for (unsigned int d = 0; d < 3; ++d)
     if (domain.periods().is_periodic(d) && domain.periods().length[d] < 2. * reach)
       problems.add("subsection 'DEM boundary conditions':",
                    "the period of " + format(domain.periods().length[d]) + " m in direction " +
                        std::to_string(d) + " is less than twice the " + format(reach) +
-                       " m that particles can reach, so that two particles could touch on both "
-                       "sides.",
+                       " m within which contacts are searched at least, so that two particles "
+                       "could touch on both sides.",
                    "Make the domain longer in that direction.");
   const std::vector<BoundaryCondition> &conditions = parameters.boundaries.conditions;
   if (domain.moves() &&

@@ -94,8 +94,6 @@ Forecast Simulation::foresee(const bool writes) const
       find_diameters(parameters, are_given, events, communicator());
   judge_time_step(parameters, diameters, forecast);
   forecast.facts.push_back("Domain: " + describe(Box{domain.lower(), domain.upper()}) + ", " +
-                           format_count(domain.n_cells(), "cell", "cells") + " of at least " +
-                           format(1e6 * domain.smallest_cell_width()) + " um, " +
                            format_count(solids.list().size(), "solid or wall", "solids and walls") +
                            ", " + format_count(domain.outlets().size(), "outlet", "outlets"));
   const Vec3 &g = parameters.physics.gravity;
@@ -115,7 +113,7 @@ Forecast Simulation::foresee(const bool writes) const
     forecast.problems.warn("subsection 'simulation control':", "no step is taken.",
                            "Set 'time end' or 'iteration end'.");
   const RunEstimate cost = estimate();
-  judge_resources(parameters, cost, domain.n_cells(), communicator(), forecast);
+  judge_resources(parameters, cost, communicator(), forecast);
   if (writes)
     judge_output(parameters, cost, system.fields().n_components(), communicator(), forecast);
   return forecast;

@@ -14,9 +14,9 @@ namespace eunoe {
 
 namespace {
 
-/// Bytes of a particle of a settled bed, of a cell of the mesh, and of a rank without them, as
+/// Bytes of a particle of a settled bed with its share of the mesh, and of a rank without them, as
 /// measured (doc/performance.md).
-constexpr double bytes_per_particle = 1100., bytes_per_cell = 2100., bytes_per_rank = 1.7e8;
+constexpr double bytes_per_particle = 1400., bytes_per_rank = 1.7e8;
 /// Of a particle and of each of its further fields in a picture, and of a particle in a checkpoint
 /// (doc/restart.md).
 constexpr double picture_bytes_per_particle = 60., picture_bytes_per_field = 4.,
@@ -37,8 +37,7 @@ double number_of_pictures(const ControlParameters &control, const double steps)
   return std::floor(end / interval + 1e-6) - std::ceil(begin / interval - 1e-6) + 1.;
 }
 
-void judge_memory(const RunEstimate &estimate, const double n_cells, MPI_Comm comm,
-                  Forecast &forecast)
+void judge_memory(const RunEstimate &estimate, MPI_Comm comm, Forecast &forecast)
 {
   int n_ranks, n_here;
   MPI_Comm_size(comm, &n_ranks);
@@ -46,12 +45,11 @@ void judge_memory(const RunEstimate &estimate, const double n_cells, MPI_Comm co
   MPI_Comm_split_type(comm, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node);
   MPI_Comm_size(node, &n_here);
   MPI_Comm_free(&node);
-  const double of_run = estimate.most_particles * bytes_per_particle + n_cells * bytes_per_cell;
+  const double of_run = estimate.most_particles * bytes_per_particle;
   const double here = of_run * n_here / n_ranks + n_here * bytes_per_rank;
   const double there_is = usable_memory();
   forecast.facts.push_back("Memory: about " + format_bytes(of_run) + " for " +
                            format_count(estimate.most_particles, "particle", "particles") +
-                           " and " + format_count(n_cells, "cell", "cells") +
                            ", and 170 MB a rank; this machine has " + format_bytes(there_is));
   double lack = there_is > 0. && here > there_is ? here - there_is : 0.;
   MPI_Allreduce(MPI_IN_PLACE, &lack, 1, MPI_DOUBLE, MPI_MAX, comm);
@@ -128,10 +126,10 @@ void judge_folder(const Parameters &parameters, MPI_Comm comm, Forecast &forecas
 
 } // namespace
 
-void judge_resources(const Parameters &parameters, const RunEstimate &estimate,
-                     const std::uint64_t n_cells, MPI_Comm comm, Forecast &forecast)
+void judge_resources(const Parameters &parameters, const RunEstimate &estimate, MPI_Comm comm,
+                     Forecast &forecast)
 {
-  judge_memory(estimate, static_cast<double>(n_cells), comm, forecast);
+  judge_memory(estimate, comm, forecast);
   const bool by_number = parameters.control.end_control == "iteration";
   if (estimate.steps > many_steps)
     forecast.problems.warn("subsection 'simulation control' / entry '" +

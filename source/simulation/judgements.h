@@ -49,8 +49,8 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
 std::size_t number_of_events(const Parameters &parameters);
 
 /// Memory against what the machine has, and the number of steps.
-void judge_resources(const Parameters &parameters, const RunEstimate &estimate,
-                     std::uint64_t n_cells, MPI_Comm comm, Forecast &forecast);
+void judge_resources(const Parameters &parameters, const RunEstimate &estimate, MPI_Comm comm,
+                     Forecast &forecast);
 
 /// Pictures and checkpoints against the room on the disk, and the folder of the results.
 /// @param n_extra doubles that are attached to every particle

@@ -28,12 +28,13 @@ std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm
 }
 
 /// The mesh, with a word before it if its making takes long.
-/// @param is_check whether nothing will run in it
-Background background_of(const Parameters &parameters, const bool is_check, Log &log)
+Background background_of(const Parameters &parameters, Log &log)
 {
   Background background = {parameters.mesh, parameters.refinement, parameters.grid_motion.make()};
-  background.is_only_looked_at = is_check && (parameters.process_name != "none" ||
-                                              !parameters.insertion.chosen().needs_cells());
+  background.needs_cells =
+      (parameters.process_name == "none" && parameters.insertion.chosen().needs_cells()) ||
+      std::any_of(parameters.observables.begin(), parameters.observables.end(),
+                  [](const auto &named) { return named.second->needs_cells(); });
   announce_mesh(background, log);
   return background;
 }
@@ -53,9 +54,44 @@ double largest_diameter(const Parameters &parameters, const Inserter &inserter)
                                           : parameters.physics.largest_diameter();
 }
 
-double skin(const Parameters &parameters, const Inserter &inserter)
+/// Skins of contact searches (m).
+struct Skins
 {
-  return parameters.detection.skin(largest_diameter(parameters, inserter));
+  double wanted; ///< by the input
+  double least;  ///< that a run can do with
+  double range;  ///< separation up to which particles act on each other
+
+  Skins(const Parameters &parameters, const Inserter &inserter)
+  {
+    constexpr double least_share = 0.01;
+    const double largest = largest_diameter(parameters, inserter);
+    wanted = parameters.detection.skin(largest);
+    least = std::min(wanted, least_share * largest);
+    range = parameters.contact_model(largest).range();
+    diameter = largest;
+  }
+
+  /// The least distance of two centres up to which a search must look.
+  double least_reach() const { return diameter + range + least; }
+
+  /// The skin in a domain: smaller than wanted where a period is so short that a pair would be
+  /// found on both sides.
+  double in(const PeriodicBox &box) const
+  {
+    double skin = wanted;
+    for (unsigned int d = 0; d < 3; ++d)
+      if (box.is_periodic(d))
+        skin = std::min(skin, std::max(least, 0.5 * box.length[d] - diameter - range));
+    return skin;
+  }
+
+private:
+  double diameter; ///< largest
+};
+
+double skin(const Parameters &parameters, const Inserter &inserter, const Domain &domain)
+{
+  return Skins(parameters, inserter).in(domain.periods());
 }
 
 ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter,
@@ -71,31 +107,33 @@ ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserte
 
 } // namespace
 
-Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log, const Purpose purpose)
+Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
     : parameters(input.of_run()), process(make_process(parameters)),
       progress(log, parameters.control.log_frequency),
       inserter(parameters.insertion, make_insertion(parameters, comm, log)),
-      domain(background_of(parameters, purpose == Purpose::check, log), parameters.boundaries,
+      domain(background_of(parameters, log), parameters.boundaries,
              parameters.physics.wall_material(), comm),
       clock(parameters.control.time_step, parameters.control.n_steps()),
       sleeper(parameters.sparse_contacts, clock.time_step()),
       system(domain, physics_of(parameters, inserter, process.get(), sleeper),
-             skin(parameters, inserter), largest_diameter(parameters, inserter), progress.timers),
+             skin(parameters, inserter, domain), largest_diameter(parameters, inserter),
+             progress.timers),
       integrator(parameters.integration.make()),
-      criterion(parameters.detection, skin(parameters, inserter), comm),
+      criterion(parameters.detection, skin(parameters, inserter, domain), comm),
       balancer(parameters.load_balancing),
       // Without a search two bodies must not come closer by more than the skin, so each may move by
       // half of it.
       guard(parameters.faults, domain, system.contact_model().get_materials(),
-            0.5 * skin(parameters, inserter), clock.time_step()),
+            0.5 * skin(parameters, inserter, domain), clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {
   Problems problems;
-  check_domain(domain, parameters,
-               largest_diameter(parameters, inserter) + skin(parameters, inserter) +
-                   system.contact_model().range(),
-               problems);
+  const Skins skins(parameters, inserter);
+  check_domain(domain, parameters, skins.least_reach(), problems);
+  if (skins.in(domain.periods()) < skins.wanted)
+    log.line("A period of the domain is short: the skin is " + format(skins.in(domain.periods())) +
+             " m instead of " + format(skins.wanted) + " m, so contacts are searched more often.");
   if (const Insertion *const method = inserter.get_method()) {
     check_places(domain, method->known_places(), comm, problems);
     method->check(domain, problems);

@@ -85,6 +85,7 @@ void Simulation::write_summary()
   MPI_Allreduce(MPI_IN_PLACE, ghosts.data(), 2, MPI_UINT64_T, MPI_SUM, comm);
   summary["ghosts"] = ghosts[0];
   summary["ghosts_in_pairs"] = ghosts[1];
+  summary["mesh_cells"] = system.get_store().n_cells();
   summary["time_step"] = clock.time_step();
   summary["simulated_time"] = clock.time();
   summary["particle_steps"] = progress.particle_steps();

@@ -117,7 +117,7 @@ REFUSED = {
 # Name: settings, and beginnings of lines, with whole numbers and their nouns.
 FACTS = {
     "one particle": ([], ["Particle type 0: diameter 1000 um; the time step",
-                          "Memory: about 0.136 MB for 1 particle and 64 cells,",
+                          "Memory: about 0.0014 MB for 1 particle,",
                           "  particles:  1 at most, 1 on average", "  steps:      2 of 2e-06 s",
                           "  core-hours: about 3.5e-11 ("]),
     "two sizes, one picture": ([*LIST, "insertion info/list diameters = 5e-4, 1e-3",

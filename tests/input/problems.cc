@@ -148,11 +148,6 @@ void test_domain()
     const std::string all = refused(text);
     check(name, all.find(sentence) != std::string::npos, "got '" + all + "'");
   };
-  expect_refusal("more than one ghost layer",
-                 box_input(1e-6, 1e-6,
-                           "subsection lagrangian physical properties\n subsection particle type "
-                           "0\n  set diameter = 6e-3\n end\nend\n"),
-                 "so more than one layer of ghost cells would be needed.");
   const std::string periodic = "subsection DEM boundary conditions\n"
                                " set number of boundary conditions = 1\n"
                                " subsection boundary condition 0\n  set type = periodic\n"

@@ -88,15 +88,16 @@ inline std::string gmsh_mesh(const std::string &file, unsigned int refinement)
          "\n set initial refinement = " + std::to_string(refinement) + "\nend\n";
 }
 
-/// Boxes in which the mesh cells are refined once more.
+/// Boxes in which the mesh cells are refined further.
 /// @param boxes two corners each
-inline std::string refinement(const std::vector<std::string> &boxes)
+inline std::string refinement(const std::vector<std::string> &boxes, unsigned int times = 1)
 {
   std::string text = "subsection box refinement\n set number of refinement boxes = " +
                      std::to_string(boxes.size()) + "\n";
   for (std::size_t k = 0; k < boxes.size(); ++k)
     text += " subsection box " + std::to_string(k) +
-            "\n  set additional refinement = 1\n  subsection mesh\n"
+            "\n  set additional refinement = " + std::to_string(times) +
+            "\n  subsection mesh\n"
             "   set grid type = hyper_rectangle\n   set grid arguments = " +
             boxes[k] + " : false\n  end\n end\n";
   return text + "end\n";

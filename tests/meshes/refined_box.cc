@@ -1,6 +1,7 @@
-// Refining the mesh in boxes changes no bit of the results: a cohesive powder in a domain with two
-// periodic directions, where a periodic face is partly finer than the opposite one, against the
-// plain mesh on one rank; on any number of ranks, with and without load balancing.
+// Refining the mesh in boxes, also below the size of the particles, changes no bit of the results:
+// a cohesive powder in a domain with two periodic directions, where a periodic face is partly finer
+// than the opposite one, against the plain mesh on one rank; on any number of ranks, with and
+// without load balancing.
 
 #include "meshes.h"
 
@@ -97,6 +98,9 @@ EUNOE_MPI_TEST()
     check("all particles are there", refined.size() == 400);
     check("the same bits as with a plain mesh on one rank", refined == plain || !is_first_rank());
   }
+  check("the same bits with mesh cells of a quarter of a diameter",
+        run(refinement({"0, 0, 0 : 1e-3, 1e-3, 1e-3"}, 4), MPI_COMM_WORLD) == plain ||
+            !is_first_rank());
   check("target size: not coarser than the mesh is", cells_for(20.) == 1);
   check("target size: cut until the next cut would pass it",
         cells_for(6.4) == 8 && cells_for(3.3) == 8 && cells_for(3.2) == 64);

@@ -91,7 +91,6 @@ struct BoundaryParameters : public ParameterSection
 
 class Enclosure;
 class MeshBoundary;
-struct BoxSketch;
 struct Side;
 
 /// A part of the boundary at which particles leave.
@@ -107,16 +106,16 @@ struct Background
   const MeshParameters &mesh;
   const RefinementParameters &refinement;
   std::shared_ptr<const Motion> motion; ///< null: at rest
-  /// Whether no run follows, so that a mesh of equal boxes need not be made: a single cell has the
-  /// same walls, periods and outlets.
-  bool is_only_looked_at = false;
+  /// Whether somebody asks for its cells later. Else the mesh goes when its boundary is known, and
+  /// one of equal boxes is not made at all: a single cell has the same walls, periods and outlets.
+  bool needs_cells = true;
 };
 
 /// Number of cells of a mesh as far as it can be known before it is made; at least 1.
 double expected_cells(const MeshParameters &mesh);
 
-/// The space in which particles live: the distributed background mesh, its periods, its walls and
-/// outlets.
+/// The space in which particles live: its periods, its walls and outlets, all from the background
+/// mesh.
 class Domain
 {
 public:
@@ -151,23 +150,23 @@ public:
   /// Takes the mesh back there.
   void load(const nlohmann::ordered_json &saved);
 
+  /// Cells of the background mesh of all ranks, as far as they were made.
+  std::uint64_t n_cells() const { return number_of_cells; }
+
   /// Whether a position lies in the mesh; in periodic directions every one does.
   bool contains(const Vec3 &x) const;
   /// The outlet through which a particle has left on its straight way from one place, at the last
   /// search, to another, -1 if it has left through none.
   int passed_outlet(const Vec3 &from, const Vec3 &x) const;
-  /// Smallest distance of two cells that do not touch (m); of boxes, their smallest width.
-  double smallest_cell_width() const { return cell_width; }
-  std::uint64_t n_cells() const;
 
   /// Walls of the domain, as solids that move only with the mesh.
   const std::vector<Solid> &walls() const { return wall_solids; }
   const std::vector<Outlet> &outlets() const { return outlet_list; }
 
-  /// The mesh itself, for the parts that speak deal.II (source/domain/mesh.h).
+  /// The background mesh, for the parts that speak deal.II (domain/mesh.h); only where its cells
+  /// were said to be needed, else throws a std::logic_error.
   struct Mesh;
-  Mesh &mesh() { return *mesh_data; }
-  const Mesh &mesh() const { return *mesh_data; }
+  const Mesh &mesh() const;
 
 private:
   std::set<unsigned int> join_periodic_ends(const BoundaryParameters &boundaries,
@@ -176,9 +175,8 @@ private:
   {
     return motion ? frame.rotation.undo(x - frame.centre) : x;
   }
-  void measure_cells();
-  /// Number and width of the cells that a sketch stands for.
-  void take_cells_of(const BoxSketch &sketch);
+  /// Finds the corners of the refined mesh and whether its cells are boxes.
+  void measure();
   void make_boundaries(const BoundaryParameters &boundaries, int wall_material,
                        const MeshBoundary &boundary, const std::set<unsigned int> &periodic);
   /// Makes the surfaces of a mesh that is not convex.
@@ -193,8 +191,7 @@ private:
   std::shared_ptr<const Motion> motion;
   RigidState pose, earlier;
   Vec3 lower_corner, upper_corner;
-  double cell_width = 0.;
-  std::uint64_t sketched_cells = 0; ///< of a mesh that is sketched by a single one
+  std::uint64_t number_of_cells = 0;
   /// A point and the inward normal of every side of a convex mesh that is not periodic.
   std::vector<std::pair<Vec3, Vec3>> sides;
   std::unique_ptr<Enclosure> enclosure; ///< of any other mesh

@@ -7,9 +7,7 @@
 
 #include <deal.II/base/point.h>
 #include <deal.II/distributed/tria.h>
-#include <deal.II/fe/mapping.h>
 
-#include <memory>
 #include <optional>
 
 namespace eunoe {
@@ -19,14 +17,8 @@ struct Domain::Mesh
   explicit Mesh(MPI_Comm comm) : triangulation(comm) {}
 
   dealii::parallel::distributed::Triangulation<3> triangulation;
-  /// Cartesian where all cells are boxes: it finds the cell of a particle that lies exactly on a
-  /// face, and does so twice as fast.
-  std::unique_ptr<dealii::Mapping<3>> mapping;
   /// Whether all cells are boxes along the axes, with their corners in the order of these.
   bool has_boxes = false;
-  /// Whether they are also of one level and at rest, so that deal.II finds the cells of particles
-  /// reliably.
-  bool is_plain = false;
 };
 
 /// Most cells of a mesh.
@@ -41,16 +33,9 @@ void create_mesh(dealii::Triangulation<3> &triangulation, const MeshParameters &
 /// for any other.
 std::string read_background_mesh(const MeshParameters &mesh, MPI_Comm comm);
 
-/// A mesh of equal boxes as a single cell, for checks without particles, and the numbers of its
-/// cells along the axes.
-struct BoxSketch
-{
-  MeshParameters mesh;
-  double n_cells[3];
-};
-
-/// Empty for meshes that may not be made of equal boxes along the axes.
-std::optional<BoxSketch> sketch_of(const MeshParameters &mesh);
+/// A mesh of equal boxes as a single cell; empty for meshes that are not surely made of equal boxes
+/// along the axes.
+std::optional<MeshParameters> sketch_of(const MeshParameters &mesh);
 
 /// Refuses a mesh with too many cells, as far as their number can be known beforehand. Throws a
 /// UserError.
@@ -65,9 +50,6 @@ void create_cylinder(dealii::Triangulation<3> &triangulation, const std::string 
 /// How often all cells of a mesh are to be cut into eight. Throws a UserError if it gets too large.
 unsigned int global_refinement(const dealii::Triangulation<3> &triangulation,
                                const MeshParameters &mesh);
-
-/// Smallest distance of a cell of this rank from what lies beyond its neighbours, at least (m).
-double smallest_distance_of_cells_apart(const Domain::Mesh &mesh, const PeriodicBox &periods);
 
 inline dealii::Point<3> to_point(const Vec3 &v)
 {

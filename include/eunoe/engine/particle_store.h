@@ -13,19 +13,25 @@ namespace eunoe {
 
 struct LoadBalancingParameters;
 
-/// The store of record of all particles, distributed over the ranks by the background mesh
-/// (deal.II's ParticleHandler): identity, migration, repartitioning. Between searches the
-/// simulation computes with ParticleArrays; `write` and `read` move the state between the two.
+/// The store of record of all particles, distributed over the ranks by a mesh of the engine's own
+/// (deal.II's ParticleHandler on a p4est forest): identity, migration, repartitioning. Between
+/// searches the simulation computes with ParticleArrays; `write` and `read` move the state between
+/// the two.
 class ParticleStore
 {
 public:
+  /// @param least_width of the mesh's cells (m): how far particles can meet the centres of others
   /// @param n_extra doubles per particle beside those of the engine
   /// @param asleep field that is not 0 for sleepers; none: nobody sleeps
-  ParticleStore(Domain &domain, unsigned int n_extra, std::optional<FieldHandle> asleep);
+  ParticleStore(const Domain &domain, double least_width, unsigned int n_extra,
+                std::optional<FieldHandle> asleep);
   ~ParticleStore();
 
-  /// Number of particles of all ranks.
+  /// Numbers of all ranks: particles, and cells of the mesh that distributes them.
+  ///@{
   std::uint64_t n_global() const;
+  std::uint64_t n_cells() const;
+  ///@}
 
   /// Inserts this rank's share of new particles, wherever they lie; collective.
   /// @param extra initial values of the extra doubles of every particle
@@ -44,8 +50,12 @@ public:
   void remove(const std::vector<std::size_t> &rows);
 
   /// Hands every particle to the rank that owns its cell; collective.
-  /// Throws a UserError if one has left the mesh.
   void migrate();
+
+  /// Makes the cells finer where there are many particles and coarser where there are few;
+  /// collective.
+  /// @return whether any was changed
+  bool adapt();
 
   /// Shares out the cells anew by their loads; collective.
   void repartition(const LoadBalancingParameters &parameters);
@@ -64,9 +74,6 @@ public:
   /// @param ranks ascending
   void ranks_near(std::size_t row, const Vec3 &position, double reach,
                   std::vector<int> &ranks) const;
-
-  /// Active index of the cell in which an owned particle was found, by its row in the last `read`.
-  unsigned int cell(std::size_t row) const;
 
 private:
   struct Implementation;

@@ -15,7 +15,7 @@ constexpr std::array<unsigned int, 6> all = {
 } // namespace box_side
 
 /// The background mesh of a process: a box of cells that hold 8 to 10 particles of a settled bed,
-/// in powers of two over a coarse mesh. SI units.
+/// in powers of two over a coarse mesh. Only averages over its cells depend on them. SI units.
 /// Throws a UserError if there would be too many cells.
 /// @param section of the process, for that sentence
 /// @param skin of the contact search and range of the contact laws

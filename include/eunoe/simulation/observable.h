@@ -54,6 +54,9 @@ class ObservableSection : public ParameterSection
 public:
   /// Null where the observable is not asked for; collective.
   virtual std::unique_ptr<Observable> make(Simulation &simulation) const = 0;
+
+  /// Whether it asks for the cells of the background mesh.
+  virtual bool needs_cells() const { return false; }
 };
 
 using ObservableRegistry = Registry<std::unique_ptr<ObservableSection>>;

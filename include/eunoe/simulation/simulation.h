@@ -26,16 +26,9 @@ namespace eunoe {
 class Simulation
 {
 public:
-  /// What a simulation is made for.
-  enum class Purpose
-  {
-    run,
-    check ///< only to foresee a run; a mesh of boxes is only sketched
-  };
-
   /// Builds all parts; writes nothing. Throws a UserError on every rank if the case makes no sense.
   /// Collective, like all that follows.
-  Simulation(const Parameters &parameters, MPI_Comm comm, Log &log, Purpose purpose = Purpose::run);
+  Simulation(const Parameters &parameters, MPI_Comm comm, Log &log);
   ~Simulation();
 
   /// What would stop or harm the run, and what else is known of it beforehand.
@@ -168,7 +161,7 @@ void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physic
                     Problems &problems);
 
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
-/// @param reach of the contact search (m)
+/// @param reach least distance of two centres up to which a search must look (m)
 void check_domain(const Domain &domain, const Parameters &parameters, double reach,
                   Problems &problems);
 

@@ -1,0 +1,87 @@
+#ifndef eunoe_engine_forest_h
+#define eunoe_engine_forest_h
+
+// The mesh of the engine, for source files only.
+
+#include <eunoe/domain/domain.h>
+
+#include <deal.II/base/point.h>
+#include <deal.II/distributed/tria.h>
+#include <deal.II/fe/mapping_cartesian.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace eunoe {
+
+/// The mesh that distributes the particles: a p4est forest of boxes along the axes around the
+/// domain, in the frame in which that is at rest. Its cells are fine where particles are and coarse
+/// elsewhere. It follows from the domain and the reach of the search alone, not from the mesh of
+/// the input, and no result depends on it.
+///
+/// All cells are unions of the cells of a lattice, the finest that there can be. What is asked of
+/// the mesh is asked of the lattice, in whole numbers, so that a place on a face belongs to one
+/// cell, and a place outside to the nearest.
+class Forest
+{
+public:
+  using Triangulation = dealii::parallel::distributed::Triangulation<3>;
+  using Cell = Triangulation::cell_iterator;
+  using ActiveCell = Triangulation::active_cell_iterator;
+  /// A cell of the lattice, by its number along each axis.
+  using Place = std::array<std::int32_t, 3>;
+
+  /// @param least_width of a cell (m), unless the domain is narrower
+  Forest(const Domain &domain, double least_width);
+
+  /// The lattice cell of a position.
+  Place place(const Vec3 &position) const;
+  /// The centre of a lattice cell, which lies well inside of its cell on every level.
+  dealii::Point<3> centre(const Place &place) const;
+
+  /// The finest cell at a place that this rank knows; of another rank's it may know a coarser one.
+  ActiveCell find(const Place &place) const;
+  /// The rank that owns a place.
+  unsigned int owner(const Place &place) const;
+  /// Whether a cell can be cut into eight.
+  bool is_finest(const ActiveCell &cell) const
+  {
+    return static_cast<unsigned int>(cell->level()) >= n_levels;
+  }
+
+  /// A cell of another rank: its owner and its box.
+  struct ForeignCell
+  {
+    int rank;
+    Vec3 centre, half; ///< (m)
+  };
+  /// What others own around each cell of this rank, across periodic ends, too: by active cell
+  /// index, ordered by rank.
+  std::vector<std::vector<ForeignCell>> foreign_neighbours() const;
+
+  /// The nearest point of the box around the domain; in periodic directions every point is in it.
+  Vec3 clamp(Vec3 x) const;
+
+  Triangulation &mesh() { return triangulation; }
+  const Triangulation &mesh() const { return triangulation; }
+  const dealii::Mapping<3> &get_mapping() const { return mapping; }
+
+private:
+  /// Calls @p look for the cells around the corners of a cell. Of two cells that touch, one has a
+  /// corner of the other in its boundary.
+  template <typename Look>
+  void look_around(const Cell &cell, const Look &look) const;
+
+  const PeriodicBox box;
+  const Vec3 lower, upper;
+  unsigned int n_levels = 0; ///< between the coarse cells and those of the lattice
+  Place n_coarse;            ///< numbers of coarse cells
+  Vec3 width;                ///< of a lattice cell (m)
+  Triangulation triangulation;
+  const dealii::MappingCartesian<3> mapping;
+};
+
+} // namespace eunoe
+
+#endif

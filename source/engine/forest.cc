@@ -1,0 +1,219 @@
+#include <eunoe/domain/mesh.h>
+#include <eunoe/engine/forest.h>
+
+#include <deal.II/distributed/p4est_wrappers.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace eunoe {
+
+namespace {
+
+/// Most cells of the lattice along an axis; p4est can cut a cell into halves 18 times.
+constexpr double most_along_axis = 1 << 24;
+constexpr unsigned int most_levels = 16;
+/// Every rank holds all coarse cells, and deal.II takes long to bring many of them into an order.
+constexpr double most_coarse_cells = 4000.;
+
+/// Share of the lattice cells that may be lost when their numbers are rounded to whole coarse
+/// cells: parts of few large coarse cells are more compact than those of many small ones.
+constexpr double lost_to_rounding = 0.25;
+
+/// Numbers of coarse cells along the axes, and how often each can be cut.
+struct Lattice
+{
+  std::array<double, 3> n_coarse;
+  unsigned int n_levels = 0;
+
+  /// @param least_width of a lattice cell (m); one is wider where that saves coarse cells
+  Lattice(const Vec3 &extent, const double least_width)
+  {
+    for (unsigned int d = 0; d < 3; ++d)
+      n_coarse[d] = std::min(std::max(1., std::floor(extent[d] / least_width)), most_along_axis);
+    const std::array<double, 3> number = n_coarse;
+    const double fewest = *std::min_element(number.begin(), number.end());
+    for (unsigned int level = 1; level <= most_levels && std::ldexp(1., level) <= fewest; ++level) {
+      const int exponent = static_cast<int>(level);
+      std::array<double, 3> coarse;
+      double kept = 1.;
+      for (unsigned int d = 0; d < 3; ++d) {
+        coarse[d] = std::floor(std::ldexp(number[d], -exponent));
+        kept *= std::ldexp(coarse[d], exponent) / number[d];
+      }
+      if (kept < 1. - lost_to_rounding && product() <= most_coarse_cells)
+        break;
+      n_levels = level;
+      n_coarse = coarse;
+    }
+    // A domain of few cells across cannot be cut often.
+    while (product() > most_coarse_cells) {
+      double &largest = *std::max_element(n_coarse.begin(), n_coarse.end());
+      largest = std::ceil(0.5 * largest);
+    }
+  }
+
+  double product() const { return n_coarse[0] * n_coarse[1] * n_coarse[2]; }
+};
+
+/// Number of a place in the order of p4est within a tree: the bits of its coordinates in turn.
+std::uint64_t in_turn(const std::array<std::uint32_t, 3> &coordinates, const unsigned int n_bits)
+{
+  std::uint64_t code = 0;
+  for (unsigned int bit = n_bits; bit-- > 0;)
+    for (unsigned int d = 3; d-- > 0;)
+      code = code << 1 | (coordinates[d] >> bit & 1);
+  return code;
+}
+
+} // namespace
+
+Forest::Forest(const Domain &domain, const double least_width)
+    : box(domain.periods()), lower(domain.lower()), upper(domain.upper()),
+      triangulation(domain.communicator(), dealii::Triangulation<3>::none,
+                    Triangulation::no_automatic_repartitioning)
+{
+  const Lattice lattice(upper - lower, least_width);
+  n_levels = lattice.n_levels;
+  std::vector<unsigned int> counts;
+  for (unsigned int d = 0; d < 3; ++d) {
+    n_coarse[d] = static_cast<int>(lattice.n_coarse[d]);
+    width[d] = (upper[d] - lower[d]) / (static_cast<double>(n_coarse[d]) * (1 << n_levels));
+    counts.push_back(static_cast<unsigned int>(n_coarse[d]));
+  }
+  dealii::GridGenerator::subdivided_hyper_rectangle(triangulation, counts, to_point(lower),
+                                                    to_point(upper), true);
+  std::vector<dealii::GridTools::PeriodicFacePair<Cell>> pairs;
+  for (unsigned int d = 0; d < 3; ++d)
+    if (box.is_periodic(d))
+      dealii::GridTools::collect_periodic_faces(triangulation, 2 * d, 2 * d + 1, d, pairs);
+  triangulation.add_periodicity(pairs);
+}
+
+Forest::Place Forest::place(const Vec3 &position) const
+{
+  const Vec3 x = box.wrap(position);
+  Place found;
+  for (unsigned int d = 0; d < 3; ++d) {
+    const int last = (n_coarse[d] << n_levels) - 1;
+    const double number = (x[d] - lower[d]) / width[d];
+    found[d] = number > 0. ? static_cast<int>(std::min<double>(number, last)) : 0;
+  }
+  return found;
+}
+
+dealii::Point<3> Forest::centre(const Place &place) const
+{
+  dealii::Point<3> x;
+  for (unsigned int d = 0; d < 3; ++d)
+    x[d] = lower[d] + (place[d] + 0.5) * width[d];
+  return x;
+}
+
+Forest::ActiveCell Forest::find(const Place &place) const
+{
+  const int coarse = (place[0] >> n_levels) +
+                     n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels));
+  Cell cell(&triangulation, 0, coarse);
+  for (unsigned int level = n_levels; level-- > 0 && cell->has_children();)
+    cell = cell->child((place[0] >> level & 1) | (place[1] >> level & 1) << 1 |
+                       (place[2] >> level & 1) << 2);
+  return cell;
+}
+
+unsigned int Forest::owner(const Place &place) const
+{
+  const auto *const forest = triangulation.get_p4est();
+  const auto coarse = static_cast<std::size_t>(
+      (place[0] >> n_levels) +
+      n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels)));
+  const auto tree =
+      static_cast<std::int64_t>(triangulation.get_coarse_cell_to_p4est_tree_permutation()[coarse]);
+  const std::uint32_t mask = (1u << n_levels) - 1u;
+  const std::uint64_t code = in_turn(
+      {{static_cast<std::uint32_t>(place[0]) & mask, static_cast<std::uint32_t>(place[1]) & mask,
+        static_cast<std::uint32_t>(place[2]) & mask}},
+      n_levels);
+  // The last rank that begins at the place or before it; one without cells begins where the next
+  // one does.
+  const auto *const begin = forest->global_first_position;
+  const auto *const end = begin + forest->mpisize;
+  const auto *const next =
+      std::upper_bound(begin, end, std::make_pair(tree, code), [&](const auto &at, const auto &q) {
+        const auto cut = [&](const auto coordinate) {
+          return static_cast<std::uint32_t>(coordinate) >> (P8EST_MAXLEVEL - n_levels);
+        };
+        const auto first = std::make_pair(static_cast<std::int64_t>(q.p.which_tree),
+                                          in_turn({{cut(q.x), cut(q.y), cut(q.z)}}, n_levels));
+        return at < first;
+      });
+  return static_cast<unsigned int>(next - begin) - 1;
+}
+
+template <typename Look>
+void Forest::look_around(const Cell &cell, const Look &look) const
+{
+  const int size = 1 << (n_levels - static_cast<unsigned int>(cell->level()));
+  Place begin;
+  for (unsigned int d = 0; d < 3; ++d)
+    begin[d] = static_cast<int>(std::lround((cell->vertex(0)[d] - lower[d]) / width[d]));
+  for (unsigned int corner = 0; corner < 8; ++corner)
+    for (unsigned int side = 0; side < 8; ++side) {
+      if ((corner ^ side) == 7)
+        continue; // Within the cell itself.
+      Place place;
+      bool exists = true;
+      for (unsigned int d = 0; d < 3; ++d) {
+        const int n = n_coarse[d] << n_levels;
+        const int at =
+            begin[d] + ((corner >> d & 1) != 0 ? size : 0) - ((side >> d & 1) != 0 ? 0 : 1);
+        place[d] = box.is_periodic(d) ? (at + n) % n : at;
+        exists = exists && place[d] >= 0 && place[d] < n;
+      }
+      if (exists)
+        look(find(place));
+    }
+}
+
+std::vector<std::vector<Forest::ForeignCell>> Forest::foreign_neighbours() const
+{
+  std::vector<std::vector<ForeignCell>> neighbours(triangulation.n_active_cells());
+  if (triangulation.ghost_owners().empty())
+    return neighbours;
+  std::vector<std::set<ActiveCell>> foreign(triangulation.n_active_cells());
+  for (const auto &cell : triangulation.active_cell_iterators())
+    if (cell->is_locally_owned())
+      look_around(cell, [&](const ActiveCell &other) {
+        if (other->is_ghost())
+          foreign[cell->active_cell_index()].insert(other);
+      });
+    else if (cell->is_ghost())
+      look_around(cell, [&](const ActiveCell &other) {
+        if (other->is_locally_owned())
+          foreign[other->active_cell_index()].insert(cell);
+      });
+  for (std::size_t k = 0; k < foreign.size(); ++k) {
+    for (const ActiveCell &cell : foreign[k]) {
+      const Vec3 first = to_vec3(cell->vertex(0)), last = to_vec3(cell->vertex(7));
+      neighbours[k].push_back(
+          {static_cast<int>(cell->subdomain_id()), 0.5 * (first + last), 0.5 * (last - first)});
+    }
+    std::stable_sort(
+        neighbours[k].begin(), neighbours[k].end(),
+        [](const ForeignCell &one, const ForeignCell &two) { return one.rank < two.rank; });
+  }
+  return neighbours;
+}
+
+Vec3 Forest::clamp(Vec3 x) const
+{
+  for (unsigned int d = 0; d < 3; ++d)
+    if (!box.is_periodic(d))
+      x[d] = std::min(std::max(x[d], lower[d]), upper[d]);
+  return x;
+}
+
+} // namespace eunoe
