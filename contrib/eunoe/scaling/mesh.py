@@ -1,8 +1,8 @@
-"""The background mesh as p4est orders its cells.
+"""The mesh that distributes the particles, as p4est orders its cells.
 
-The mesh is a box of trees, each refined into 2^r x 2^r x 2^r cells. Within a tree the cells follow
-the z-order (Morton) curve; the trees follow the order that deal.II gives to coarse cells: groups of
-neighbours, and groups of groups.
+The mesh is a box of trees over a lattice of 2^r x 2^r x 2^r cells each; its cells are unions of
+lattice cells. Within a tree the cells follow the z-order (Morton) curve; the trees follow the order
+that deal.II gives to coarse cells: groups of neighbours, and groups of groups.
 """
 
 from __future__ import annotations
@@ -14,6 +14,9 @@ import numpy as np
 from eunoe.launch import Failure
 
 MOST_TREES = 60000  # beyond, ordering them takes minutes
+# As in the program (source/engine/forest.cc).
+MOST_COARSE, MOST_LEVELS, LOST_TO_ROUNDING = 4000, 16, 0.25
+WIDER = 1.001  # a lattice cell is that much wider than the reach of the search, at least
 
 
 def group_order(neighbours: list[list[int]]) -> list[int]:
@@ -53,8 +56,8 @@ def group_order(neighbours: list[list[int]]) -> list[int]:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A box of `trees` (counts in x, y, z) between two corners (m), each refined `refinement`
-    times; which directions are periodic."""
+    """A box of `trees` (counts in x, y, z) between two corners (m), each of which can be refined
+    `refinement` times; which directions are periodic."""
 
     trees: tuple[int, int, int]
     lower: tuple[float, float, float]
@@ -62,8 +65,28 @@ class Mesh:
     refinement: int
     periodic: tuple[bool, bool, bool]
 
+    @classmethod
+    def over(cls, lower: tuple[float, ...], upper: tuple[float, ...], periodic: tuple[bool, ...],
+             reach: float) -> Mesh:
+        """The mesh that the program makes over a box (m), for the reach of its search (m)."""
+        number = [max(1, int((u - l) / (WIDER * reach))) for l, u in zip(lower, upper)]
+        levels, trees = 0, list(number)
+        for level in range(1, MOST_LEVELS + 1):
+            coarse = [n >> level for n in number]
+            if min(coarse) == 0:
+                break
+            kept = np.prod([(c << level) / n for c, n in zip(coarse, number)])
+            if kept < 1. - LOST_TO_ROUNDING and np.prod(np.float64(trees)) <= MOST_COARSE:
+                break
+            levels, trees = level, coarse
+        while np.prod(np.float64(trees)) > MOST_COARSE:
+            longest = trees.index(max(trees))
+            trees[longest] = -(-trees[longest] // 2)
+        return cls(tuple(trees), tuple(lower), tuple(upper), levels, tuple(periodic))
+
     @property
     def cells(self) -> np.ndarray:
+        """Numbers of lattice cells."""
         return np.array(self.trees) << self.refinement
 
     @property
@@ -86,7 +109,7 @@ class Mesh:
         return place.reshape(nz, ny, nx).transpose(2, 1, 0)
 
     def curve(self) -> np.ndarray:
-        """Cells in the order of the curve, as flat indices into an array of the shape of the
+        """Lattice cells in the order of the curve, as flat indices into an array of the shape of the
         cells."""
         index = np.indices(self.cells)
         inner = np.zeros(self.cells, np.int64)

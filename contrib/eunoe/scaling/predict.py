@@ -104,17 +104,17 @@ def compare(picture: Path, mesh: Mesh, filling: Filling, options: argparse.Names
 def filling_of(options: argparse.Namespace) -> tuple[Mesh, Filling]:
     """The mesh, and the particles in it."""
     if options.picture is not None:
-        mesh, points, diameters = snapshot.read(options.picture)
+        mesh, points, diameters = snapshot.read(options.picture, options.skin)
     else:
         place = apparatus.apparatus(options.length_factor, options.depth)
-        mesh, points = apparatus.mesh_of(place), apparatus.powder(place, options.layers)
+        mesh, points = apparatus.mesh_of(place, skin=options.skin), apparatus.powder(place, options.layers)
         diameters = apparatus.sizes(len(points))
     reach = reach_of(diameters, options.skin) if options.reach is None else options.reach
     filling = Filling(mesh, points, reach)
     occupied = np.count_nonzero(filling.counts)
-    print(f"{len(points)} particles; mesh of {' x '.join(map(str, mesh.cells))} cells, refined "
-          f"{mesh.refinement} times from {int(np.prod(mesh.trees))}; {occupied} cells with particles,"
-          f" {len(points) / occupied:.1f} in each")
+    print(f"{len(points)} particles; lattice of {' x '.join(map(str, mesh.cells))} cells, in trees of "
+          f"{2 ** mesh.refinement} cells a side; {occupied} lattice cells with particles, "
+          f"{len(points) / occupied:.1f} in each")
     return mesh, filling
 
 
