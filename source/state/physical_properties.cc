@@ -68,7 +68,7 @@ struct SharedProperty
 constexpr double any = std::numeric_limits<double>::max();
 const SharedProperty shared_properties[] = {
     {"young modulus", &Material::young_modulus, any, "Young's modulus (Pa)."},
-    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio, below 0.5."},
+    {"poisson ratio", &Material::poisson_ratio, 0.5, "Poisson's ratio."},
     {"restitution coefficient", &Material::restitution, 1.,
      "Restitution coefficient; a pair takes the harmonic mean."},
     {"friction coefficient", &Material::friction, any,
@@ -123,8 +123,6 @@ void check_material(const ParameterCheck &check, const ParameterCheck::Path &pat
 {
   check.require(m.young_modulus > 0., path, "young modulus " + of,
                 "is " + format(m.young_modulus) + " Pa.", "Give a positive modulus.");
-  check.require(m.poisson_ratio < 0.5, path, "poisson ratio " + of,
-                "is " + format(m.poisson_ratio) + ".", "Give a value of at least 0 and below 0.5.");
 }
 
 } // namespace

@@ -84,7 +84,7 @@ void check_every_kind(const std::vector<Material> &materials, int n_types)
 EUNOE_TEST()
 {
   const Material steel = {210e9, 0.28, 0.9, 0.5, 0.01, 0.3, 1.2, 2e-19};
-  const Material rubber = {2e6, 0.48, 0.4, 1.1, 0.2, 0.1, 0.03, 5e-20};
+  const Material rubber = {2e6, 0.5, 0.4, 1.1, 0.2, 0.1, 0.03, 5e-20};
   const Material glass = {70e9, 0.22, 0.7, 0.2, 0.05, 0.2, 0.3, 7e-20};
   check_pair(steel, rubber);
 
