@@ -113,11 +113,15 @@ dealii::Point<3> Forest::centre(const Place &place) const
   return x;
 }
 
+int Forest::coarse_cell(const Place &place) const
+{
+  return (place[0] >> n_levels) +
+         n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels));
+}
+
 Forest::ActiveCell Forest::find(const Place &place) const
 {
-  const int coarse = (place[0] >> n_levels) +
-                     n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels));
-  Cell cell(&triangulation, 0, coarse);
+  Cell cell(&triangulation, 0, coarse_cell(place));
   for (unsigned int level = n_levels; level-- > 0 && cell->has_children();)
     cell = cell->child((place[0] >> level & 1) | (place[1] >> level & 1) << 1 |
                        (place[2] >> level & 1) << 2);
@@ -127,11 +131,8 @@ Forest::ActiveCell Forest::find(const Place &place) const
 unsigned int Forest::owner(const Place &place) const
 {
   const auto *const forest = triangulation.get_p4est();
-  const auto coarse = static_cast<std::size_t>(
-      (place[0] >> n_levels) +
-      n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels)));
-  const auto tree =
-      static_cast<std::int64_t>(triangulation.get_coarse_cell_to_p4est_tree_permutation()[coarse]);
+  const auto tree = static_cast<std::int64_t>(
+      triangulation.get_coarse_cell_to_p4est_tree_permutation()[coarse_cell(place)]);
   const std::uint32_t mask = (1u << n_levels) - 1u;
   const std::uint64_t code = in_turn(
       {{static_cast<std::uint32_t>(place[0]) & mask, static_cast<std::uint32_t>(place[1]) & mask,

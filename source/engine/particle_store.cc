@@ -1,6 +1,3 @@
-#include <eunoe/core/compat.h>
-#include <eunoe/engine/load_balancing.h>
-
 #include "particle_store_implementation.h"
 
 #include <algorithm>
@@ -54,64 +51,6 @@ void ParticleStore::remove(const std::vector<std::size_t> &rows)
     leaving.push_back(impl.particles[row]);
   impl.handler.remove_particles(leaving);
   impl.particles.clear();
-}
-
-void ParticleStore::migrate()
-{
-  Implementation &impl = *implementation;
-  std::vector<Implementation::Handler::particle_iterator> leaving;
-  std::map<unsigned int, std::vector<double>> rows;
-  for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle) {
-    const auto values = particle->get_properties();
-    const Forest::Place place = impl.place_of(load(&values[property::position], 0.).vec());
-    const Forest::ActiveCell cell = impl.forest.find(place);
-    if (cell == particle->get_surrounding_cell()) {
-      particle->set_location(impl.forest.centre(place));
-      continue;
-    }
-    const unsigned int owner = cell->is_locally_owned() ? impl.rank : impl.forest.owner(place);
-    rows[owner].insert(rows[owner].end(), values.begin(), values.end());
-    leaving.push_back(particle);
-  }
-  impl.handler.remove_particles(leaving); // Collective.
-  impl.hand_over(rows);
-}
-
-bool ParticleStore::adapt()
-{
-  Implementation &impl = *implementation;
-  bool is_changed = false;
-  // A level at a time.
-  while (impl.mark_cells()) {
-    const auto before = impl.forest.mesh().n_global_active_cells();
-    impl.change_mesh([](Forest::Triangulation &mesh) { mesh.execute_coarsening_and_refinement(); });
-    if (impl.forest.mesh().n_global_active_cells() == before)
-      break;
-    is_changed = true;
-  }
-  return is_changed;
-}
-
-void ParticleStore::repartition(const LoadBalancingParameters &parameters)
-{
-  Implementation &impl = *implementation;
-  const auto connection = compat::connect_weight(impl.forest.mesh(), [&](const auto &cell) {
-    return static_cast<unsigned int>(impl.cell_weight(to_vec3(cell->center()), parameters) +
-                                     impl.weight(impl.handler.particles_in_cell(cell), parameters));
-  });
-  impl.change_mesh([](Forest::Triangulation &mesh) { mesh.repartition(); });
-  connection.disconnect();
-}
-
-double ParticleStore::imbalance(const LoadBalancingParameters &parameters) const
-{
-  Implementation &impl = *implementation;
-  double load = impl.weight(impl.handler, parameters);
-  for (const auto &cell : impl.forest.mesh().active_cell_iterators())
-    if (cell->is_locally_owned())
-      load += impl.cell_weight(to_vec3(cell->center()), parameters);
-  const auto loads = dealii::Utilities::MPI::min_max_avg(load, impl.domain.communicator());
-  return (loads.max - loads.min) / loads.avg;
 }
 
 void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,

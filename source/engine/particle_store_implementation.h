@@ -86,14 +86,26 @@ struct ParticleStore::Implementation
     return values;
   }
 
-  /// Gives particles to the ranks that own their places, by their properties; collective.
-  /// @param rows the properties of one particle after another, by rank; emptied
+  /// Gives particles to the ranks that own their places, by their properties; collective. The
+  /// handler's numbers are to be updated afterwards.
+  /// @param rows the properties of one particle after another, by rank
   void hand_over(std::map<unsigned int, std::vector<double>> &rows);
   /// Takes particles into this rank's cells.
   void take(const std::vector<double> &rows);
 
-  /// Marks cells to be cut or united, so that each has some particles.
-  /// @return whether so many are marked that it pays, on all ranks; collective
+  /// This rank's cells that have many particles, and parents of cells that have few.
+  struct Marks
+  {
+    std::vector<Forest::ActiveCell> crowded;
+    std::vector<Forest::Cell> sparse;
+    std::uint64_t n_crowded = 0; ///< particles in crowded cells
+  };
+  Marks marks() const;
+  /// Whether a change of the mesh pays, by numbers of all ranks.
+  /// @param crowded particles in cells that would be refined
+  /// @param unitable cells that would be united
+  bool pays(std::uint64_t crowded, std::uint64_t unitable) const;
+  /// Flags cells to be refined or united if that pays; collective.
   bool mark_cells();
   /// Lets the handler follow a change of the mesh.
   template <typename Change>

@@ -57,9 +57,9 @@ double largest_diameter(const Parameters &parameters, const Inserter &inserter)
 /// Skins of contact searches (m).
 struct Skins
 {
-  double wanted; ///< by the input
-  double least;  ///< that a run can do with
-  double range;  ///< separation up to which particles act on each other
+  double wanted;  ///< by the input
+  double least;   ///< that a run can do with
+  double contact; ///< distance of two centres up to which particles act on each other
 
   Skins(const Parameters &parameters, const Inserter &inserter)
   {
@@ -67,12 +67,8 @@ struct Skins
     const double largest = largest_diameter(parameters, inserter);
     wanted = parameters.detection.skin(largest);
     least = std::min(wanted, least_share * largest);
-    range = parameters.contact_model(largest).range();
-    diameter = largest;
+    contact = largest + parameters.contact_model(largest).range();
   }
-
-  /// The least distance of two centres up to which a search must look.
-  double least_reach() const { return diameter + range + least; }
 
   /// The skin in a domain: smaller than wanted where a period is so short that a pair would be
   /// found on both sides.
@@ -81,12 +77,9 @@ struct Skins
     double skin = wanted;
     for (unsigned int d = 0; d < 3; ++d)
       if (box.is_periodic(d))
-        skin = std::min(skin, std::max(least, 0.5 * box.length[d] - diameter - range));
+        skin = std::min(skin, std::max(least, 0.5 * box.length[d] - contact));
     return skin;
   }
-
-private:
-  double diameter; ///< largest
 };
 
 double skin(const Parameters &parameters, const Inserter &inserter, const Domain &domain)
@@ -130,7 +123,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
 {
   Problems problems;
   const Skins skins(parameters, inserter);
-  check_domain(domain, parameters, skins.least_reach(), problems);
+  check_domain(domain, parameters, skins.contact + skins.least, problems);
   if (skins.in(domain.periods()) < skins.wanted)
     log.line("A period of the domain is short: the skin is " + format(skins.in(domain.periods())) +
              " m instead of " + format(skins.wanted) + " m, so contacts are searched more often.");

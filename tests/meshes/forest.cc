@@ -19,18 +19,11 @@ constexpr double length = 3., height = 1.25;
 /// A box of 3 m x 1.25 m x @p depth, periodic in x and z.
 std::string box(const double depth)
 {
-  std::string text =
-      control(1e-5, 1e-5) +
-      generated_mesh("hyper_rectangle",
-                     "-1, 0, 0.2 : 2, 1.25, " + std::to_string(0.2 + depth) + " : true", 0) +
-      powder(0.1, 0.5, 0.4, "0, -9.81, 0", "  set number of particles = 0\n") +
-      "subsection DEM boundary conditions\n set number of boundary conditions = 2\n";
-  for (const std::string &d : {std::string("0"), std::string("2")})
-    text += " subsection boundary condition " + std::string(d == "0" ? "0" : "1") +
-            "\n  set type = periodic\n  set periodic id 0 = " + std::to_string(2 * std::stoi(d)) +
-            "\n  set periodic id 1 = " + std::to_string(2 * std::stoi(d) + 1) +
-            "\n  set periodic direction = " + d + "\n end\n";
-  return text + "end\n";
+  return control(1e-5, 1e-5) +
+         generated_mesh("hyper_rectangle",
+                        "-1, 0, 0.2 : 2, 1.25, " + std::to_string(0.2 + depth) + " : true", 0) +
+         powder(0.1, 0.5, 0.4, "0, -9.81, 0", "  set number of particles = 0\n") +
+         periodic_in({0, 2});
 }
 
 /// Refines the cells around some places as far as it goes, and gives the ranks equal shares.

@@ -88,6 +88,20 @@ inline std::string gmsh_mesh(const std::string &file, unsigned int refinement)
          "\n set initial refinement = " + std::to_string(refinement) + "\nend\n";
 }
 
+/// Periodic directions (0, 1, 2) of a box whose boundaries have ids of their own.
+inline std::string periodic_in(const std::vector<unsigned int> &directions)
+{
+  std::ostringstream text;
+  text << "subsection DEM boundary conditions\n set number of boundary conditions = "
+       << directions.size() << "\n";
+  for (std::size_t k = 0; k < directions.size(); ++k)
+    text << " subsection boundary condition " << k << "\n  set type = periodic\n"
+         << "  set periodic id 0 = " << 2 * directions[k]
+         << "\n  set periodic id 1 = " << 2 * directions[k] + 1
+         << "\n  set periodic direction = " << directions[k] << "\n end\n";
+  return text.str() + "end\n";
+}
+
 /// Boxes in which the mesh cells are refined further.
 /// @param boxes two corners each
 inline std::string refinement(const std::vector<std::string> &boxes, unsigned int times = 1)

@@ -22,7 +22,7 @@ Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullp
                          "4, 4, 4 : 0, 0, 0 : 12e-3, 12e-3, 12e-3 : true", 0) +
           powder(0.8e-3, 0.5, 0.4, "2, -9.81, 1",
                  "  set number of particles = 400\n  set surface energy particles = 0.01\n") +
-          R"(
+          periodic_in({0, 2}) + R"(
     subsection lagrangian physical properties
       set surface energy wall = 0.01
     end
@@ -37,21 +37,6 @@ Table run(const std::string &more, MPI_Comm comm, std::uint64_t *n_cells = nullp
       set particle wall contact force method = DMT
       subsection contact detection
         set neighborhood threshold = 1.2
-      end
-    end
-    subsection DEM boundary conditions
-      set number of boundary conditions = 2
-      subsection boundary condition 0
-        set type = periodic
-        set periodic id 0 = 0
-        set periodic id 1 = 1
-        set periodic direction = 0
-      end
-      subsection boundary condition 1
-        set type = periodic
-        set periodic id 0 = 4
-        set periodic id 1 = 5
-        set periodic direction = 2
       end
     end
 )" + more,

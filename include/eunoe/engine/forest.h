@@ -17,8 +17,7 @@ namespace eunoe {
 
 /// The mesh that distributes the particles: a p4est forest of boxes along the axes around the
 /// domain, in the frame in which that is at rest. Its cells are fine where particles are and coarse
-/// elsewhere. It follows from the domain and the reach of the search alone, not from the mesh of
-/// the input, and no result depends on it.
+/// elsewhere. The mesh of the input has no part in it, and no result depends on it.
 ///
 /// All cells are unions of the cells of a lattice, the finest that there can be. What is asked of
 /// the mesh is asked of the lattice, in whole numbers, so that a place on a face belongs to one
@@ -44,7 +43,9 @@ public:
   ActiveCell find(const Place &place) const;
   /// The rank that owns a place.
   unsigned int owner(const Place &place) const;
-  /// Whether a cell can be cut into eight.
+  /// How often a coarse cell can be cut into eight.
+  unsigned int most_levels() const { return n_levels; }
+  /// Whether a cell can be cut no more.
   bool is_finest(const ActiveCell &cell) const
   {
     return static_cast<unsigned int>(cell->level()) >= n_levels;
@@ -68,6 +69,8 @@ public:
   const dealii::Mapping<3> &get_mapping() const { return mapping; }
 
 private:
+  /// Index of the coarse cell that holds a place.
+  int coarse_cell(const Place &place) const;
   /// Calls @p look for the cells around the corners of a cell. Of two cells that touch, one has a
   /// corner of the other in its boundary.
   template <typename Look>

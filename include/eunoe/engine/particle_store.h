@@ -54,8 +54,7 @@ public:
 
   /// Makes the cells finer where there are many particles and coarser where there are few;
   /// collective.
-  /// @return whether any was changed
-  bool adapt();
+  void adapt();
 
   /// Shares out the cells anew by their loads; collective.
   void repartition(const LoadBalancingParameters &parameters);
