@@ -10,6 +10,8 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -247,6 +249,10 @@ public:
     const std::string place = entry.where + ": " + describe(entry.path, entry.name);
     bool declared = true;
     try {
+      const auto place_of_entry = std::pair(entry.path, entry.name);
+      if (defaults.count(place_of_entry) == 0)
+        if (const auto value = present_value(entry.name))
+          defaults[place_of_entry] = *value;
       prm.set(entry.name, entry.value);
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
       declared = false;
@@ -262,7 +268,25 @@ public:
                                       : suggestion(entry.name, known_at(entry.path).entries));
   }
 
+  /// Whether an entry has the value that was declared. That of an entry under another name is not
+  /// known here.
+  bool is_default(const InputEntry &entry) const
+  {
+    const auto declared = defaults.find({entry.path, entry.name});
+    return declared != defaults.end() && prm.get(entry.path, entry.name) == declared->second;
+  }
+
 private:
+  /// Of an entry of the present subsection; none of one that is not declared by this name.
+  std::optional<std::string> present_value(const std::string &name) const
+  {
+    try {
+      return prm.get(name);
+    } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
+      return std::nullopt;
+    }
+  }
+
   Level known_at(const Path &path)
   {
     if (tree.empty())
@@ -308,6 +332,7 @@ private:
   dealii::ParameterHandler &prm;
   const std::vector<RepeatedSections> &repeated;
   Problems &problems;
+  std::map<std::pair<Path, std::string>, std::string> defaults; ///< of the entries that were set
   std::set<Path> reported;
   boost::property_tree::ptree tree; // made when the first name is unknown
 };
@@ -317,23 +342,17 @@ private:
 std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
                         const std::vector<RepeatedSections> &repeated, Problems &problems)
 {
-  const std::string default_input = complete_text(prm);
   EntrySetter setter(prm, repeated, problems);
   for (const InputEntry &entry : entries)
     setter.set(entry);
-  const std::string complete = complete_text(prm);
-  const EntryValues before = values_in(default_input), after = values_in(complete);
   for (InputEntry &entry : entries) {
-    const auto place = std::pair(entry.path, entry.name);
-    const auto value = after.find(place);
-    entry.is_default =
-        entry.name.empty() || (value != after.end() && value->second == before.at(place));
-    // Numbers of subsections are known before the defaults are printed.
+    entry.is_default = entry.name.empty() || setter.is_default(entry);
+    // Numbers of subsections are known before they are declared.
     for (const RepeatedSections &r : repeated)
       if (entry.path == r.path && entry.name == r.entry)
         entry.is_default = entry.value == std::to_string(r.standard);
   }
-  return complete;
+  return complete_text(prm);
 }
 
 std::string describe_entries(const dealii::ParameterHandler &prm,
