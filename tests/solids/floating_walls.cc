@@ -1,8 +1,10 @@
-// An infinite plane has one side: a sphere whose centre has passed it is still pushed back. Its
-// normal may have any length. A floating wall acts from its start to its end: a sphere rests on it,
-// then falls; one that overlaps is pushed off when it starts. Reference: geometry; free fall in the
-// steps of velocity Verlet; the elastic energy of the overlap.
-// Regression: another program's walls had a wrong overlap if their normal was not a unit vector.
+// A floating wall has two sides: a sphere on either is pushed away from the plane, and one that is
+// pressed beyond it comes back to the side of the search. The normal may have any length and either
+// sign. The wall acts from its start to its end: a sphere rests on it, then falls; one that
+// overlaps is pushed off when it starts. Reference: geometry; free fall in the steps of velocity
+// Verlet; the elastic energy of the overlap. Regression: another program's walls had a wrong
+// overlap if their normal was not a unit vector. Half spaces threw everything on one of their sides
+// to the other, such as a heap between two walls whose normals are the same.
 
 #include "surfaces.h"
 
@@ -14,22 +16,55 @@ void examine_geometry()
 {
   const double R = 1e-3;
   const Vec3 point = {1., 2., 3.}, direction = {2. / 7., -3. / 7., 6. / 7.};
-  double worst = 0.;
+  const Vec3 across = cross(direction, {0.3, 0.1, -0.7});
+  double worst = 0., worst_beyond = 0.;
   bool one = true;
-  for (const double length : {1e-6, 1., 700.})
-    for (const double height : {0.999, 0.5, 0., -0.5, -1., -40.}) {
-      const HalfSpace wall(point, length * direction);
-      const Vec3 across = cross(direction, {0.3, 0.1, -0.7});
-      const auto found = contacts(wall, point + across + height * R * direction, R);
+  for (const double length : {1e-6, 1., -700.})
+    for (const double height : {0.999, 0.5, 1e-3, -1e-3, -0.5, -0.999}) {
+      const InfinitePlane wall(point, length * direction);
+      const double side = height > 0. ? 1. : -1.;
+      const Vec3 centre = point + across + height * R * direction;
+      const auto found = contacts(wall, centre, R);
       one = one && found.size() == 1;
-      if (one)
-        worst = std::max(
-            {worst, norm(found[0].normal + direction), std::abs(found[0].distance - height * R)});
+      if (!one)
+        continue;
+      worst = std::max({worst, norm(found[0].normal + side * direction),
+                        std::abs(found[0].distance - side * height * R)});
+
+      std::vector<std::int32_t> facets;
+      wall.find_facets(centre, R, facets);
+      SurfaceContact beyond = {};
+      wall.find_contacts(centre - 2. * height * R * direction, R, R, facets.data(),
+                         facets.data() + facets.size(), &beyond);
+      worst_beyond = std::max({worst_beyond, norm(beyond.normal + side * direction),
+                               std::abs(beyond.distance + side * height * R)});
     }
-  check("one contact before and behind the plane", one);
+  check("one contact on either side of the plane", one);
   check_close("its distance and normal", worst, 0., 1e-14);
-  check("none beyond its reach",
-        contacts(HalfSpace(point, direction), point + 1.001 * R * direction, R).empty());
+  check_close("the same side for a centre pressed beyond the plane", worst_beyond, 0., 1e-14);
+  bool none = true;
+  for (const double side : {1., -1.})
+    none =
+        none &&
+        contacts(InfinitePlane(point, direction), point + side * 1.001 * R * direction, R).empty();
+  check("none beyond its reach", none);
+}
+
+/// Spheres on both sides of a wall, thrown at it.
+void bounce_on_both_sides()
+{
+  Powder powder;
+  powder.restitution = 1.;
+  const double R = powder.radius();
+  Case test_case(box_input(1e-6, 4e-3,
+                           powder.input() +
+                               insertion_input({{{1.2 * R, 0., 0.}, {-0.1, 0., 0.}, {}},
+                                                {{-1.2 * R, 5. * R, 0.}, {0.1, 0., 0.}, {}}}) +
+                               walls_input({{{}, {1., 0., 0.}, 0., 1.}})));
+  test_case.run();
+  const auto found = spheres(*test_case);
+  check_relative("back on the side of the normal", found[0].velocity.x, 0.1, 1e-3);
+  check_relative("back on the other side", found[1].velocity.x, -0.1, 1e-3);
 }
 
 /// A sphere on a wall that ends.
@@ -101,6 +136,7 @@ void be_pushed()
 EUNOE_MPI_TEST()
 {
   examine_geometry();
+  bounce_on_both_sides();
   rest_and_fall();
   be_pushed();
 }

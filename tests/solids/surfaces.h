@@ -5,6 +5,7 @@
 
 #include <eunoe/core/files.h>
 #include <eunoe/solids/half_space.h>
+#include <eunoe/solids/infinite_plane.h>
 #include <eunoe/solids/shapes.h>
 
 #include "../tests.h"
