@@ -20,7 +20,7 @@ bool is_harmless(const Path &path, const std::string &entry)
   if (path == Path{"model parameters", "load balancing"})
     return true;
   if (path == Path{"model parameters"})
-    return entry == "lost particles" || entry == "largest overlap";
+    return entry == "lost particles" || entry == "largest overlap" || entry == "excessive overlap";
   if (!path.empty() && path.back().compare(0, 12, "solid object") == 0)
     return entry == "output solid object";
   return !path.empty() && (path.front() == "restart" || path.front() == "post-processing" ||

@@ -34,8 +34,9 @@ void ContactParameters::declare(dealii::ParameterHandler &prm)
                   "the adhesion of soft bodies, whose contact forms a neck and holds across a "
                   "small separation.");
   declare::choice(prm, "particle wall contact force method", wall_method, names_for_walls(),
-                  "Laws of a contact with a wall or solid: the same as between particles, so "
-                  "'DMT' or 'JKR' where particles use it and 'nonlinear' elsewhere.");
+                  "Laws of a contact with a wall or solid, by the same names, and 'nonlinear' for "
+                  "all of Hertz's without adhesion: those of the particles if these are among "
+                  "them, else 'hertz_mindlin_limit_overlap'.");
   declare::choice(prm, "rolling resistance torque method", rolling_method,
                   "none|" + contact_laws("rolling").names(),
                   "Resistance against rolling: none, a torque of constant magnitude, one in "
@@ -48,16 +49,36 @@ void ContactParameters::declare(dealii::ParameterHandler &prm)
 void ContactParameters::check(const ParameterCheck &check) const
 {
   const std::string wanted = contact_models().make(method).wall_name;
-  check.require(wall_method == wanted, {section}, "particle wall contact force method",
-                "is '" + wall_method + "' while particles use '" + method + "'.",
-                "Walls take the laws of the particles: set it to '" + wanted + "'.");
+  check.advise(wall_method == wanted, {section}, "particle wall contact force method",
+               "is '" + wall_method + "' while particles use '" + method +
+                   "', so that they touch walls and solids by other laws than each other.",
+               "For the same laws, set it to '" + wanted + "'.");
   laws.check(check);
+}
+
+std::string ContactParameters::model_of_walls() const
+{
+  if (contact_models().make(method).wall_name == wall_method)
+    return method;
+  return wall_method == "nonlinear" ? "hertz_mindlin_limit_overlap" : wall_method;
 }
 
 ContactModel ContactParameters::model(const Materials &materials,
                                       const double largest_diameter) const
 {
-  ContactModelNames names = contact_models().make(method).laws;
+  return make(method, materials, largest_diameter);
+}
+
+ContactModel ContactParameters::wall_model(const Materials &materials,
+                                           const double largest_diameter) const
+{
+  return make(model_of_walls(), materials, largest_diameter);
+}
+
+ContactModel ContactParameters::make(const std::string &name, const Materials &materials,
+                                     const double largest_diameter) const
+{
+  ContactModelNames names = contact_models().make(name).laws;
   names.rolling = rolling_method;
   return {materials, names, laws, 0.5 * largest_diameter};
 }

@@ -163,12 +163,12 @@ std::string place_of_condition(const std::size_t k)
          std::to_string(k) + "':";
 }
 
-/// Ids of the boundaries that are periodic. Throws a UserError for a condition on a boundary that
-/// the mesh does not have.
+/// Ids of the boundaries that are periodic. Throws a UserError if the mesh does not have one of
+/// these; of the other conditions on boundaries that it does not have, @p problems is told as of
+/// something doubtful.
 std::set<unsigned int> find_periodic_ids(const BoundaryParameters &boundaries,
-                                         const std::vector<Side> &all_sides)
+                                         const std::vector<Side> &all_sides, Problems &problems)
 {
-  Problems problems;
   std::set<unsigned int> periodic_ids;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
@@ -179,11 +179,16 @@ std::set<unsigned int> find_periodic_ids(const BoundaryParameters &boundaries,
     {
       if (periodic)
         periodic_ids.insert(id);
-      if (std::none_of(all_sides.begin(), all_sides.end(),
-                       [&](const Side &s) { return s.id == id; }))
-        problems.add(place_of_condition(k), "the mesh has no boundary " + std::to_string(id) + ".",
-                     "Check the ids; for deal.II's generators they differ only with 'colorize' set "
-                     "to true in 'grid arguments'.");
+      if (std::any_of(all_sides.begin(), all_sides.end(),
+                      [&](const Side &s) { return s.id == id; }))
+        continue;
+      const std::string what = "the mesh has no boundary " + std::to_string(id);
+      const std::string mend = "Check the ids; for deal.II's generators they differ only with "
+                               "'colorize' set to true in 'grid arguments'.";
+      if (periodic)
+        problems.add(place_of_condition(k), what + ".", mend);
+      else
+        problems.warn(place_of_condition(k), what + ", so the condition has no effect.", mend);
     }
   }
   if (!problems.empty())
@@ -212,10 +217,13 @@ double area_of(const Triangulation &triangulation, const unsigned int id)
 std::set<unsigned int> Domain::join_periodic_ends(const BoundaryParameters &boundaries,
                                                   const std::vector<Side> &all_sides)
 {
-  const std::set<unsigned int> periodic_ids = find_periodic_ids(boundaries, all_sides);
+  Problems problems;
+  const std::set<unsigned int> periodic_ids = find_periodic_ids(boundaries, all_sides, problems);
+  if (!problems.empty())
+    throw UserError(problems);
+  list_of_doubts = problems.warnings();
   Triangulation &triangulation = mesh_data->triangulation;
   const double tolerance = 1e-9 * norm(upper_corner - lower_corner);
-  Problems problems;
   for (std::size_t k = 0; k < boundaries.conditions.size(); ++k) {
     const BoundaryCondition &c = boundaries.conditions[k];
     if (c.type != "periodic")

@@ -30,8 +30,11 @@ void FaultParameters::declare(dealii::ParameterHandler &prm)
                   "removed and counted, with or without a warning.");
   declare::not_negative(
       prm, "largest overlap", largest_overlap,
-      "Overlap over the radius of the smaller particle above which the run stops, as "
-      "no contact law holds there; 0: never.");
+      "Overlap over the radius of the smaller particle above which no contact law holds; 0: "
+      "none.");
+  declare::choice(prm, "excessive overlap", excessive_overlap, "warn|stop",
+                  "What happens beyond the 'largest overlap': the run goes on, with a warning and "
+                  "the number of particles in the summary, or it stops.");
   declare::leave(prm);
 }
 
@@ -58,9 +61,9 @@ Faults ParticleGuard::inspect(const ParticleArrays &p, const PairList &pairs,
       if (domain.passed_outlet(p.reference[row], x) < 0)
         faults.lost.push_back({row, "has left the mesh, though not through an outlet."});
     } else if (way > longest_way)
-      faults.squeezed.push_back({row, "has moved by " + eunoe::format(way) +
-                                          " m without a search for contacts, and only " +
-                                          eunoe::format(longest_way) + " m is safe."});
+      faults.fast.push_back({row, "has moved by " + eunoe::format(way) +
+                                      " m without a search for contacts, and only " +
+                                      eunoe::format(longest_way) + " m is safe."});
   }
   find_overlaps(p, pairs, faults);
   find_overlaps(p, solid_contacts, solids, faults);
@@ -117,15 +120,23 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
 }
 
 InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays &particles,
-                                      const std::function<std::string(std::size_t)> &describe) const
+                                      const std::function<std::string(std::size_t)> &describe)
 {
-  MPI_Comm comm = domain.communicator();
-  std::vector<Fault> grave = faults.squeezed;
+  const bool may_squeeze = parameters.excessive_overlap == "warn";
+  std::vector<Fault> grave = faults.fast;
+  if (!may_squeeze)
+    grave.insert(grave.end(), faults.squeezed.begin(), faults.squeezed.end());
   if (parameters.lost_particles == "stop")
     grave.insert(grave.end(), faults.lost.begin(), faults.lost.end());
-  std::uint64_t numbers[2] = {grave.size(), faults.lost.size()};
-  MPI_Allreduce(MPI_IN_PLACE, numbers, 2, MPI_UINT64_T, MPI_SUM, comm);
+  std::uint64_t numbers[3] = {grave.size(), faults.lost.size(), faults.squeezed.size()};
+  MPI_Allreduce(MPI_IN_PLACE, numbers, 3, MPI_UINT64_T, MPI_SUM, domain.communicator());
   InspectionResult result;
+  if (may_squeeze && numbers[2] > 0) {
+    result.squeezed = numbers[2];
+    if (most_at_once == 0)
+      result.first_squeezed = first_of(faults.squeezed, particles, describe);
+    most_at_once = std::max(most_at_once, numbers[2]);
+  }
   if (numbers[0] + numbers[1] == 0)
     return result;
   result.stops = numbers[0] > 0;
@@ -133,14 +144,22 @@ InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays
   result.number = result.stops ? numbers[0] : numbers[1];
   for (const Fault &fault : faults.lost)
     result.lost.push_back(fault.row);
+  result.first = first_of(result.stops ? grave : faults.lost, particles, describe);
+  return result;
+}
 
-  // The one with the smallest id is named, whichever rank it is on.
+std::string ParticleGuard::first_of(const std::vector<Fault> &faults,
+                                    const ParticleArrays &particles,
+                                    const std::function<std::string(std::size_t)> &describe) const
+{
+  MPI_Comm comm = domain.communicator();
+  std::string first;
   ParticleId mine = std::numeric_limits<ParticleId>::max();
-  for (const Fault &fault : result.stops ? grave : faults.lost) {
+  for (const Fault &fault : faults) {
     const ParticleId id = particles.id[fault.row];
     if (id < mine) {
       mine = id;
-      result.first = describe(fault.row) + " " + fault.what;
+      first = describe(fault.row) + " " + fault.what;
     }
   }
   ParticleId smallest = mine;
@@ -149,11 +168,11 @@ InspectionResult ParticleGuard::judge(const Faults &faults, const ParticleArrays
   if (mine == smallest)
     MPI_Comm_rank(comm, &rank);
   MPI_Allreduce(MPI_IN_PLACE, &rank, 1, MPI_INT, MPI_MIN, comm);
-  int length = static_cast<int>(result.first.size());
+  int length = static_cast<int>(first.size());
   MPI_Bcast(&length, 1, MPI_INT, rank, comm);
-  result.first.resize(length);
-  MPI_Bcast(result.first.data(), length, MPI_CHAR, rank, comm);
-  return result;
+  first.resize(length);
+  MPI_Bcast(first.data(), length, MPI_CHAR, rank, comm);
+  return first;
 }
 
 std::optional<double> ParticleGuard::newly_too_short(double stiffest)

@@ -17,8 +17,8 @@ ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const d
       halo(domain.communicator()),
       grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
            largest_diameter + skin + model.range()),
-      pair_forces(model, domain.periods()), solid_contacts(model), rows(model.history_size()),
-      extra_defaults(physics.fields.initial_values())
+      pair_forces(model, domain.periods()), solid_contacts(physics.wall_model),
+      rows(model.history_size()), extra_defaults(physics.fields.initial_values())
 {
   pairs.clear(model.history_size());
 }
@@ -304,7 +304,7 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   pairs.trim();
   halo.leave_out_unpaired(particles, pairs);
   make_room_for_contacts();
-  solid_contacts.search(particles, solids, skin + model.range());
+  solid_contacts.search(particles, solids, skin + physics.wall_model.range());
   return origins;
 }
 

@@ -17,8 +17,9 @@ void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
                  "Steps between searches (constant) or between checks of the displacement "
                  "(dynamic).",
                  1);
-  declare::between(prm, "dynamic contact search size coefficient", displacement_share, 1e-3, 1.,
-                   "Share of the safe displacement after which the search is repeated.");
+  declare::at_least(prm, "dynamic contact search size coefficient", displacement_share, 1e-3,
+                    "Share of the safe displacement after which the search is repeated; more than "
+                    "1 is as 1.");
   declare::at_least(prm, "neighborhood threshold", neighborhood_threshold, 1.,
                     "The search lists pairs with separations up to the skin, (threshold - 1) times "
                     "the largest diameter. Larger: longer lists, fewer searches.");

@@ -38,8 +38,8 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
                  "Whether particles that are at rest, and whose neighbours are, sleep: they do "
                  "not move and their contacts with each other are not computed, until something "
                  "moves near them.");
-  declare::not_negative(prm, "granular temperature threshold", temperature,
-                        "Square of the speed below which a particle is at rest (m2/s2).");
+  declare::not_negative(prm, "rest speed", rest_speed,
+                        "Speed up to which a particle is at rest (m/s).");
   declare::not_negative(
       prm, "rest time", rest_time,
       "Time for which a particle must have been at rest before it may sleep (s).");
@@ -70,7 +70,7 @@ std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
 {
   std::vector<double> &moved = p.component(*last_moved);
   const auto now = static_cast<double>(stirring.step);
-  const double limit = parameters.temperature;
+  const double limit = parameters.rest_speed * parameters.rest_speed;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     // NaN is not at rest. Spin does not count: many particles turn in place for long, as nothing
     // resists a spin about the normal of a contact, and a rolling particle has a velocity.

@@ -15,6 +15,10 @@ std::vector<std::size_t> Simulation::inspect()
                       format(*half_period / time_step()) +
                       " time steps, and may gain energy. At most " +
                       format(*half_period / ParticleGuard::steps_per_contact) + " s is advised.");
+  if (!result.first_squeezed.empty())
+    get_log().warning("At t = " + format(time()) + " s, " + result.first_squeezed +
+                      " The run goes on, and the summary counts such particles; with 'excessive "
+                      "overlap = stop' it would stop.");
   if (result.stops)
     stop_for(result);
   if (result.warns)

@@ -119,7 +119,7 @@ Overlap overlap_with_solids(const std::vector<Sphere> &spheres, std::vector<Soli
   return deepest;
 }
 
-void judge_overlap(const Overlap &overlap, const std::string &what, const double largest_allowed,
+void judge_overlap(const Overlap &overlap, const std::string &what, const FaultParameters &faults,
                    Problems &problems)
 {
   if (overlap.share <= doubtful_overlap)
@@ -129,7 +129,8 @@ void judge_overlap(const Overlap &overlap, const std::string &what, const double
                            " of its radius where it is inserted, at (" + format(x.x) + ", " +
                            format(x.y) + ", " + format(x.z) + ") m, and would be shot off.";
   const std::string mend = "Correct its place or its diameter.";
-  if (largest_allowed > 0. && overlap.share > largest_allowed)
+  const double largest_allowed = faults.excessive_overlap == "stop" ? faults.largest_overlap : 1.;
+  if (faults.largest_overlap > 0. && overlap.share > largest_allowed)
     problems.add(insertion_info + ":", text, mend);
   else
     problems.warn(insertion_info + ":", text, mend);
@@ -178,6 +179,24 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
                   "of particles at each time step'.");
 }
 
+/// @param n_outside of this rank's share of an event, likewise @p n_inside
+void judge_outside(const std::uint64_t n_outside, const std::uint64_t n_inside,
+                   const Domain &domain, Problems &problems)
+{
+  std::uint64_t n[2] = {n_outside, n_inside};
+  MPI_Allreduce(MPI_IN_PLACE, n, 2, MPI_UINT64_T, MPI_SUM, domain.communicator());
+  const std::string mend = "Enlarge the mesh, or correct the places.";
+  const auto of_all = static_cast<double>(n[0]) / static_cast<double>(n[0] + n[1]);
+  if (n[0] > 0 && n[1] == 0)
+    problems.add(insertion_info + ":", "all particles are to be inserted outside the mesh.", mend);
+  else if (n[0] > 0)
+    problems.warn(insertion_info + ":",
+                  format_roughly(100. * of_all) +
+                      " % of the particles are to be inserted outside the mesh and will be left "
+                      "out.",
+                  mend);
+}
+
 void judge_speed(const std::vector<NewParticle> &event, const double time_step, MPI_Comm comm,
                  Problems &problems)
 {
@@ -205,13 +224,9 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
     judge_interval(parameters, insertion.largest_diameter(), problems);
   Overlap of_pairs, with_solids;
   for (std::size_t e = 0; e < events.size(); ++e) {
-    const std::vector<NewParticle> &event = events[e];
-    if (!insertion.gives_particles()) {
-      std::vector<Vec3> places;
-      for (const NewParticle &particle : event)
-        places.push_back(particle.position);
-      check_places(domain, places, domain.communicator(), problems);
-    }
+    std::vector<NewParticle> event = events[e];
+    if (!insertion.gives_particles())
+      judge_outside(leave_out_what_is_outside(event, domain), event.size(), domain, problems);
     judge_speed(event, parameters.control.time_step, domain.communicator(), problems);
     std::uint64_t n = event.size();
     MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
@@ -224,9 +239,8 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
     if (e == 0)
       with_solids = overlap_with_solids(spheres, solids);
   }
-  const double largest_overlap = parameters.faults.largest_overlap;
-  judge_overlap(of_pairs, "a particle overlaps another", largest_overlap, problems);
-  judge_overlap(with_solids, "a particle overlaps a wall or solid", largest_overlap, problems);
+  judge_overlap(of_pairs, "a particle overlaps another", parameters.faults, problems);
+  judge_overlap(with_solids, "a particle overlaps a wall or solid", parameters.faults, problems);
 }
 
 } // namespace eunoe

@@ -36,20 +36,27 @@ Inserter::Event Inserter::next_event(const Domain &domain, const ParticleArrays 
   method->survey({domain, particles, leaving, solids, time});
   event.delivery.particles = method->next(ids);
   ++n_events;
+  std::uint64_t n[2] = {event.delivery.particles.size(), 0};
+  if (!method->gives_particles())
+    n[1] = leave_out_what_is_outside(event.delivery.particles, domain);
+  MPI_Allreduce(MPI_IN_PLACE, n, 2, MPI_UINT64_T, MPI_SUM, domain.communicator());
+  n_supplied += n[0];
+  event.n_outside = n[1];
   return event;
 }
 
 nlohmann::ordered_json Inserter::save() const
 {
-  return {{"events", n_events}, {"next_id", ids.next()}};
+  return {{"events", n_events}, {"supplied", n_supplied}, {"next_id", ids.next()}};
 }
 
-void Inserter::load(const nlohmann::ordered_json &saved, const std::size_t n_inserted)
+void Inserter::load(const nlohmann::ordered_json &saved)
 {
+  n_supplied = count_in(saved.at("supplied"));
   n_events = count_in(saved.at("events"));
   ids.go_on_from(count_in<ParticleId>(saved.at("next_id")));
   if (method)
-    method->skip(n_events, n_inserted);
+    method->skip(n_events, n_supplied);
 }
 
 } // namespace eunoe

@@ -27,7 +27,9 @@ bool fits(const EntryPath &path, const EntryPath &rule)
 const EntryPath properties = {"lagrangian physical properties"},
                 type = {"lagrangian physical properties", "particle type *"},
                 insertion = {"insertion info"}, model = {"model parameters"},
-                control = {"simulation control"}, mesh = {"mesh"}, no_section = {};
+                control = {"simulation control"},
+                boundary = {"DEM boundary conditions", "boundary condition *"}, mesh = {"mesh"},
+                no_section = {};
 
 /// An entry with another name.
 struct Renamed
@@ -65,6 +67,8 @@ const std::vector<Word> &words()
       {model, "rolling resistance torque method", "constant_resistance", "constant"},
       {model, "rolling resistance torque method", "viscous_resistance", "viscous"},
       {model, "rolling resistance torque method", "epsd_resistance", "epsd"},
+      {control, "output frequency", "-1", "0"},
+      {control, "log frequency", "-1", "0"},
       {insertion, "insertion method", "uniform", "volume"},
       {insertion, "insertion method", "non_uniform", "volume"},
       {mesh, "type", "cylinder", "lethe"},
@@ -98,6 +102,10 @@ const std::vector<Components> &components()
         "insertion box maximum x", "insertion box maximum y", "insertion box maximum z"},
        insertion,
        "insertion box points coordinates"},
+      {boundary,
+       {"rotational vector x", "rotational vector y", "rotational vector z"},
+       boundary,
+       "rotational vector"},
       {{"floating walls", "wall *", "point on wall"},
        {"x", "y", "z"},
        {"floating walls", "wall *"},
@@ -172,8 +180,9 @@ const std::vector<Ignored> &ignored()
        "has no effect on particles, in Lethe either: see 'box refinement'."},
       {{"model parameters", "adaptive sparse contacts"}, {"enable particle advection"}, of_fluids},
       {{"model parameters", "adaptive sparse contacts"},
-       {"solid fraction threshold"},
-       "is not needed: particles sleep one by one, and those that are free to fall move."},
+       {"granular temperature threshold", "solid fraction threshold"},
+       "is for cells, whose mean motion hides that of a grain: here each particle has its 'rest "
+       "speed'."},
       {insertion,
        {"insertion plane threshold distance"},
        "is not needed: a cell takes a particle if it is empty."},
@@ -216,9 +225,17 @@ public:
 
   void run()
   {
+    // Of a case in a plane all else would be wrong, too.
+    for (const InputEntry &entry : entries)
+      if (entry.path.empty() && entry.name == "dimension" && entry.value != "3") {
+        takes_out(entry);
+        entries.clear();
+        return;
+      }
     for (InputEntry &entry : entries)
       move(entry);
     number_the_box();
+    name_default_surface();
     for (const Components &rule : components())
       join(rule);
     entries.erase(std::remove_if(entries.begin(), entries.end(),
@@ -290,6 +307,25 @@ private:
         numbered.back().path.insert(numbered.back().path.begin() + 1, "box 0");
     }
     entries = numbered;
+  }
+
+  /// A surface of deal.II without a name is a square.
+  void name_default_surface()
+  {
+    const EntryPath surface = {"solid objects", "solid surfaces", "solid object *", "mesh"};
+    std::vector<InputEntry> named;
+    for (const InputEntry &entry : entries) {
+      named.push_back(entry);
+      if (!fits(entry.path, surface) || entry.name != "type" || entry.value != "dealii" ||
+          std::any_of(entries.begin(), entries.end(), [&](const InputEntry &other) {
+            return other.path == entry.path && other.name == "grid type";
+          }))
+        continue;
+      named.push_back(entry);
+      named.back().name = "grid type";
+      named.back().value = "hyper_cube";
+    }
+    entries = named;
   }
 
   /// Makes one entry out of those for its components, at the place of the first.
@@ -367,8 +403,7 @@ private:
       }
     for (const Word &rule : words())
       if (fits(entry.path, rule.path) && entry.name == rule.entry && entry.value == rule.from) {
-        problems.warn(place(entry),
-                      "is '" + rule.from + "', which is called '" + rule.to + "' now.", "");
+        problems.warn(place(entry), "is '" + rule.from + "', which is '" + rule.to + "' here.", "");
         entry.value = rule.to;
       }
   }

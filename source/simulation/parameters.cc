@@ -138,6 +138,11 @@ ContactModel Parameters::contact_model(const double largest_diameter) const
   return contacts.model(physics.materials(), largest_diameter);
 }
 
+ContactModel Parameters::wall_model(const double largest_diameter) const
+{
+  return contacts.wall_model(physics.materials(), largest_diameter);
+}
+
 Parameters Parameters::read(const std::string &text, const std::string &file,
                             const std::vector<std::string> &overrides, Problems &problems,
                             const FileLoader &load)

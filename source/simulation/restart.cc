@@ -19,6 +19,7 @@ void Simulation::save(CheckpointWriter &writer)
   writer.head["solids"] = solids.save();
   if (sleeper.is_enabled())
     writer.head["sleep"] = sleeper.save();
+  writer.head["most_squeezed"] = guard.most_squeezed();
   system.save(writer);
   if (process)
     process->save(writer);
@@ -30,10 +31,11 @@ void Simulation::resume()
   const Checkpoint &checkpoint = *checkpoints.opened();
   checkpoints.understand([&](const nlohmann::ordered_json &head) {
     clock.load(head.at("clock"));
-    inserter.load(head.at("insertion"), count_in(head.at("ledger").at("inserted").at("number")));
+    inserter.load(head.at("insertion"));
     balancer.load(head.at("balancing"));
     domain.load(head.at("domain"));
     solids.load(head.at("solids"));
+    guard.set_most_squeezed(count_in(head.at("most_squeezed")));
     if (sleeper.is_enabled())
       sleeper.load(head.at("sleep"), solids.list().size());
     system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get());

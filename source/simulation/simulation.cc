@@ -94,8 +94,11 @@ ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserte
   if (process != nullptr)
     process->add_fields(fields);
   sleeper.add_fields(fields);
-  return {parameters.contact_model(largest_diameter(parameters, inserter)), make_loads(parameters),
-          fields, sleeper.get().flag()};
+  const double largest = largest_diameter(parameters, inserter);
+  ContactModel pairs = parameters.contact_model(largest), walls = parameters.wall_model(largest);
+  pairs.widen(walls.history_size());
+  walls.widen(pairs.history_size());
+  return {std::move(pairs), std::move(walls), make_loads(parameters), fields, sleeper.get().flag()};
 }
 
 } // namespace
@@ -121,6 +124,8 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {
+  for (const Problem &doubt : domain.doubts())
+    log.warning(doubt.text());
   Problems problems;
   const Skins skins(parameters, inserter);
   check_domain(domain, parameters, skins.contact + skins.least, problems);
@@ -349,6 +354,9 @@ void Simulation::do_what_is_due()
   if (inserter.is_due(clock.step())) {
     const Inserter::Event event =
         inserter.next_event(domain, system.particles, solids.list(), clock.time());
+    if (event.n_outside > 0)
+      get_log().warning("At t = " + format(time()) + " s, " + std::to_string(event.n_outside) +
+                        " particle(s) outside the mesh are left out of the insertion.");
     insert_and_remove(event.delivery, event.removed);
   }
   if (process) {

@@ -95,6 +95,7 @@ void Simulation::write_summary()
   summary["share_asleep"] = progress.share_asleep(comm);
   summary["contact_searches"] = system.n_searches();
   summary["load_balances"] = system.n_balances();
+  summary["most_squeezed_particles"] = guard.most_squeezed();
   add_balance(summary, system, domain);
   add_energies(summary, system.particles, comm);
   if (process)
@@ -105,6 +106,12 @@ void Simulation::write_summary()
                  " in " + format_duration(progress.seconds_of_loop()) + ": " +
                  format(progress.particle_steps_per_second() * 1e-6) +
                  " million particle-steps/s. Share of time: " + shares);
+  if (guard.most_squeezed() > 0)
+    get_log().warning(
+        "up to " +
+        format_count(static_cast<double>(guard.most_squeezed()), "particle", "particles") +
+        " at a time overlapped by more than the 'largest overlap', where no contact "
+        "law holds.");
   get_log().line("Results are in " + outputs.folder.path);
 }
 

@@ -54,9 +54,23 @@ FEW = ["insertion info/insertion frequency = 1000",
        "insertion info/inserted number of particles at each time step = 5", TYPE + "number = 20"]
 OUTSIDE = "the solid lies outside the mesh during the whole run"
 
+MODEL = "model parameters/"
+CONDITION = "DEM boundary conditions/"
+
 # Name: settings, and the warnings that they must give once each.
 DOUBTFUL = {
     "nothing doubtful": ([], []),
+    "walls with other laws": ([MODEL + "particle particle contact force method = DMT"],
+                              ["is 'nonlinear' while particles use 'DMT', so that they touch walls"]),
+    "no such boundary": ([CONDITION + "number of boundary conditions = 1",
+                          CONDITION + "boundary condition 0/boundary id = 17"],
+                         ["the mesh has no boundary 17, so the condition has no effect."]),
+    "a wall that never acts": (["floating walls/number of floating walls = 1"],
+                               ["is 0 s, not after the start time of 0 s, so the wall does not act."]),
+    "a box that reaches out": (["insertion info/insertion box points coordinates = "
+                                "0.01, 0.01, 0.01 : 0.03, 0.012, 0.012", TYPE + "number = 18",
+                                "insertion info/insertion distance threshold = 1.1"],
+                               ["of the particles are to be inserted outside the mesh and will be left out."]),
     "much too large a step": ([ENTRY + " = 2e-3"],
                               ["exceeds 25 % of the Rayleigh time of particle type 0"]),
     "a stiff wall": (["lagrangian physical properties/young modulus wall = 1e13",
@@ -92,15 +106,16 @@ DOUBTFUL = {
 }
 LONG = {"a solid that comes in", "events upon each other", "pictures without end", "too few events"}
 
+STOP = "model parameters/excessive overlap = stop"
 # Name: settings, exit code 2, and a part of the sentence.
 REFUSED = {
     "no particles and no solids": ([TYPE + "number = 0"],
                                    "no particles come into the run, and there are no solids to be seen."),
     "particles in one place": ([*LIST, "insertion info/list z = 0.01, 0.0101"],
                                "a particle overlaps another by 1.8 of its radius"),
-    "a particle deep in a wall": ([*LIST, "insertion info/list z = 0.0001, 0.01"],
+    "a particle deep in a wall": ([*LIST, STOP, "insertion info/list z = 0.0001, 0.01"],
                                   "a particle overlaps a wall or solid by 0.8 of its radius"),
-    "a particle in a solid": ([*LIST, *SOLID, BOX + "0.0101, 0.005, 0.005 : 0.015, 0.015, 0.015"],
+    "a particle in a solid": ([*LIST, *SOLID, STOP, BOX + "0.0101, 0.005, 0.005 : 0.015, 0.015, 0.015"],
                               "a particle overlaps a wall or solid by 0.8 of its radius"),
     "a solid that gets too fast": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.005, 0.005, 0.005",
                                     VELOCITY + "if(t > 5e-6, 500, 0); 0; 0",

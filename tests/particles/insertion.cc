@@ -189,8 +189,8 @@ void test_errors()
     return "";
   };
   check("a box outside the mesh is refused",
-        refused(" set insertion box points coordinates = 0, 0, 0 : 5, 5, 5")
-                .find("reaches out of the mesh") != std::string::npos);
+        refused(" set insertion box points coordinates = 4, 0, 0 : 5, 5, 5")
+                .find("the box lies outside the mesh") != std::string::npos);
   check("a particle outside the mesh is refused",
         refused(" set insertion method = list\n set list x = 1\n set list y = 0\n set list z = 0")
                 .find("inserted outside the mesh") != std::string::npos);

@@ -52,7 +52,7 @@ void expect(const std::string &name, const std::string &message,
 void examine_checkpoints()
 {
   const auto text = [](const std::string &overlap, const std::string &restart) {
-    return input("-12", model(" set largest overlap = " + overlap) +
+    return input("-12", model(" set excessive overlap = stop\n set largest overlap = " + overlap) +
                             "subsection restart\n set checkpoint = true\n set frequency = 50\n"
                             " set restart = " +
                             restart + "\nend\n");
@@ -184,8 +184,11 @@ EUNOE_MPI_TEST()
   expect("through the wall", failure(input("-3000")),
          {"particle 1 at (0, 0, -", "with a velocity of (0, 0, -3000) m/s, which touched nothing,",
           "has left the mesh, though not through an outlet.", "fault.checkpoint"});
-  expect("deep in the wall", failure(input("-12", model(" set largest overlap = 0.05"))),
+  expect("deep in the wall",
+         failure(input("-12", model(" set excessive overlap = stop\n set largest overlap = 0.05"))),
          {"particle 1", "overlaps '", "largest overlap"});
+  expect("which need not stop it", failure(input("-12", model(" set largest overlap = 0.05"))),
+         {"nothing"});
   expect("any overlap is allowed", failure(input("-12", model(" set largest overlap = 0"))),
          {"nothing"});
   const auto poison = [](Simulation &simulation) {

@@ -1,5 +1,5 @@
-// When particles are inserted, which ones are removed to make room for them, and how the inserter
-// continues from a checkpoint.
+// When particles are inserted, which ones are removed to make room for them, which ones are left
+// out, and how the inserter continues from a checkpoint.
 
 #include <eunoe/simulation/inserter.h>
 
@@ -14,7 +14,10 @@ namespace {
 class Drops : public Insertion
 {
 public:
-  explicit Drops(std::vector<bool> *leaving) : leaving(leaving) {}
+  explicit Drops(std::vector<bool> *leaving, const Vec3 &place = {})
+      : leaving(leaving), place(place)
+  {
+  }
 
   double largest_diameter() const override { return 1e-3; }
   std::size_t supply(std::size_t n_events) const override
@@ -27,6 +30,7 @@ public:
     ++n_done;
     NewParticle drop;
     drop.id = ids.take(1);
+    drop.position = place;
     return {drop};
   }
   void skip(std::size_t n_events, std::size_t n_particles) override
@@ -37,6 +41,7 @@ public:
 
 private:
   std::vector<bool> *leaving;
+  const Vec3 place;
   std::size_t n_done = 0;
 };
 
@@ -69,11 +74,22 @@ EUNOE_MPI_TEST()
   inserter.next_event(domain, particles, {}, 0.);
 
   Inserter continued(parameters, std::make_unique<Drops>(&leaving));
-  continued.load(nlohmann::ordered_json::parse(inserter.save().dump()), 2);
+  continued.load(nlohmann::ordered_json::parse(inserter.save().dump()));
   check("one is left", continued.is_due(20));
   const Inserter::Event last = continued.next_event(domain, particles, {}, 0.);
   check("its id has never been used", last.delivery.particles[0].id == 8);
   check("then there is none", !continued.is_due(30));
+
+  const auto outside = [&] { return std::make_unique<Drops>(&leaving, Vec3{0., 0., 1.}); };
+  Inserter above(parameters, outside());
+  const Inserter::Event lost = above.next_event(domain, particles, {}, 0.);
+  check("a place outside the mesh is left out",
+        lost.delivery.particles.empty() && lost.n_outside == 1);
+  Inserter above_continued(parameters, outside());
+  above_continued.load(nlohmann::ordered_json::parse(above.save().dump()));
+  above_continued.next_event(domain, particles, {}, 0.);
+  above_continued.next_event(domain, particles, {}, 0.);
+  check("and yet counts as supplied", !above_continued.is_due(30));
 
   parameters.frequency = 0;
   const Inserter once(parameters, std::make_unique<Drops>(&leaving));

@@ -67,15 +67,36 @@ EUNOE_MPI_TEST()
   result = trial.judge(lost);
   check("or without", !result.stops && !result.warns);
 
-  Faults squeezed = lost;
+  Faults fast = lost;
   if (trial.rank == 0)
-    squeezed.squeezed = {{1, "is squeezed"}};
-  result = trial.judge(squeezed);
-  check("squeezed ones stop the run in any case", result.stops && result.number == 1);
-  check("and are named", result.first == "particle 11 is squeezed", result.first);
+    fast.fast = {{1, "is too fast"}};
+  result = trial.judge(fast);
+  check("fast ones stop the run in any case", result.stops && result.number == 1);
+  check("and are named", result.first == "particle 11 is too fast", result.first);
+
+  Faults squeezed;
+  if (trial.rank == 0)
+    squeezed.squeezed = {{1, "is squeezed"}, {2, "is squeezed"}};
+  ParticleGuard guard = trial.guard();
+  const auto judge = [&](const Faults &faults) {
+    return guard.judge(faults, trial.particles, [&](std::size_t row) {
+      return "particle " + std::to_string(trial.particles.id[row]);
+    });
+  };
+  result = judge(squeezed);
+  check("squeezed ones do not stop it", !result.stops && result.squeezed == 2);
+  check("but are named", result.first_squeezed == "particle 11 is squeezed", result.first_squeezed);
+  if (trial.rank == 0)
+    squeezed.squeezed.pop_back();
+  result = judge(squeezed);
+  check("once", result.squeezed == 1 && result.first_squeezed.empty());
+  check("and counted", guard.most_squeezed() == 2);
+  trial.parameters.excessive_overlap = "stop";
+  result = judge(squeezed);
+  check("unless that is wanted", result.stops && result.number == 1);
+  check("and named again", result.first == "particle 11 is squeezed", result.first);
 
   // A half period of about ten steps, on one rank.
-  ParticleGuard guard = trial.guard();
   const auto stiffness = [&](double half_period) {
     return is_last ? M_PI * M_PI / (half_period * half_period) : 0.;
   };

@@ -16,8 +16,8 @@ std::string sparse(bool enabled, double rest_time)
 {
   return "subsection model parameters\n subsection adaptive sparse contacts\n" +
          Scene::entry("enable adaptive sparse contacts", enabled ? "true" : "false") +
-         Scene::entry("granular temperature threshold", rest_speed * rest_speed) +
-         Scene::entry("rest time", rest_time) + " end\nend\n";
+         Scene::entry("rest speed", rest_speed) + Scene::entry("rest time", rest_time) +
+         " end\nend\n";
 }
 
 /// A horizontal plate that rises with @p speed from a time on.

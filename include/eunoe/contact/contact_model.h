@@ -3,6 +3,8 @@
 
 #include <eunoe/contact/contact_law.h>
 
+#include <algorithm>
+
 namespace eunoe {
 
 /// Which laws act in a contact, by family and registered name, in the order of their application.
@@ -46,7 +48,6 @@ private:
 
 /// The laws of a contact, composed at run time: normal, cohesion, further ones that the input and
 /// the materials ask for, tangential, rolling.
-/// Particle-particle and particle-solid contacts use the same model.
 class ContactModel
 {
 public:
@@ -57,6 +58,10 @@ public:
 
   /// Number of doubles that a contact remembers.
   unsigned int history_size() const { return n_history; }
+
+  /// Lets every contact remember at least so many, of which its laws need not use all: where
+  /// contacts of two models go the same ways, all have the same size.
+  void widen(unsigned int n) { n_history = std::max(n_history, n); }
 
   /// Largest separation at which some law acts between any two materials (m).
   double range() const { return largest_range; }

@@ -12,11 +12,18 @@ public:
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
 
-  /// The laws of all contacts.
+  /// The laws of two particles.
   /// @param largest_diameter of the particles (m)
   ContactModel model(const Materials &materials, double largest_diameter) const;
+  /// The laws of a particle and a wall or solid.
+  ContactModel wall_model(const Materials &materials, double largest_diameter) const;
 
 private:
+  /// Name of the model that walls take: that of the particles where it has a name for walls.
+  std::string model_of_walls() const;
+  ContactModel make(const std::string &name, const Materials &materials,
+                    double largest_diameter) const;
+
   std::string method = "hertz_mindlin_limit_overlap";
   std::string wall_method = "nonlinear";
   std::string rolling_method = "constant";

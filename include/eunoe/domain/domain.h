@@ -162,6 +162,8 @@ public:
   /// Walls of the domain, as solids that move only with the mesh.
   const std::vector<Solid> &walls() const { return wall_solids; }
   const std::vector<Outlet> &outlets() const { return outlet_list; }
+  /// What the user should know of the conditions on its boundaries.
+  const std::vector<Problem> &doubts() const { return list_of_doubts; }
 
   /// The background mesh, for the parts that speak deal.II (domain/mesh.h); only where its cells
   /// were said to be needed, else throws a std::logic_error.
@@ -197,6 +199,7 @@ private:
   std::unique_ptr<Enclosure> enclosure; ///< of any other mesh
   std::vector<Solid> wall_solids;
   std::vector<Outlet> outlet_list;
+  std::vector<Problem> list_of_doubts;
 };
 
 } // namespace eunoe

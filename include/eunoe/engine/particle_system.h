@@ -29,7 +29,8 @@ struct Delivery
 /// What acts on the particles of a run, and what is attached to each.
 struct ParticlePhysics
 {
-  ContactModel model;
+  ContactModel model;      ///< of two particles
+  ContactModel wall_model; ///< of particles and solids
   std::vector<std::unique_ptr<Load>> loads;
   ParticleFields fields;
   std::optional<FieldHandle> asleep; ///< field that is not 0 for sleepers; none: nobody sleeps
@@ -46,6 +47,7 @@ public:
                  Timers &timers);
 
   const ContactModel &contact_model() const { return physics.model; }
+  const ContactModel &wall_model() const { return physics.wall_model; }
   const std::vector<std::unique_ptr<Load>> &loads() const { return physics.loads; }
   const ParticleFields &fields() const { return physics.fields; }
   const Ledger &get_ledger() const { return ledger; }

@@ -4,6 +4,8 @@
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/engine/moving_solids.h>
 
+#include <algorithm>
+
 namespace eunoe {
 
 /// When contacts are searched and how far: `subsection contact detection`.
@@ -32,7 +34,8 @@ class SearchCriterion
 public:
   /// @param skin separation up to which pairs are listed (m)
   SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm)
-      : parameters(parameters), allowed(parameters.displacement_share * skin), comm(comm)
+      : parameters(parameters), allowed(std::min(1., parameters.displacement_share) * skin),
+        comm(comm)
   {
   }
 

@@ -16,8 +16,8 @@ namespace eunoe {
 struct SparseContactParameters : public ParameterSection
 {
   bool enabled = false;
-  double temperature = 1e-7; ///< square of the speed below which a particle is at rest (m2/s2)
-  double rest_time = 2e-3;   ///< for which a particle must have been at rest (s)
+  double rest_speed = 3e-4; ///< up to which a particle is at rest (m/s)
+  double rest_time = 2e-3;  ///< for which a particle must have been at rest (s)
   unsigned int frequency = 50;
 
   void declare(dealii::ParameterHandler &prm) override;

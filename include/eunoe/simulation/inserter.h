@@ -30,6 +30,7 @@ public:
   {
     Delivery delivery;
     std::vector<std::size_t> removed; ///< rows of owned particles
+    std::uint64_t n_outside = 0;      ///< the mesh, of all ranks; they are left out
   };
   /// The next event; collective.
   Event next_event(const Domain &domain, const ParticleArrays &particles,
@@ -40,13 +41,13 @@ public:
   ParticleId take_ids(std::uint64_t n) { return ids.take(n); }
 
   nlohmann::ordered_json save() const;
-  /// @param n_inserted number of particles that have been inserted so far
-  void load(const nlohmann::ordered_json &saved, std::size_t n_inserted);
+  void load(const nlohmann::ordered_json &saved);
 
 private:
   const InsertionParameters &parameters;
   const std::unique_ptr<Insertion> method;
   std::size_t n_events = 0;
+  std::uint64_t n_supplied = 0; ///< particles of all ranks, with those outside the mesh
   ParticleIds ids;
 };
 

@@ -88,6 +88,10 @@ public:
   virtual bool finished() const = 0;
 };
 
+/// Takes particles outside a mesh out of a list.
+/// @return their number
+std::size_t leave_out_what_is_outside(std::vector<NewParticle> &particles, const Domain &domain);
+
 /// What the input says of a method, in entries of `subsection insertion info` that the method's own
 /// file declares.
 class InsertionSection

@@ -61,9 +61,11 @@ public:
     return process_name == "none" ? nullptr : processes.at(process_name).get();
   }
 
-  /// The laws of all contacts.
+  /// The laws of two particles.
   /// @param largest_diameter of the particles (m)
   ContactModel contact_model(double largest_diameter) const;
+  /// The laws of a particle and a wall or solid.
+  ContactModel wall_model(double largest_diameter) const;
 
   ControlParameters control;
   MeshParameters mesh;

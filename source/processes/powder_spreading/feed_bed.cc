@@ -97,8 +97,8 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
                         const double platform_height, const unsigned int seed,
                         const unsigned int event) const
 {
-  const ContactModel &model = simulation.contact_model();
-  const unsigned int n_history = model.history_size();
+  const ParticleSystem &system = simulation.get_system();
+  const unsigned int n_history = system.contact_model().history_size();
   Delivery delivery;
   delivery.rows = ContactRows(n_history);
   delivery.has_rows = true;
@@ -141,7 +141,8 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
           record.partner = opposite_wall(record.partner);
         std::copy_n(record.history, n_history, history.begin());
         if (mirrored) {
-          model.mirror(history.data(), 2);
+          (record.with_solid ? system.wall_model() : system.contact_model())
+              .mirror(history.data(), 2);
           record.normal.z = -record.normal.z;
         }
         record.history = history.data();

@@ -1,6 +1,9 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/expressions.h>
+#include <eunoe/domain/domain.h>
 #include <eunoe/simulation/insertion.h>
+
+#include <algorithm>
 
 namespace eunoe {
 
@@ -8,6 +11,17 @@ InsertionRegistry &insertion_methods()
 {
   static InsertionRegistry registry("insertion method");
   return registry;
+}
+
+std::size_t leave_out_what_is_outside(std::vector<NewParticle> &particles, const Domain &domain)
+{
+  const auto end =
+      std::remove_if(particles.begin(), particles.end(), [&](const NewParticle &particle) {
+        return !domain.contains(particle.position);
+      });
+  const auto number = static_cast<std::size_t>(particles.end() - end);
+  particles.erase(end, particles.end());
+  return number;
 }
 
 std::pair<std::size_t, std::size_t> share_of(const std::size_t n, MPI_Comm comm)

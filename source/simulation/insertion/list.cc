@@ -59,17 +59,16 @@ private:
   std::vector<NewParticle> particles(const ParticleId first) const
   {
     const auto value = [](const std::vector<double> &list, std::size_t k) {
-      return list.empty() ? 0. : list[k];
+      return list.empty() ? 0. : list[list.size() == 1 ? 0 : k];
     };
     const auto [begin, end] = share_of(p.x.size(), comm);
     std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle;
       particle.id = first + static_cast<ParticleId>(k);
+      const double wanted = value(p.diameters, k);
       const double diameter =
-          p.diameters.empty() || p.diameters[k] <= 0.
-              ? sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id))
-              : p.diameters[k];
+          wanted > 0. ? wanted : sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
       particle.radius = 0.5 * diameter;
       particle.mass = sphere_mass(particle.radius, type.density);
       particle.position = {p.x[k], p.y[k], p.z[k]};
@@ -101,7 +100,9 @@ public:
     for (const auto &[name, values] : entries)
       declare::list(prm, name, *values, {},
                     "list: one value a particle (SI units)" +
-                        std::string(name.size() > 6 ? "; empty: 0, or the type's sizes." : "."));
+                        std::string(name.size() > 6 ? ", or one for all; empty: 0, or the type's "
+                                                      "sizes."
+                                                    : "."));
   }
 
   void check(const InsertionSettings &, const ParameterCheck &check) const override
@@ -113,8 +114,8 @@ public:
     check.require(!lists.x.empty(), section, "list x", "is empty.",
                   "Give the coordinates of at least one particle.");
     for (std::size_t k = 0; k < std::size(others); ++k)
-      check.require(others[k]->size() == lists.x.size() || (k >= 2 && others[k]->empty()), section,
-                    "list x",
+      check.require(others[k]->size() == lists.x.size() || (k >= 2 && others[k]->size() <= 1),
+                    section, "list x",
                     "has " + std::to_string(lists.x.size()) + " values, another list " +
                         std::to_string(others[k]->size()) + ".",
                     "Give one value a particle in every list.");

@@ -135,9 +135,9 @@ public:
   void check(const Domain &domain, Problems &problems) const override
   {
     for (unsigned int d = 0; d < 3 && particles.n_remaining() > 0; ++d)
-      if (grid.lower[d] < domain.lower()[d] - 1e-12 || grid.upper[d] > domain.upper()[d] + 1e-12) {
+      if (grid.lower[d] > domain.upper()[d] || grid.upper[d] < domain.lower()[d]) {
         problems.add("subsection 'insertion info' / entry 'insertion box points coordinates':",
-                     "the box reaches out of the mesh in direction " + std::to_string(d) +
+                     "the box lies outside the mesh in direction " + std::to_string(d) +
                          ", which spans " + format(domain.lower()[d]) + " to " +
                          format(domain.upper()[d]) + " m.",
                      "Move the box inside, or enlarge the mesh.");
