@@ -1,6 +1,7 @@
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/new_file.h>
 
 #include <algorithm>
 #include <ctime>
@@ -128,6 +129,20 @@ std::unique_ptr<Checkpoint> CheckpointStore::open_newest(std::vector<std::string
       text + "So " + folder + " holds no checkpoint '" + name +
       "' that is whole, and nothing in it was touched. Put one back, or start anew with "
       "'restart = false'.");
+}
+
+void CheckpointStore::keep_opened()
+{
+  on_first_rank(comm, [&] {
+    const std::string from = folder + "/" + earlier.front();
+    const std::string to = folder + "/" + name + "_phase" + earlier.front().substr(name.size());
+    std::error_code failure;
+    fs::create_hard_link(from, to, failure);
+    if (failure && !fs::exists(to))
+      fs::copy_file(from, to, failure);
+    if (failure && !fs::exists(to))
+      throw UserError(cannot_be_written(to, failure.message()));
+  });
 }
 
 void CheckpointStore::go_on()

@@ -21,14 +21,23 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
   declare::entry(prm, "filename", filename,
                  "Beginning of the names of the checkpoints in the output folder.");
   declare::choice(prm, "restart", restart, "false|true|auto",
-                  "Whether the run continues from the last checkpoint; auto: if there is one.");
+                  "Whether the run continues from the last checkpoint; auto: if there is one. With "
+                  "true, the input may differ from that of the checkpoint: the run goes on with "
+                  "what it says now.");
+  declare::entry(
+      prm, "restart folder", folder,
+      "Output folder of another run, from whose last checkpoint this one goes on as long "
+      "as it has none of its own. Empty: with 'restart = true', the only folder beside "
+      "the output folder or in the present one that holds such a checkpoint.");
   declare::leave(prm);
 }
 
 void RestartParameters::check(const ParameterCheck &check) const
 {
   check.require(!filename.empty() && filename.find('/') == std::string::npos, {section}, "filename",
-                "is '" + shortened(filename) + "'.", "Give a name without '/'.");
+                "is '" + shortened(filename) + "'.",
+                "Give a name without '/'; checkpoints go into the output folder, and 'restart "
+                "folder' names that of another run.");
 }
 
 } // namespace eunoe

@@ -54,8 +54,10 @@ ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
     if (section == known.end())
       throw std::invalid_argument("there is no '" + name + "' among " +
                                   contact_laws(family).names());
-    if (auto law = section->second->make(materials, largest_radius))
+    if (auto law = section->second->make(materials, largest_radius)) {
       laws.push_back(std::move(law));
+      text += (text.empty() ? "" : ", ") + name;
+    }
   };
   add("normal", names.normal);
   for (const std::string &name : names.cohesion)

@@ -49,12 +49,15 @@ std::vector<SolidLoad> MovingSolids::global_loads(MPI_Comm comm) const
 
 nlohmann::ordered_json MovingSolids::save() const
 {
-  return to_json(at_search);
+  nlohmann::ordered_json names = nlohmann::ordered_json::array();
+  for (const Solid &solid : solids)
+    names.push_back(solid.name);
+  return {{"names", names}, {"states", to_json(at_search)}};
 }
 
 void MovingSolids::load(const nlohmann::ordered_json &saved)
 {
-  at_search = states_in(saved, solids.size());
+  at_search = states_in(saved.at("states"), solids.size());
   for (std::size_t s = 0; s < solids.size(); ++s)
     solids[s].state = at_search[s];
 }

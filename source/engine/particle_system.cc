@@ -11,7 +11,7 @@ namespace eunoe {
 ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const double skin,
                                const double largest_diameter, Timers &timers)
     : domain(domain), physics(std::move(physics_)), model(physics.model), skin(skin),
-      ledger(domain.outlets().size()), timers(timers),
+      largest_diameter(largest_diameter), ledger(domain.outlets().size()), timers(timers),
       store(domain, 1.001 * (largest_diameter + skin + model.range()),
             physics.fields.n_components(), physics.asleep),
       halo(domain.communicator()),

@@ -3,6 +3,9 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/engine/load_balancing.h>
 #include <eunoe/engine/particle_system.h>
+#include <eunoe/engine/saved_layout.h>
+
+#include <limits>
 
 namespace eunoe {
 
@@ -73,24 +76,67 @@ void ParticleSystem::save(CheckpointWriter &writer) const
   }
   writer.add_rows("particles", keys, all);
   writer.head["ledger"] = ledger.save(domain.communicator());
+  SavedLayout::write(writer.head, physics.fields, physics.model, physics.wall_model);
 }
 
-void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
-                          const LoadBalancingParameters &balancing, const SparseContacts &sparse)
+void ParticleSystem::check_guests(const Rows &rows, const std::string &path) const
+{
+  std::uint64_t n_outside = 0;
+  double largest[2] = {0., 0.}; // type, radius
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    n_outside += domain.contains(get(rows[k] + position)) ? 0 : 1;
+    largest[0] = std::max(largest[0], rows[k][type]);
+    largest[1] = std::max(largest[1], rows[k][radius]);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &n_outside, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
+  MPI_Allreduce(MPI_IN_PLACE, largest, 2, MPI_DOUBLE, MPI_MAX, domain.communicator());
+  Problems problems;
+  if (n_outside > 0)
+    problems.add(path,
+                 "holds " + std::to_string(n_outside) +
+                     " particles that lie outside the mesh of this input.",
+                 "Give a mesh around them, or let them leave before the checkpoint.");
+  const int n_types = model.get_materials().n_types();
+  if (largest[0] >= n_types)
+    problems.add(path,
+                 "holds particles of type " + format(largest[0]) +
+                     ", and the input has the types 0 to " + std::to_string(n_types - 1) + ".",
+                 "Describe all types that are present.");
+  if (2. * largest[1] > largest_diameter * (1. + 1e-12))
+    problems.add(path,
+                 "holds particles of up to " + format(2. * largest[1]) +
+                     " m, and those of the input have " + format(largest_diameter) +
+                     " m at most, for which contacts are searched.",
+                 "Give the sizes of the particles that are present.");
+  if (!problems.empty())
+    throw UserError(problems);
+}
+
+std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
+                                              const std::vector<Solid> &solids,
+                                              const LoadBalancingParameters &balancing,
+                                              const SparseContacts &sparse, const bool begins_phase)
 {
   MPI_Comm comm = domain.communicator();
-  ledger.load(checkpoint.head.at("ledger"), comm);
+  const SavedLayout layout(checkpoint.head, physics.fields, physics.model, physics.wall_model,
+                           solids);
+  if (!begins_phase)
+    ledger.load(checkpoint.head.at("ledger"), comm);
   int rank;
   MPI_Comm_rank(comm, &rank);
   const Rows share = checkpoint.rows("particles");
-  const std::size_t n_fixed = n_places + extra_defaults.size();
+  const std::size_t n_fixed = n_places + layout.n_extra();
+  const double n_types =
+      begins_phase ? std::numeric_limits<int>::max() : model.get_materials().n_types();
   bool ok = true;
   for (std::size_t k = 0; k < share.size(); ++k)
-    ok = ok && share.length(k) >= n_fixed &&
-         are_of_particle(share[k] + id, model.get_materials().n_types()) &&
+    ok = ok && share.length(k) >= n_fixed && are_of_particle(share[k] + id, n_types) &&
          ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
-                                  model.history_size());
-  checkpoint.require(ok, "its particles are not those of the case.");
+                                  layout.n_history());
+  checkpoint.require(ok && (begins_phase || layout.n_extra() == extra_defaults.size()),
+                     "its particles are not those of the case.");
+  if (begins_phase)
+    check_guests(share, checkpoint.path);
   std::vector<NewParticle> list;
   std::vector<Origin> kept;
   for (std::size_t k = 0; k < share.size(); ++k) {
@@ -100,9 +146,13 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
     particle.type = static_cast<int>(row[type]);
     particle.radius = row[radius];
     particle.mass = row[mass];
-    particle.position = get(row + reference);
+    // The lists of the last search belong to the old input.
+    particle.position =
+        begins_phase ? domain.periods().wrap(get(row + position)) : get(row + reference);
     list.push_back(particle);
     kept.push_back({rank, static_cast<std::int32_t>(k)});
+    if (begins_phase)
+      ledger.inserted.count(particle.mass);
   }
   store.insert(list, extra_defaults, kept);
   store.adapt();
@@ -114,21 +164,26 @@ void ParticleSystem::load(const Checkpoint &checkpoint, const std::vector<Solid>
   ParticleArrays &p = particles;
   for (std::size_t k = 0; k < p.n_owned; ++k) {
     const double *const row = mine[k];
-    set(p.position[k], row + position);
+    if (!begins_phase)
+      set(p.position[k], row + position);
     set(p.velocity[k], row + velocity);
     set(p.spin[k], row + spin);
     set(p.force[k], row + force);
     set(p.torque[k], row + torque);
     for (std::size_t e = 0; e < p.extra.size(); ++e)
-      p.extra[e][k] = row[n_places + e];
+      if (layout.extra(e) >= 0)
+        p.extra[e][k] = row[n_places + static_cast<std::size_t>(layout.extra(e))];
     contacts.append(row + n_fixed, row + mine.length(k));
   }
+  if (begins_phase)
+    contacts = layout.translate(contacts);
   ContactRows(model.history_size()).attach(RowViews(contacts), particles, pairs, solid_contacts);
   halo.update(particles);
-  if (sparse.is_enabled()) {
+  if (sparse.is_enabled() && !begins_phase) {
     sparse.recall(particles, halo);
     leave_out_sleepers();
   }
+  return layout.losses();
 }
 
 } // namespace eunoe

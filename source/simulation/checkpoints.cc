@@ -1,38 +1,157 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/checkpoint/input_differences.h>
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/log.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/checkpoints.h>
+#include <eunoe/simulation/control_parameters.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <sstream>
 
 namespace eunoe {
 
-void Checkpoints::find(const std::string &input, const unsigned long long n_steps, Log &log,
-                       Problems &problems)
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Lines that say in what two inputs differ.
+void tell_differences(const Problems &differences, const std::string &path, Log &log)
+{
+  constexpr std::size_t most = 40;
+  const std::string end = " in the run that wrote " + path + ".";
+  std::vector<std::string> lines;
+  std::size_t n_one_sided = 0;
+  for (const Problem &difference : differences.all()) {
+    // Of a section that only one of them has, there would be many.
+    if (difference.what.find("', and was '") == std::string::npos ||
+        difference.what.size() < end.size())
+      ++n_one_sided;
+    else
+      lines.push_back("  " + difference.where + " " +
+                      difference.what.substr(0, difference.what.size() - end.size()));
+  }
+  const std::size_t n_more = n_one_sided + lines.size() - std::min(most, lines.size());
+  log.line("Going on from " + path + " with another input. What differs:");
+  for (std::size_t k = 0; k < std::min(most, lines.size()); ++k)
+    log.line(lines[k]);
+  if (n_more > 0)
+    log.line("  and " + std::to_string(n_more) +
+             " more entries, most of which only one of them has");
+}
+
+/// Time of a checkpoint (s).
+double time_in(const nlohmann::ordered_json &clock)
+{
+  return number_in(clock.at("begin_time")) +
+         static_cast<double>(count_in(clock.at("step")) - count_in(clock.at("begin_step"))) *
+             number_in(clock.at("time_step"));
+}
+
+} // namespace
+
+std::vector<std::string> Checkpoints::folders_nearby() const
+{
+  std::set<std::string> found;
+  std::string text;
+  if (is_first_rank(comm)) {
+    const fs::path own = fs::path(folder + "/").lexically_normal().parent_path();
+    for (const fs::path &place : {fs::path("."), own / ".."}) {
+      std::error_code failure;
+      if (CheckpointStore(place.string(), parameters.filename, 1, MPI_COMM_SELF).has_any())
+        found.insert(place.lexically_normal().string());
+      for (const auto &entry : fs::directory_iterator(place, failure)) {
+        const std::string path = entry.path().lexically_normal().string();
+        if (entry.is_directory(failure) && !fs::equivalent(entry.path(), own, failure) &&
+            CheckpointStore(path, parameters.filename, 1, MPI_COMM_SELF).has_any())
+          found.insert(fs::canonical(entry.path(), failure).string());
+      }
+    }
+    for (const std::string &path : found)
+      text += path + "\n";
+  }
+  std::istringstream lines(broadcast(text, comm));
+  std::vector<std::string> folders;
+  for (std::string line; std::getline(lines, line);)
+    folders.push_back(line);
+  return folders;
+}
+
+void Checkpoints::open(Log &log)
+{
+  std::vector<std::string> defects;
+  checkpoint = store.open_newest(defects);
+  std::vector<std::string> others;
+  if (!checkpoint && !parameters.folder.empty())
+    others = {parameters.folder};
+  else if (!checkpoint && parameters.restart == "true")
+    others = folders_nearby();
+  if (others.size() > 1) {
+    std::string list;
+    for (const std::string &other : others)
+      list += (list.empty() ? "" : ", ") + other;
+    throw UserError("subsection 'restart' / entry 'restart' is true, and checkpoints '" +
+                    parameters.filename + "' are in several folders: " + list +
+                    ". Name one as 'restart folder'.");
+  }
+  if (others.size() == 1) {
+    CheckpointStore other(others[0], parameters.filename, 1, comm);
+    checkpoint = other.open_newest(defects);
+    is_own_folder = checkpoint == nullptr;
+  }
+  if (checkpoint)
+    for (const std::string &defect : defects)
+      log.warning(defect);
+}
+
+void Checkpoints::find(const std::string &input, const ControlParameters &control,
+                       const std::vector<std::string> &fixed, Log &log, Problems &problems)
 {
   if (parameters.restart == "false")
     return;
-  std::vector<std::string> defects;
-  checkpoint = store.open_newest(defects);
+  open(log);
   if (!checkpoint) {
-    if (parameters.restart == "true")
+    if (parameters.restart == "true" || !parameters.folder.empty())
       problems.add("subsection 'restart' / entry 'restart'",
-                   "is true, but " + folder + " holds no checkpoint '" + parameters.filename + "'.",
-                   "Check 'output path' and 'filename', or set restart = auto to start anew where "
-                   "there is none.");
+                   "is " + parameters.restart + ", but " +
+                       (parameters.folder.empty() ? folder : parameters.folder) +
+                       " holds no checkpoint '" + parameters.filename + "'.",
+                   "Check 'output path', 'restart folder' and 'filename', or set restart = auto to "
+                   "start anew where there is none.");
     return;
   }
-  for (const std::string &defect : defects)
-    log.warning(defect);
   const nlohmann::ordered_json &head = checkpoint->head;
   if (!head.contains("input") || !head["input"].is_string())
     throw checkpoint->damaged("it does not hold the input of its run.");
-  find_input_differences(input, head["input"], checkpoint->path, problems);
+  Problems differences;
+  find_input_differences(input, head["input"], checkpoint->path, differences);
+  if (parameters.restart == "auto" && is_own_folder)
+    for (const Problem &difference : differences.all())
+      problems.add(difference.where, difference.what, difference.mend);
+  else if (!differences.empty()) {
+    is_other_input = true;
+    for (const Problem &difference : differences.all())
+      if (std::any_of(fixed.begin(), fixed.end(), [&](const std::string &section) {
+            return difference.where.find(section) == 0;
+          }))
+        problems.add(difference.where, difference.what, difference.mend);
+    tell_differences(differences, checkpoint->path, log);
+  }
   understand([&](const nlohmann::ordered_json &of_run) {
     const auto step = count_in(of_run.at("clock").at("step"));
-    if (step > n_steps)
+    const double time = time_in(of_run.at("clock"));
+    const unsigned long long last =
+        is_other_input ? control.last_step(step, time) : control.n_steps();
+    const bool by_time = is_other_input && control.end_control == "time";
+    if (step > last || (is_other_input && step == last))
       problems.add("The checkpoint " + checkpoint->path,
-                   "is of step " + std::to_string(step) + ", and the run ends at step " +
-                       std::to_string(n_steps) + ".",
+                   "is of step " + std::to_string(step) +
+                       (by_time ? ", t = " + format(time) + " s" : "") + ", and the run ends at " +
+                       (by_time ? "t = " + format(control.time_end) + " s."
+                                : "step " + std::to_string(last) + "."),
                    "Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
   });
 }

@@ -61,11 +61,18 @@ void ControlParameters::check(const ParameterCheck &check) const
 
 unsigned long long ControlParameters::n_steps() const
 {
+  return last_step(0, 0.);
+}
+
+unsigned long long ControlParameters::last_step(const unsigned long long step,
+                                                const double time) const
+{
   // No run does more steps than this, and it is the same number as a double.
   constexpr double most = 0x1p63;
-  return end_control == "iteration" ? iteration_end
-                                    : static_cast<unsigned long long>(
-                                          std::min(std::ceil(time_end / time_step - 1e-9), most));
+  return end_control == "iteration"
+             ? iteration_end
+             : step + static_cast<unsigned long long>(
+                          std::clamp(std::ceil((time_end - time) / time_step - 1e-9), 0., most));
 }
 
 } // namespace eunoe

@@ -109,6 +109,8 @@ Forecast Simulation::foresee(const bool writes) const
                  forecast);
   if (insertion != nullptr && !is_continued)
     judge_insertion(parameters, *insertion, events, solids.list(), domain, forecast);
+  for (const Problem &doubt : domain.doubts())
+    forecast.problems.warn(doubt.where, doubt.what, doubt.mend);
   if (parameters.process_name == "none" && parameters.control.n_steps() == 0)
     forecast.problems.warn("subsection 'simulation control':", "no step is taken.",
                            "Set 'time end' or 'iteration end'.");

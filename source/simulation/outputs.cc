@@ -39,6 +39,13 @@ bool Outputs::want_solid_loads(const unsigned long long step) const
                      [step](const auto &entry) { return entry.second->wants_solid_loads(step); });
 }
 
+void Outputs::begin(Simulation &simulation)
+{
+  next_pictures = simulation.time();
+  step(simulation);
+  draw(simulation);
+}
+
 void Outputs::step(Simulation &simulation)
 {
   for (const auto &[name, observable] : observables)

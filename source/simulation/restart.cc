@@ -3,7 +3,8 @@
 // A checkpoint holds the state between two steps: particles with their contacts and with the places
 // where they were at the last search, on which the order of all lists depends. So writing one
 // changes nothing, and a run that continues goes on with the same bits. Each part of the simulation
-// saves and loads what it remembers.
+// saves and loads what it remembers. With another input a run begins a phase: it takes the
+// particles and their contacts over and all else from the input.
 
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/simulation/simulation.h>
@@ -30,24 +31,55 @@ void Simulation::resume()
   checkpoints.go_on();
   const Checkpoint &checkpoint = *checkpoints.opened();
   checkpoints.understand([&](const nlohmann::ordered_json &head) {
-    clock.load(head.at("clock"));
     inserter.load(head.at("insertion"));
-    balancer.load(head.at("balancing"));
-    domain.load(head.at("domain"));
-    solids.load(head.at("solids"));
-    guard.set_most_squeezed(count_in(head.at("most_squeezed")));
-    if (sleeper.is_enabled())
-      sleeper.load(head.at("sleep"), solids.list().size());
-    system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get());
+    if (checkpoints.begins_phase())
+      begin_phase(checkpoint);
+    else
+      go_on(checkpoint);
     if (process)
       process->resume(*this, checkpoint);
-    outputs.load(head.at("outputs"));
+    if (checkpoints.is_own())
+      outputs.load(head.at("outputs"));
   });
   move_solids();
   get_log().line("Continuing from " + checkpoint.path + ": step " + std::to_string(clock.step()) +
                  ", t = " + format(clock.time()) + " s, " + std::to_string(system.n_global()) +
                  " particles");
   checkpoints.close();
+  if (!checkpoints.is_own())
+    outputs.begin(*this);
+}
+
+/// Continues as if the run had not stopped.
+void Simulation::go_on(const Checkpoint &checkpoint)
+{
+  const nlohmann::ordered_json &head = checkpoint.head;
+  clock.load(head.at("clock"));
+  balancer.load(head.at("balancing"));
+  domain.load(head.at("domain"));
+  solids.load(head.at("solids"));
+  guard.set_most_squeezed(count_in(head.at("most_squeezed")));
+  if (sleeper.is_enabled())
+    sleeper.load(head.at("sleep"), solids.list().size());
+  system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), false);
+}
+
+/// Takes the particles and what their contacts remember, and goes on with what the input says now:
+/// with other walls, solids, laws, loads, steps.
+void Simulation::begin_phase(const Checkpoint &checkpoint)
+{
+  clock.begin_phase(checkpoint.head.at("clock"), [this](const Clock &now) {
+    return parameters.control.last_step(now.step(), now.time());
+  });
+  move_solids();
+  for (const std::string &loss :
+       system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), true))
+    get_log().line(loss);
+  note_search();
+  if (sleeper.is_enabled())
+    update_sleep(true);
+  constexpr ParticleId all = 0;
+  system.start_forces_on_new(all, solids.list(), clock.time());
 }
 
 void Simulation::dump(const std::string &path)

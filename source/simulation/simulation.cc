@@ -48,6 +48,15 @@ std::vector<std::unique_ptr<Load>> make_loads(const Parameters &parameters)
   return loads;
 }
 
+/// Beginnings of the places of entries that must be those of the checkpoint from which a run goes
+/// on: a process finds its solids and its progress by them.
+std::vector<std::string> fixed_sections(const Parameters &parameters)
+{
+  if (parameters.process() == nullptr)
+    return {};
+  return {describe({}, "process"), describe({parameters.process_name}, "")};
+}
+
 double largest_diameter(const Parameters &parameters, const Inserter &inserter)
 {
   return inserter.get_method() != nullptr ? inserter.get_method()->largest_diameter()
@@ -124,20 +133,21 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {
-  for (const Problem &doubt : domain.doubts())
-    log.warning(doubt.text());
   Problems problems;
   const Skins skins(parameters, inserter);
   check_domain(domain, parameters, skins.contact + skins.least, problems);
   if (skins.in(domain.periods()) < skins.wanted)
     log.line("A period of the domain is short: the skin is " + format(skins.in(domain.periods())) +
              " m instead of " + format(skins.wanted) + " m, so contacts are searched more often.");
-  if (const Insertion *const method = inserter.get_method()) {
+  std::vector<Solid> all = given_solids(problems);
+  checkpoints.find(parameters.as_input_file(), parameters.control, fixed_sections(parameters), log,
+                   problems);
+  if (const Insertion *const method = inserter.get_method();
+      method != nullptr && checkpoints.opened() == nullptr)
+  {
     check_places(domain, method->known_places(), comm, problems);
     method->check(domain, problems);
   }
-  std::vector<Solid> all = given_solids(problems);
-  checkpoints.find(parameters.as_input_file(), parameters.control.n_steps(), log, problems);
   if (!problems.empty())
     throw UserError(problems);
   if (process) {
@@ -182,7 +192,7 @@ RunEstimate Simulation::estimate() const
 
 void Simulation::open_output()
 {
-  if (checkpoints.opened() == nullptr)
+  if (checkpoints.opened() == nullptr || !checkpoints.is_own())
     outputs.open(nullptr);
   else
     checkpoints.understand(
@@ -355,8 +365,9 @@ void Simulation::do_what_is_due()
     const Inserter::Event event =
         inserter.next_event(domain, system.particles, solids.list(), clock.time());
     if (event.n_outside > 0)
-      get_log().warning("At t = " + format(time()) + " s, " + std::to_string(event.n_outside) +
-                        " particle(s) outside the mesh are left out of the insertion.");
+      get_log().line("At t = " + format(time()) + " s, " +
+                     format_count(static_cast<double>(event.n_outside), "particle", "particles") +
+                     " outside the mesh left out of the insertion");
     insert_and_remove(event.delivery, event.removed);
   }
   if (process) {

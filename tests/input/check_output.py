@@ -70,7 +70,7 @@ DOUBTFUL = {
     "a box that reaches out": (["insertion info/insertion box points coordinates = "
                                 "0.01, 0.01, 0.01 : 0.03, 0.012, 0.012", TYPE + "number = 18",
                                 "insertion info/insertion distance threshold = 1.1"],
-                               ["of the particles are to be inserted outside the mesh and will be left out."]),
+                               ["% of the particles are to be inserted outside the mesh and will be left out."]),
     "much too large a step": ([ENTRY + " = 2e-3"],
                               ["exceeds 25 % of the Rayleigh time of particle type 0"]),
     "a stiff wall": (["lagrangian physical properties/young modulus wall = 1e13",

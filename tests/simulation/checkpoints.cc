@@ -25,11 +25,15 @@ RestartParameters parameters(const std::string &restart)
 }
 
 /// Number of problems at the start of a run of so many steps.
-std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps)
+std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
+                       const std::string &text = input, const std::vector<std::string> &fixed = {})
 {
   Log log(MPI_COMM_WORLD, true);
   Problems problems;
-  checkpoints.find(input, n_steps, log, problems);
+  ControlParameters control;
+  control.end_control = "iteration";
+  control.iteration_end = n_steps;
+  checkpoints.find(text, control, fixed, log, problems);
   return problems.all().size();
 }
 
@@ -69,12 +73,30 @@ EUNOE_MPI_TEST()
 
   CheckpointWriter writer(MPI_COMM_WORLD);
   writer.add_rows("particles", {}, {});
+  writer.head["clock"] = Clock(1., 100).save();
   writer.head["clock"]["step"] = 50;
   writer.head["input"] = input;
   checkpoints.write(writer, 50, log);
   Checkpoints later(may, folder, MPI_COMM_WORLD), too_late(may, folder, MPI_COMM_WORLD);
   check("it is opened", n_problems(later, 100) == 0 && later.opened() != nullptr);
   check("it is behind the end", n_problems(too_late, 49) == 1);
+  const std::string other_input = "set a = 2\n";
+  Checkpoints strict(may, folder, MPI_COMM_WORLD), phase(need, folder, MPI_COMM_WORLD),
+      fixed(need, folder, MPI_COMM_WORLD), no_step(need, folder, MPI_COMM_WORLD);
+  check("auto allows no other input", n_problems(strict, 100, other_input) == 1);
+  check("true begins a phase", n_problems(phase, 100, other_input) == 0 && phase.begins_phase());
+  check("the same input does not", !later.begins_phase() && later.is_own());
+  check("some entries must stay", n_problems(fixed, 100, other_input, {"entry 'a'"}) == 1);
+  check("a phase has a step at least", n_problems(no_step, 50, other_input) == 1);
+
+  const std::string elsewhere = "checkpoints_of_other_run";
+  RestartParameters guest = parameters("auto");
+  guest.folder = folder;
+  create_folder(elsewhere, MPI_COMM_WORLD);
+  Checkpoints of_other(guest, elsewhere, MPI_COMM_WORLD);
+  check("that of another run", n_problems(of_other, 100, other_input) == 0 &&
+                                   of_other.begins_phase() && !of_other.is_own());
+
   std::string message;
   try {
     later.understand([](const nlohmann::ordered_json &head) { head.at("nothing"); });

@@ -24,9 +24,23 @@ EUNOE_MPI_TEST()
   continued.advance();
   check("the end", continued.is_at_end() && continued.first_step() == 3);
 
+  Clock shorter(0.05, 4);
+  shorter.begin_phase(clock.save(), [](const Clock &now) { return now.step() + 4; });
+  check("time goes on with other steps", shorter.step() == 3 && shorter.time() == clock.time());
+  shorter.advance();
+  check("which are shorter", shorter.time() == 3. * 0.1 + 0.05);
+  for (unsigned int step = 0; step < 3; ++step)
+    shorter.advance();
+  check("to another end", shorter.is_at_end() && shorter.step() == 7);
+  Clock phase_continued(0.05, 7);
+  phase_continued.load(shorter.save());
+  check("which goes on, too", phase_continued.time() == shorter.time());
+
   bool refused = false;
   try {
-    continued.load({{"step", 0.5}, {"other", 1}});
+    nlohmann::ordered_json saved = clock.save();
+    saved["step"] = 0.5;
+    continued.load(saved);
   } catch (const std::invalid_argument &) {
     refused = true;
   }

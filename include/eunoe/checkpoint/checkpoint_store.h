@@ -24,6 +24,13 @@ public:
   /// @param defects gets what is wrong with newer ones, and what was taken instead
   std::unique_ptr<Checkpoint> open_newest(std::vector<std::string> &defects);
 
+  /// Whether there is any; to be asked on one rank.
+  bool has_any() const { return !present().empty(); }
+
+  /// Gives the one that was opened a second name, "<name>_phase_<step>.checkpoint", by which it
+  /// stays; collective.
+  void keep_opened();
+
   /// Goes on behind the one that was opened; without it those that are there are dropped as soon as
   /// the first new one is complete.
   void go_on();

@@ -14,6 +14,7 @@ struct RestartParameters : public ParameterSection
   unsigned int keep = 2;            ///< number of checkpoints that stay
   std::string filename = "restart";
   std::string restart = "false"; ///< false, true, or auto: if there is a checkpoint
+  std::string folder;            ///< with the checkpoint of another run from which this one goes on
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;

@@ -75,10 +75,14 @@ public:
 
   const Materials &get_materials() const { return materials; }
 
+  /// Names of the laws: what contacts remember has the same meaning in models with the same text.
+  const std::string &description() const { return text; }
+
 private:
   const Materials materials;
   std::vector<std::unique_ptr<ContactLaw>> laws;
   std::vector<unsigned int> first_history;
+  std::string text;
   unsigned int n_history = 0;
   double largest_range = 0.;
 };

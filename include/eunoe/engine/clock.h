@@ -3,6 +3,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <functional>
+
 namespace eunoe {
 
 /// The steps of a run and the time that they make.
@@ -16,7 +18,7 @@ public:
   void advance() { ++present; }
 
   unsigned long long step() const { return present; }
-  double time() const { return static_cast<double>(present) * dt; }
+  double time() const { return begin_time + static_cast<double>(present - begin_step) * dt; }
   double time_step() const { return dt; }
   /// Whether the last step is done.
   bool is_at_end() const { return present >= last; }
@@ -28,11 +30,17 @@ public:
   nlohmann::ordered_json save() const;
   /// Goes on at a step that was saved.
   void load(const nlohmann::ordered_json &saved);
+  /// Goes on at a step that was saved by a run with another time step or another end.
+  /// @param end step at which the run ends, of those that are done and those of this time step
+  void begin_phase(const nlohmann::ordered_json &saved,
+                   const std::function<unsigned long long(const Clock &)> &end);
 
 private:
   const double dt;
-  const unsigned long long last;
+  unsigned long long last;
   unsigned long long present = 0, first = 0;
+  unsigned long long begin_step = 0; ///< since which all steps are as long as now
+  double begin_time = 0.;            ///< of that step (s)
 };
 
 } // namespace eunoe

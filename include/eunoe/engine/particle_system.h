@@ -115,8 +115,12 @@ public:
   /// last search had left them; collective.
   /// @param solids in their places at that search
   /// @param sparse has the sleepers
-  void load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
-            const LoadBalancingParameters &balancing, const SparseContacts &sparse);
+  /// @param begins_phase whether the checkpoint is of another input: then the lists are those of
+  ///                     the present places, all are awake, and the ledger begins with what is here
+  /// @return what is lost on the way, in sentences
+  std::vector<std::string> load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
+                                const LoadBalancingParameters &balancing,
+                                const SparseContacts &sparse, bool begins_phase);
 
   /// Memory of all contacts by owned particle.
   ContactRows contact_rows() const;
@@ -136,6 +140,9 @@ public:
   ParticleArrays particles;
 
 private:
+  /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
+  /// collective.
+  void check_guests(const Rows &rows, const std::string &path) const;
   /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
   std::vector<double> work() const;
   bool is_within_reach(std::size_t pair) const;
@@ -159,7 +166,7 @@ private:
   Domain &domain;
   const ParticlePhysics physics;
   const ContactModel &model;
-  const double skin;
+  const double skin, largest_diameter;
   Ledger ledger;
   Timers &timers;
   ParticleStore store;

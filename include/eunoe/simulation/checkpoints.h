@@ -9,6 +9,7 @@
 namespace eunoe {
 
 class Log;
+struct ControlParameters;
 
 /// The checkpoints of a run: from which one it continues, when the next is due, and whether the run
 /// was asked to stop.
@@ -23,10 +24,16 @@ public:
 
   /// Opens the one from which the run is to continue, if there is one; collective.
   /// @param input complete text of the present input
-  /// @param n_steps of the run
-  void find(const std::string &input, unsigned long long n_steps, Log &log, Problems &problems);
+  /// @param control says when the run ends
+  /// @param fixed first subsections of entries that must stay as they were
+  void find(const std::string &input, const ControlParameters &control,
+            const std::vector<std::string> &fixed, Log &log, Problems &problems);
   /// The one that was opened, null if the run begins anew.
   const Checkpoint *opened() const { return checkpoint.get(); }
+  /// Whether it is of a run with another input.
+  bool begins_phase() const { return is_other_input; }
+  /// Whether it lies in the output folder, so that the results there are continued.
+  bool is_own() const { return is_own_folder; }
   /// Lets @p action read the head of the one that was opened, which is the same on every rank, and
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;
@@ -34,7 +41,14 @@ public:
   /// Starts to watch signals and the time, if checkpoints are written at all.
   void begin();
   /// Goes on behind the one that was opened, which has been read.
-  void go_on() { store.go_on(); }
+  void go_on()
+  {
+    if (!is_own_folder)
+      return;
+    if (is_other_input)
+      store.keep_opened();
+    store.go_on();
+  }
   void close() { checkpoint.reset(); }
 
   /// Whether one is due after a step; collective.
@@ -48,11 +62,17 @@ public:
   std::string fault_file() const { return parameters.filename + "_fault.checkpoint"; }
 
 private:
+  /// Opens the newest in the output folder, else one of another run; collective.
+  void open(Log &log);
+  /// Folders beside the output folder and in the present one that hold checkpoints of the name.
+  std::vector<std::string> folders_nearby() const;
+
   const RestartParameters &parameters;
   const std::string folder;
   MPI_Comm comm;
   CheckpointStore store;
   std::unique_ptr<Checkpoint> checkpoint;
+  bool is_other_input = false, is_own_folder = true;
   double last_time = 0.; ///< by the wall clock (s)
   int signal = 0;        ///< that asked the run to stop; 0: none
 };

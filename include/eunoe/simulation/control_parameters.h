@@ -26,6 +26,8 @@ struct ControlParameters : public ParameterSection
 
   /// Number of steps of the run, as far as it is known beforehand.
   unsigned long long n_steps() const;
+  /// Likewise of one that goes on at a step and a time (s) of an earlier one.
+  unsigned long long last_step(unsigned long long step, double time) const;
 };
 
 } // namespace eunoe

@@ -34,6 +34,8 @@ public:
   /// Whether an observable wants the forces on solids of the coming step.
   bool want_solid_loads(unsigned long long step) const;
 
+  /// Looks at the state with which a run begins that takes over that of another one; collective.
+  void begin(Simulation &simulation);
   /// Lets the observables look at a step.
   void step(Simulation &simulation);
   /// Lets them look once more after the last one.

@@ -123,6 +123,8 @@ private:
   bool finished() const;
   void save(CheckpointWriter &writer);
   void resume();
+  void go_on(const Checkpoint &checkpoint);
+  void begin_phase(const Checkpoint &checkpoint);
   /// Writes a checkpoint if it is time or if the run was asked to stop.
   void checkpoint_if_due();
   void report_progress(bool at_end);

@@ -1,0 +1,180 @@
+"""A run goes on with another input: other walls, laws, time steps, another output folder. It gives the
+same bits on any number of ranks, changes nothing that it need not, says what differs, and refuses what
+cannot be.
+
+Usage: phases.py path/to/eunoe-particles folder
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from attempts import Attempts
+from eunoe.launch import SHARED, Failure, mpirun, overrides
+
+HERE = Path(__file__).resolve().parent
+END = "simulation control/iteration end = "
+OUTPUT = "simulation control/output path = "
+CONTINUE = "restart/restart = true"
+BOUNDARY = "DEM boundary conditions/boundary condition "
+# Rain into a closed box, of which the second phase opens a side, drops the paddle, stops the rain and
+# makes friction weaker.
+LOAD = (END + "6000", "restart/checkpoint = true", "restart/frequency = 6000", BOUNDARY + "1/type = fixed_wall")
+OPEN = (END + "12000", CONTINUE, "solid objects/solid surfaces/number of solids = 0",
+        "lagrangian physical properties/particle type 0/friction coefficient particles = 0.1")
+
+
+class Program:
+    def __init__(self, path: str, folder: Path) -> None:
+        self.path, self.folder = str(Path(path).resolve()), folder
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        text = (HERE / "stirred.prm").read_text(encoding="utf-8")
+        (folder / "case.prm").write_text(text, encoding="utf-8")
+        # Without the paddle, of which an input may not even have the section.
+        begin = text.index("subsection solid objects")
+        (folder / "open.prm").write_text(text[:begin] + text[text.index("subsection post-processing"):],
+                                         encoding="utf-8")
+
+        begin = text.index("  subsection particle type 1")
+        end = text.index("  set friction coefficient wall")
+        (folder / "one_type.prm").write_text(text[:begin] + text[end:], encoding="utf-8")
+
+    def run(self, case: str, *settings: str, ranks: int = 1, code: int = 0) -> str:
+        done = subprocess.run([*mpirun(ranks, *SHARED), self.path, case, "--dump", "dump", *overrides(settings)],
+                              cwd=self.folder, text=True, capture_output=True, check=False)
+        if done.returncode != code:
+            raise Failure(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
+        return done.stdout + done.stderr
+
+    def dump(self) -> bytes:
+        return (self.folder / "dump").read_bytes()
+
+    def summary(self, folder: str) -> dict:
+        return json.loads((self.folder / folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def expect(text: str, *parts: str) -> None:
+    for part in parts:
+        if part not in text:
+            raise Failure(f"'{part}' is missing in:\n{text}")
+
+
+def other_walls(program: Program) -> None:
+    """The same bits on any ranks, with a mass balance of its own, in another folder."""
+    said = program.run("open.prm", *OPEN[:2], OPEN[3], OUTPUT + "open1", "restart/restart folder = load")
+    expect(said, "with another input. What differs:", "entry 'type' is 'outlet', and was 'fixed_wall'",
+           "friction coefficient particles' is '0.1', and was '0.4'", "Gone are 'boundary 1', 'solid object 0'.",
+           "step 6000, t = 0.006 s")
+    first = program.dump()
+    summary = program.summary("open1")
+    if summary["outlet_particles"] == 0 or summary["mass_balance_error"] != 0. or summary["first_step"] != 6000:
+        raise Failure(f"not what was expected: {summary}")
+    if not (program.folder / "open1" / "energies.csv").read_text().splitlines()[1].startswith("0.006"):
+        raise Failure("the new tables do not begin with the beginning of the phase")
+    for ranks in (2, 4):
+        program.run("open.prm", *OPEN[:2], OPEN[3], OUTPUT + f"open{ranks}", "restart/restart folder = load",
+                    ranks=ranks)
+        if program.dump() != first:
+            raise Failure(f"other bits on {ranks} ranks")
+
+
+def nothing_else(program: Program) -> None:
+    """A difference without an effect changes next to nothing: contacts keep their memory. The forces
+    of the first half step are those of the complete velocities."""
+    longer = (END + "6300", *LOAD[1:])
+    program.run("case.prm", *longer, OUTPUT + "alone")
+    far_away = ("floating walls/number of floating walls = 1", "floating walls/wall 0/point on wall = 1, 0, 0",
+                "floating walls/wall 0/normal vector = 1, 0, 0", "floating walls/wall 0/end time = 1")
+    program.run("case.prm", *longer, OUTPUT + "walled", CONTINUE, "restart/restart folder = load", *far_away)
+    alone, walled = (program.summary(name)["kinetic_energy"] for name in ("alone", "walled"))
+    if not abs(walled - alone) < 1e-5 * alone:
+        raise Failure(f"kinetic energy of {walled} instead of {alone} J")
+
+
+def other_steps(program: Program) -> None:
+    """Time goes on with steps of another length, to the end that the input gives."""
+    said = program.run("case.prm", *LOAD[1:], CONTINUE, "restart/restart folder = load", OUTPUT + "steps",
+                       "simulation control/time step = 5e-7", "simulation control/end control = time",
+                       "simulation control/time end = 0.0065")
+    expect(said, "step 6000, t = 0.006 s")
+    summary = program.summary("steps")
+    if summary["steps"] != 7000 or abs(summary["simulated_time"] - 0.0065) > 1e-12:
+        raise Failure(f"{summary['steps']} steps to {summary['simulated_time']} s")
+    # Its own checkpoint continues it, with its own clock.
+    program.run("case.prm", *LOAD[1:], "restart/restart = auto", OUTPUT + "steps",
+                "restart/frequency = 500", "restart/restart folder = load", "restart/wall time interval = 0",
+                "simulation control/time step = 5e-7", "simulation control/end control = time",
+                "simulation control/time end = 0.0067")
+    if abs(program.summary("steps")["simulated_time"] - 0.0067) > 1e-12:
+        raise Failure("the second phase does not go on from its own checkpoint")
+
+
+def other_laws(program: Program) -> None:
+    said = program.run("case.prm", *LOAD[1:], END + "6100", CONTINUE, "restart/restart folder = load",
+                       OUTPUT + "laws", "model parameters/rolling resistance torque method = none")
+    expect(said, "Contacts of particles obey other laws now and begin anew.",
+           "Contacts with walls and solids obey other laws now and begin anew.")
+
+
+def same_folder(program: Program) -> None:
+    """Tables go on, and those of walls and solids that are gone stay."""
+    shutil.copytree(program.folder / "load", program.folder / "same")
+    before = (program.folder / "same" / "energies.csv").read_text()
+    program.run("open.prm", *OPEN[:2], OPEN[3], "restart/checkpoint = true", "restart/frequency = 1000",
+                OUTPUT + "same")
+    if not (program.folder / "same" / "energies.csv").read_text().startswith(before):
+        raise Failure("the table of energies was not continued")
+    for name in ("solid_forces_00.csv", "force_1.csv"):
+        if not (program.folder / "same" / name).read_text().startswith((program.folder / "load" / name).read_text()):
+            raise Failure(f"{name} of the first phase is not what it was")
+    if not (program.folder / "same" / "restart_phase_000000006000.checkpoint").is_file():
+        raise Failure("the checkpoint from which the phase began is gone")
+
+
+def found_nearby(program: Program) -> None:
+    place = program.folder / "nearby"
+    shutil.copytree(program.folder / "load", place / "load")
+    shutil.copy(program.folder / "case.prm", place)
+    alone = Program.__new__(Program)
+    alone.path, alone.folder = program.path, place
+    said = alone.run("case.prm", *LOAD[1:], END + "6100", CONTINUE, OUTPUT + "more")
+    expect(said, "load/restart_000000006000.checkpoint")
+    shutil.copytree(place / "load", place / "load2")
+    expect(alone.run("case.prm", *LOAD[1:], END + "6100", CONTINUE, OUTPUT + "third", code=2),
+           "are in several folders: ", "Name one as 'restart folder'.")
+
+
+def refused(program: Program) -> None:
+    start = (*LOAD[1:], CONTINUE, "restart/restart folder = load", OUTPUT + "refused")
+    kind = "lagrangian physical properties/"
+    for settings, sentence, code in (
+            ((END + "6000", kind + "g = 0, -5, 0"), "is of step 6000, and the run ends at step 6000", 2),
+            ((END + "7000", kind + "particle type 0/average diameter = 0.3e-3",
+              kind + "particle type 0/standard deviation = 0.01e-3"),
+             "m, and those of the input have 0.0005 m at most", 1),
+            ((END + "7000", "mesh/grid arguments = 5, 4, 2 : 0, 0, 0 : 6e-3, 8e-3, 4e-3 : true"),
+             "particles that lie outside the mesh of this input.", 1),
+            ((END + "7000", "restart/restart folder = nowhere"), "nowhere holds no checkpoint 'restart'.", 2)):
+        expect(program.run("case.prm", *start, *settings, code=code), sentence)
+    expect(program.run("one_type.prm", *start, END + "7000", kind + "number of particle types = 1", code=1),
+           "holds particles of type 1, and the input has the types 0 to 0.")
+    expect(program.run("case.prm", *LOAD[1:], END + "7000", OUTPUT + "load", "restart/restart = auto",
+                       kind + "g = 0, -5, 0", code=2), "entry 'g' is '0, -5, 0', and was '0, -9.81, 0'")
+
+
+def main() -> int:
+    program = Program(sys.argv[1], Path(sys.argv[2]))
+    program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
+    attempts = Attempts()
+    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, found_nearby, refused):
+        attempts.make(attempt.__name__.replace("_", " "), attempt, program)
+    return attempts.exit_code()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
