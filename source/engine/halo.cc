@@ -35,7 +35,7 @@ void Halo::exchange(const int tag)
 
 std::map<int, std::vector<std::int32_t>> Halo::rows_near(const ParticleArrays &particles,
                                                          const ParticleStore &store,
-                                                         const double gap) const
+                                                         const double separation) const
 {
   std::map<int, std::vector<std::int32_t>> rows;
   double largest_radius = 0.;
@@ -44,7 +44,7 @@ std::map<int, std::vector<std::int32_t>> Halo::rows_near(const ParticleArrays &p
   MPI_Allreduce(MPI_IN_PLACE, &largest_radius, 1, MPI_DOUBLE, MPI_MAX, comm);
   std::vector<int> ranks;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
-    const double reach = 1.0001 * (particles.radius(row) + largest_radius + gap);
+    const double reach = 1.0001 * (particles.radius(row) + largest_radius + separation);
     store.ranks_near(row, particles.position[row].vec(), reach, ranks);
     for (const int rank : ranks)
       rows[rank].push_back(static_cast<std::int32_t>(row));
@@ -117,14 +117,14 @@ void Halo::append_received(ParticleArrays &particles, const ContactGrid &grid)
 }
 
 void Halo::build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
-                 const double gap)
+                 const double separation)
 {
   int n_ranks;
   MPI_Comm_size(comm, &n_ranks);
   neighbours.clear();
   if (n_ranks == 1)
     return;
-  send_new(particles, rows_near(particles, store, gap));
+  send_new(particles, rows_near(particles, store, separation));
   append_received(particles, grid);
   include_sleepers();
 }

@@ -43,8 +43,10 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
       candidate.particle = static_cast<std::int32_t>(p);
       candidate.solid = static_cast<std::int32_t>(s);
       candidate.first_facet = static_cast<std::int32_t>(facets.size());
-      const double gap = solids[s].shape->find_facets(centre, near, facets) - particles.radius(p);
-      candidate.gap = std::nextafter(static_cast<float>(gap), -std::numeric_limits<float>::max());
+      const double separation =
+          solids[s].shape->find_facets(centre, near, facets) - particles.radius(p);
+      candidate.separation =
+          std::nextafter(static_cast<float>(separation), -std::numeric_limits<float>::max());
       candidate.n_facets = static_cast<std::int32_t>(facets.size()) - candidate.first_facet;
       if (candidate.n_facets == 0)
         continue;
@@ -174,7 +176,7 @@ bool SolidContacts::is_far(const Candidate &candidate, const ParticleArrays &par
                            const double way) const
 {
   // No contact as long as both together have moved by less than their separation at the search.
-  const double spare = candidate.gap - model.range() - way;
+  const double spare = candidate.separation - model.range() - way;
   return spare > 0. && candidate.n_living == 0 &&
          norm_square(particles.position[candidate.particle].vec() -
                      particles.reference[candidate.particle]) < spare * spare;

@@ -18,9 +18,9 @@ public:
   explicit Halo(MPI_Comm comm) : comm(comm) {}
 
   /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
-  /// @param gap separation up to which pairs are listed (m)
+  /// @param separation separation up to which pairs are listed (m)
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
-             double gap);
+             double separation);
 
   /// From now on receives only ghosts of pairs, about half of them; collective.
   void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
@@ -52,7 +52,8 @@ private:
 
   /// Rows of owned particles that other ranks need, by rank; collective.
   std::map<int, std::vector<std::int32_t>> rows_near(const ParticleArrays &particles,
-                                                     const ParticleStore &store, double gap) const;
+                                                     const ParticleStore &store,
+                                                     double separation) const;
   /// Makes the neighbours and sends them all that they need to know of these rows; collective.
   void send_new(const ParticleArrays &particles,
                 const std::map<int, std::vector<std::int32_t>> &rows);

@@ -23,7 +23,7 @@ public:
     std::int32_t first_facet, n_facets;
     std::int32_t plane; ///< that stands for the facets until the next search, -1 if none does
     std::uint32_t n_living = 0;
-    float gap = 0.f; ///< least separation at the search (m), rounded down
+    float separation = 0.f; ///< least separation at the search (m), rounded down
     /// Records of the contacts that touched at the last step.
     std::array<std::int32_t, Shape::max_contacts> living;
   };

@@ -77,12 +77,12 @@ private:
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const double gap = b.overlap[k] < 0. ? -b.overlap[k] : 0.;
+      const double separation = b.overlap[k] < 0. ? -b.overlap[k] : 0.;
       const double root = length[k] + length_share[k] * b.radius[k];
       const double rupture = bridged[k] > 0. ? stretch[k] * root : 0.;
-      const bool has_bridge = gap <= rupture;
+      const bool has_bridge = separation <= rupture;
       // Derjaguin's radius is twice the effective one.
-      const double s = gap * std::sqrt(2. * b.radius[k] / (root * root * root));
+      const double s = separation * std::sqrt(2. * b.radius[k] / (root * root * root));
       const double force = pull[k] * b.radius[k] / (1. + 1.05 * s + 2.5 * s * s);
       b.cohesion[k] += has_bridge ? force : 0.;
       bridged[k] = has_bridge ? 1. : 0.;

@@ -49,11 +49,11 @@ private:
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const double gap = -b.overlap[k];
-      const bool far = gap > plateau[k];
-      const double tail = van_der_waals[k] / (far ? gap * gap : 1.);
+      const double separation = -b.overlap[k];
+      const bool far = separation > plateau[k];
+      const double tail = van_der_waals[k] / (far ? separation * separation : 1.);
       const double force = (far ? tail : pull_off[k]) * b.radius[k];
-      b.cohesion[k] += gap < cut_off[k] || !far ? force : 0.;
+      b.cohesion[k] += separation < cut_off[k] || !far ? force : 0.;
     }
   }
 
