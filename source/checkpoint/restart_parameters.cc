@@ -18,8 +18,10 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
   declare::not_negative(prm, "wall time interval", minutes,
                         "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
   declare::count(prm, "number of checkpoints", keep, "Number of checkpoints that stay.", 1);
-  declare::entry(prm, "filename", filename,
-                 "Beginning of the names of the checkpoints in the output folder.");
+  declare::entry(
+      prm, "filename", filename,
+      "Beginning of the names of the checkpoints in the output folder, or, with a '/', of "
+      "their paths.");
   declare::choice(prm, "restart", restart, "false|true|auto",
                   "Whether the run continues from the last checkpoint; auto: if there is one. With "
                   "true, the input may differ from that of the checkpoint: the run goes on with "
@@ -34,10 +36,8 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
 
 void RestartParameters::check(const ParameterCheck &check) const
 {
-  check.require(!filename.empty() && filename.find('/') == std::string::npos, {section}, "filename",
-                "is '" + shortened(filename) + "'.",
-                "Give a name without '/'; checkpoints go into the output folder, and 'restart "
-                "folder' names that of another run.");
+  check.require(!name().empty(), {section}, "filename", "is '" + shortened(filename) + "'.",
+                "Give a name, or a path that ends with one.");
 }
 
 } // namespace eunoe

@@ -61,12 +61,12 @@ std::vector<std::string> Checkpoints::folders_nearby() const
     const fs::path own = fs::path(folder + "/").lexically_normal().parent_path();
     for (const fs::path &place : {fs::path("."), own / ".."}) {
       std::error_code failure;
-      if (CheckpointStore(place.string(), parameters.filename, 1, MPI_COMM_SELF).has_any())
+      if (CheckpointStore(place.string(), parameters.name(), 1, MPI_COMM_SELF).has_any())
         found.insert(place.lexically_normal().string());
       for (const auto &entry : fs::directory_iterator(place, failure)) {
         const std::string path = entry.path().lexically_normal().string();
         if (entry.is_directory(failure) && !fs::equivalent(entry.path(), own, failure) &&
-            CheckpointStore(path, parameters.filename, 1, MPI_COMM_SELF).has_any())
+            CheckpointStore(path, parameters.name(), 1, MPI_COMM_SELF).has_any())
           found.insert(fs::canonical(entry.path(), failure).string());
       }
     }
@@ -94,11 +94,11 @@ void Checkpoints::open(Log &log)
     for (const std::string &other : others)
       list += (list.empty() ? "" : ", ") + other;
     throw UserError("subsection 'restart' / entry 'restart' is true, and checkpoints '" +
-                    parameters.filename + "' are in several folders: " + list +
+                    parameters.name() + "' are in several folders: " + list +
                     ". Name one as 'restart folder'.");
   }
   if (others.size() == 1) {
-    CheckpointStore other(others[0], parameters.filename, 1, comm);
+    CheckpointStore other(others[0], parameters.name(), 1, comm);
     checkpoint = other.open_newest(defects);
     is_own_folder = checkpoint == nullptr;
   }
@@ -118,7 +118,7 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
       problems.add("subsection 'restart' / entry 'restart'",
                    "is " + parameters.restart + ", but " +
                        (parameters.folder.empty() ? folder : parameters.folder) +
-                       " holds no checkpoint '" + parameters.filename + "'.",
+                       " holds no checkpoint '" + parameters.name() + "'.",
                    "Check 'output path', 'restart folder' and 'filename', or set restart = auto to "
                    "start anew where there is none.");
     return;
@@ -170,8 +170,10 @@ void Checkpoints::understand(
 
 void Checkpoints::begin()
 {
-  if (parameters.checkpoint)
+  if (parameters.checkpoint) {
+    create_folder(folder, comm);
     stop_request::listen();
+  }
   last_time = MPI_Wtime();
 }
 

@@ -16,6 +16,15 @@ struct RestartParameters : public ParameterSection
   std::string restart = "false"; ///< false, true, or auto: if there is a checkpoint
   std::string folder;            ///< with the checkpoint of another run from which this one goes on
 
+  /// Beginning of the names of checkpoints.
+  std::string name() const { return filename.substr(filename.rfind('/') + 1); }
+  /// Folder of the checkpoints: that of the file name if it has one, else the output folder.
+  std::string place(const std::string &output_path) const
+  {
+    const std::size_t slash = filename.rfind('/');
+    return slash == std::string::npos ? output_path : filename.substr(0, slash + 1);
+  }
+
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
 };

@@ -17,8 +17,8 @@ class Checkpoints
 {
 public:
   Checkpoints(const RestartParameters &parameters, const std::string &output_path, MPI_Comm comm)
-      : parameters(parameters), folder(output_path), comm(comm),
-        store(output_path, parameters.filename, parameters.keep, comm)
+      : parameters(parameters), folder(parameters.place(output_path)), comm(comm),
+        store(folder, parameters.name(), parameters.keep, comm)
   {
   }
 
@@ -38,7 +38,8 @@ public:
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;
 
-  /// Starts to watch signals and the time, if checkpoints are written at all.
+  /// Makes the folder of the checkpoints and starts to watch signals and the time, if checkpoints
+  /// are written at all; collective.
   void begin();
   /// Goes on behind the one that was opened, which has been read.
   void go_on()
@@ -59,7 +60,7 @@ public:
   void write(CheckpointWriter &writer, unsigned long long step, Log &log);
 
   /// Where the state goes when the run stops for a fault.
-  std::string fault_file() const { return parameters.filename + "_fault.checkpoint"; }
+  std::string fault_file() const { return parameters.name() + "_fault.checkpoint"; }
 
 private:
   /// Opens the newest in the output folder, else one of another run; collective.
