@@ -109,6 +109,8 @@ Forecast Simulation::foresee(const bool writes) const
                  forecast);
   if (insertion != nullptr && !is_continued)
     judge_insertion(parameters, *insertion, events, solids.list(), domain, forecast);
+  forecast.facts.insert(forecast.facts.end(), parameters.lethe_notes.begin(),
+                        parameters.lethe_notes.end());
   for (const Problem &doubt : domain.doubts())
     forecast.problems.warn(doubt.where, doubt.what, doubt.mend);
   if (parameters.process_name == "none" && parameters.control.n_steps() == 0)

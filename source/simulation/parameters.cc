@@ -1,5 +1,6 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/parameter_input.h>
+#include <eunoe/simulation/lethe_notes.h>
 #include <eunoe/simulation/lethe_spellings.h>
 #include <eunoe/simulation/parameters.h>
 
@@ -149,8 +150,10 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
 {
   std::vector<InputEntry> entries =
       parse_input_and_overrides(text, file, overrides, problems, load);
+  const std::vector<std::string> notes = notes_for_lethe(entries);
   translate_lethe(entries, problems);
   Parameters parameters(count(entries));
+  parameters.lethe_notes = notes;
   parameters.set(entries, problems);
 
   const ParameterCheck check(entries, file, problems);

@@ -1,5 +1,6 @@
 // Input files with Lethe's older names of entries mean the same as those with the present names;
-// entries for fluids are ignored and those out of scope refused, each with one line.
+// entries for fluids are ignored and those out of scope refused, each with one line. What has
+// another default there, or other results, is said.
 
 #include "tests.h"
 
@@ -213,11 +214,13 @@ end
 void print_problems(const std::string &text)
 {
   Problems problems;
-  Parameters::read(text, "case.prm", {}, problems);
+  const Parameters parameters = Parameters::read(text, "case.prm", {}, problems);
   for (const Problem &problem : problems.all())
     test::print("refused: " + problem.text());
   for (const Problem &warning : problems.warnings())
     test::print("taken: " + warning.text());
+  for (const std::string &note : parameters.lethe_notes)
+    test::print("note: " + note);
 }
 
 } // namespace
@@ -246,4 +249,16 @@ EUNOE_MPI_TEST()
       "  set number of solids = 0\n end\nend\n");
   print_problems("subsection mesh\n set type = cylinder\n set grid type = balanced\n"
                  " set grid arguments = 4 : 0.01 : 0.02\nend\n");
+  print_problems(
+      "subsection simulation control\n set output frequency = -1\n set log frequency = -1\n"
+      "end\nsubsection DEM boundary conditions\n set number of boundary conditions = 1\n"
+      " subsection boundary condition 0\n  set type = rotational\n"
+      "  set rotational vector x = 0\n  set rotational vector z = 1\n end\nend\n");
+  print_problems("set dimension = 3\nsubsection insertion info\n set insertion method = list\n"
+                 " set list x = 0, 1\n set list y = 0, 0\n set list z = 0, 0\n"
+                 " set list velocity x = 0.5\nend\nsubsection restart\n set restart = true\nend\n"
+                 "subsection model parameters\n set integration method = explicit_euler\n"
+                 " subsection load balancing\n  set load balance method = dynamic\n end\nend\n");
+  print_problems("set dimension = 3\nsubsection simulation control\n set output frequency = 10\n"
+                 "end\nsubsection insertion info\n set insertion frequency = 7\nend\n");
 }

@@ -67,6 +67,9 @@ public:
   /// The laws of a particle and a wall or solid.
   ContactModel wall_model(double largest_diameter) const;
 
+  /// What a user of Lethe should know of an input that was written for it.
+  std::vector<std::string> lethe_notes;
+
   ControlParameters control;
   MeshParameters mesh;
   RefinementParameters refinement;

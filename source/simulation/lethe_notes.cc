@@ -1,0 +1,99 @@
+#include <eunoe/simulation/lethe_notes.h>
+
+#include <algorithm>
+
+namespace eunoe {
+
+namespace {
+
+using EntryPath = std::vector<std::string>;
+
+/// A default that differs in a way that changes what comes out.
+struct Default
+{
+  EntryPath path;
+  std::string entry, there, here;
+};
+
+const std::vector<Default> &defaults()
+{
+  static const EntryPath control = {"simulation control"}, insertion = {"insertion info"};
+  static const std::vector<Default> list = {
+      {control, "output frequency", "1, a picture every step", "0, none"},
+      {insertion, "insertion maximum offset", "1, by which neighbours can overlap", "0"},
+      {insertion, "insertion frequency", "1, an event every step", "0, a single event"},
+      {insertion, "inserted number of particles at each time step", "1", "0, all at once"}};
+  return list;
+}
+
+class Reader
+{
+public:
+  explicit Reader(const std::vector<InputEntry> &entries) : entries(entries) {}
+
+  const InputEntry *find(const EntryPath &path, const std::string &name) const
+  {
+    const InputEntry *last = nullptr;
+    for (const InputEntry &entry : entries)
+      if (entry.path == path && entry.name == name)
+        last = &entry;
+    return last;
+  }
+
+  bool has(const EntryPath &path, const std::string &name, const std::string &value) const
+  {
+    const InputEntry *const entry = find(path, name);
+    return entry != nullptr && entry->value == value;
+  }
+
+  /// Number of entries anywhere with a name and a value.
+  std::ptrdiff_t count(const std::string &name, const std::string &value) const
+  {
+    return std::count_if(entries.begin(), entries.end(), [&](const InputEntry &entry) {
+      return entry.name == name && entry.value == value;
+    });
+  }
+
+private:
+  const std::vector<InputEntry> &entries;
+};
+
+} // namespace
+
+std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
+{
+  const Reader input(entries);
+  std::vector<std::string> notes;
+  if (!input.has({}, "dimension", "3"))
+    return notes;
+  const InputEntry *const method = input.find({"insertion info"}, "insertion method");
+  const bool fills = method == nullptr || method->value == "volume" || method->value == "uniform" ||
+                     method->value == "non_uniform";
+  for (const Default &rule : defaults())
+    if (input.find(rule.path, rule.entry) == nullptr &&
+        (rule.path.front() != "insertion info" || fills) &&
+        !(rule.entry == "insertion maximum offset" &&
+          input.find(rule.path, "insertion random number range") != nullptr))
+      notes.push_back("Lethe: '" + rule.entry + "' is not set; there its default is " + rule.there +
+                      ", here it is " + rule.here + ".");
+  const EntryPath model = {"model parameters"};
+  if (input.find(model, "integration method") == nullptr ||
+      input.has(model, "integration method", "velocity_verlet"))
+    notes.emplace_back(
+        "Lethe: its velocity Verlet lacked the opening half step until August 2026.");
+  const EntryPath balancing = {"model parameters", "load balancing"};
+  const InputEntry *const balance = input.find(balancing, "load balance method");
+  if (balance != nullptr && balance->value != "none")
+    notes.emplace_back("Lethe: contacts lose their history at every load balancing; here they keep "
+                       "it.");
+  if (input.count("size distribution type", "custom") > 0)
+    notes.emplace_back("Lethe: custom distributions given by volume were sampled wrongly.");
+  if (input.count("type", "periodic") > 1)
+    notes.emplace_back("Lethe: with two periodic directions, some contacts count twice on several "
+                       "ranks.");
+  if (input.has({"restart"}, "restart", "true"))
+    notes.emplace_back("Lethe: its restart files hold no contact history; here contacts keep it.");
+  return notes;
+}
+
+} // namespace eunoe
