@@ -102,6 +102,33 @@ void test_large_particles_of_a_file()
         file->estimate().most_particles == 2. && file->estimate().steps == 1.);
 }
 
+/// Files come in turn until there are as many particles as their type has.
+void test_number_of_files()
+{
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank == 0) {
+    write_file("two.csv", "p_x; p_y; p_z; diameters\n0; 0; 0; 1e-3\n0; 0; 2e-3; 1e-3\n");
+    write_file("one.csv", "p_x; p_y; p_z; diameters\n0; 4e-3; 0; 1e-3\n");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  const std::string files =
+      " set insertion method = file\n set list of input files = one.csv, two.csv\n"
+      " set insertion frequency = 10\n set remove particles = true\n"
+      " set removal box points coordinates = -1, -1, -1 : 1, 1, 1";
+  for (const int most : {5, 0}) {
+    Case file(case_with(files) +
+              "subsection lagrangian physical properties\n subsection particle "
+              "type 0\n  set number of particles = " +
+              std::to_string(most) +
+              "\n end\nend\nsubsection simulation control\n set time end = 5e-5\nend\n");
+    file.run();
+    const std::uint64_t n = file->get_ledger().inserted.global(file->communicator()).number;
+    check("files until there are " + std::to_string(most), n == (most == 5 ? 5u : 9u),
+          std::to_string(n));
+  }
+}
+
 /// All types in a single event, and over several.
 void test_types()
 {
@@ -215,6 +242,7 @@ EUNOE_MPI_TEST()
   test_list_and_file();
   test_single_particle();
   test_large_particles_of_a_file();
+  test_number_of_files();
   test_types();
   test_acceptance();
   test_removal();

@@ -6,6 +6,7 @@
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace eunoe {
 namespace {
@@ -19,13 +20,16 @@ bool may_lack(const std::string &column)
   return column[0] == 'v' || column[0] == 'w';
 }
 
-/// Particles from files in Lethe's format, all of type 0, one file an event.
+/// Particles from files in Lethe's format, all of type 0, one file an event, until there are as
+/// many as the type has; any number if that is 0.
 class File : public Insertion
 {
 public:
   File(const std::vector<std::string> &names, const bool repeats, const PhysicalProperties &physics,
        MPI_Comm comm)
-      : repeats(repeats), density(physics.types[0].density)
+      : repeats(repeats), density(physics.types[0].density),
+        most(physics.types[0].number > 0 ? physics.types[0].number
+                                         : std::numeric_limits<std::size_t>::max())
   {
     for (const std::string &file : names)
       read(file, comm);
@@ -43,7 +47,7 @@ public:
       round += files[k].n;
       last_round += k < rest ? files[k].n : 0;
     }
-    return events / files.size() * round + last_round;
+    return std::min(most, events / files.size() * round + last_round);
   }
 
   std::vector<Vec3> known_places() const override
@@ -63,16 +67,25 @@ public:
     return events;
   }
 
-  void skip(std::size_t n, std::size_t) override { n_events = n; }
+  void skip(std::size_t n, std::size_t n_particles) override
+  {
+    n_events = n;
+    n_supplied = n_particles;
+  }
 
-  bool finished() const override { return !repeats && n_events > 0; }
+  bool finished() const override { return n_supplied >= most || (!repeats && n_events > 0); }
 
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
     Contents &file = files[n_events++ % files.size()];
-    const ParticleId first = ids.take(file.n);
+    const std::size_t n = std::min(file.n, most - n_supplied);
+    n_supplied += n;
+    const ParticleId first = ids.take(n);
     // A file that is not needed again is not kept.
     std::vector<NewParticle> particles = repeats ? file.share : std::move(file.share);
+    particles.erase(std::remove_if(particles.begin(), particles.end(),
+                                   [n](const NewParticle &particle) { return particle.id >= n; }),
+                    particles.end());
     for (NewParticle &particle : particles)
       particle.id += first;
     return particles;
@@ -126,9 +139,10 @@ private:
 
   const bool repeats;
   const double density;
+  const std::size_t most; ///< particles in all
   std::vector<Contents> files;
   double largest = 0.;
-  std::size_t n_events = 0;
+  std::size_t n_events = 0, n_supplied = 0;
 };
 
 class FileSection : public InsertionSection
@@ -138,7 +152,9 @@ public:
   {
     declare::entry(prm, "list of input files", files,
                    "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
-                   "w_x; w_y; w_z; diameters'; after the last the first is used again.");
+                   "w_x; w_y; w_z; diameters'; after the last the first is used again, until there "
+                   "are as many "
+                   "particles as their type has, or without an end if that number is 0.");
   }
 
   void check(const InsertionSettings &, const ParameterCheck &check) const override
