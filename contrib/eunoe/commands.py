@@ -20,6 +20,7 @@ COMMANDS = {
         "discovery-report": ("report.of_study", "turns the output folder of a study into a page, discovery.html"),
     },
     "Verification and long runs": {
+        "lethe": ("lethe.run", "runs the examples of Lethe and compares them with published numbers"),
         "verification": ("verification.compare", "compares the cases of prm/verification with their references"),
         "kill-and-restart": ("endurance.kill_and_restart", "kills a run again and again and lets it continue"),
         "soak": ("endurance.soak", "runs millions of steps and watches the memory"),

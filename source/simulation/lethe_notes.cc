@@ -67,8 +67,9 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   if (!input.has({}, "dimension", "3"))
     return notes;
   const InputEntry *const method = input.find({"insertion info"}, "insertion method");
-  const bool fills = method == nullptr || method->value == "volume" || method->value == "uniform" ||
-                     method->value == "non_uniform";
+  const bool goes_on = input.has({"restart"}, "restart", "true");
+  const bool fills = !goes_on && (method == nullptr || method->value == "volume" ||
+                                  method->value == "uniform" || method->value == "non_uniform");
   for (const Default &rule : defaults())
     if (input.find(rule.path, rule.entry) == nullptr &&
         (rule.path.front() != "insertion info" || fills) &&
@@ -91,7 +92,7 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   if (input.count("type", "periodic") > 1)
     notes.emplace_back("Lethe: with two periodic directions, some contacts count twice on several "
                        "ranks.");
-  if (input.has({"restart"}, "restart", "true"))
+  if (goes_on)
     notes.emplace_back("Lethe: its restart files hold no contact history; here contacts keep it.");
   return notes;
 }

@@ -170,7 +170,9 @@ const std::vector<Ignored> &ignored()
       {{"box refinement", "box *", "mesh"},
        {"simplex", "check diamond cells", "expand particle-wall contact search"},
        "is not needed."},
-      {{"floating grid"}, {}, "has no effect: such a grid is a solid, in 'solid objects'."},
+      {{"floating grid"},
+       {},
+       "has no effect, in Lethe either: a grid that moves is a solid, in 'solid objects'."},
       {{"floating grid", "*"}, {}, "has no effect."},
       {mesh,
        {"check diamond cells", "expand particle-wall contact search"},
@@ -210,8 +212,7 @@ const std::vector<Refused> &refused()
       {properties, "density gas", "0", "It is 'density' in 'model parameters / drag' now."},
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},
-      {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."},
-      {{"floating grid"}, "end time", "0", "Give the grid as a solid, in 'solid objects'."}};
+      {mesh, "simplex", "false", "Background meshes are made of hexahedra: give false."}};
   return list;
 }
 

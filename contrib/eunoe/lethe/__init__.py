@@ -1,0 +1,1 @@
+"""Lethe's own inputs, run as they are."""
