@@ -3,10 +3,8 @@
 # Where tests in Python find modules. By hand: PYTHONPATH=contrib:tests tests/.../test.py ...
 set(ENV{PYTHONPATH} "${CMAKE_CURRENT_LIST_DIR}/../contrib:${CMAKE_CURRENT_LIST_DIR}")
 
-# Open MPI starts in half the time without a search for fast networks, and a program that starts
-# without mpiexec in three quarters of that without a daemon beside it.
+# Open MPI starts in half the time without a search for fast networks.
 set(ENV{OMPI_MCA_pml} ob1)
-set(ENV{OMPI_MCA_ess_singleton_isolated} 1)
 # Tests have more ranks than some machines have cores. A rank that waits leaves its core to others.
 set(ENV{OMPI_MCA_rmaps_base_oversubscribe} 1)
 set(ENV{OMPI_MCA_mpi_yield_when_idle} 1)
