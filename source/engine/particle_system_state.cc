@@ -112,6 +112,24 @@ void ParticleSystem::check_guests(const Rows &rows, const std::string &path) con
     throw UserError(problems);
 }
 
+Rows ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &layout,
+                             const bool begins_phase) const
+{
+  Rows share = checkpoint.rows("particles");
+  const std::size_t n_fixed = n_places + layout.n_extra();
+  const double n_types =
+      begins_phase ? std::numeric_limits<int>::max() : model.get_materials().n_types();
+  bool ok = begins_phase || layout.n_extra() == extra_defaults.size();
+  for (std::size_t k = 0; k < share.size(); ++k)
+    ok = ok && share.length(k) >= n_fixed && are_of_particle(share[k] + id, n_types) &&
+         ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
+                                  layout.n_history());
+  checkpoint.require(ok, "its particles are not those of the case.");
+  if (begins_phase)
+    check_guests(share, checkpoint.path);
+  return share;
+}
+
 std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
                                               const std::vector<Solid> &solids,
                                               const LoadBalancingParameters &balancing,
@@ -124,19 +142,8 @@ std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
     ledger.load(checkpoint.head.at("ledger"), comm);
   int rank;
   MPI_Comm_rank(comm, &rank);
-  const Rows share = checkpoint.rows("particles");
+  const Rows share = rows_of(checkpoint, layout, begins_phase);
   const std::size_t n_fixed = n_places + layout.n_extra();
-  const double n_types =
-      begins_phase ? std::numeric_limits<int>::max() : model.get_materials().n_types();
-  bool ok = true;
-  for (std::size_t k = 0; k < share.size(); ++k)
-    ok = ok && share.length(k) >= n_fixed && are_of_particle(share[k] + id, n_types) &&
-         ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
-                                  layout.n_history());
-  checkpoint.require(ok && (begins_phase || layout.n_extra() == extra_defaults.size()),
-                     "its particles are not those of the case.");
-  if (begins_phase)
-    check_guests(share, checkpoint.path);
   std::vector<NewParticle> list;
   std::vector<Origin> kept;
   for (std::size_t k = 0; k < share.size(); ++k) {

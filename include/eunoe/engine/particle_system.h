@@ -16,6 +16,7 @@ namespace eunoe {
 
 class Checkpoint;
 class CheckpointWriter;
+class SavedLayout;
 
 /// New particles with what their contacts remember.
 struct Delivery
@@ -143,6 +144,8 @@ private:
   /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
   /// collective.
   void check_guests(const Rows &rows, const std::string &path) const;
+  /// This rank's share of a checkpoint's particles, if they fit into this run; collective.
+  Rows rows_of(const Checkpoint &checkpoint, const SavedLayout &layout, bool begins_phase) const;
   /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
   std::vector<double> work() const;
   bool is_within_reach(std::size_t pair) const;
