@@ -92,7 +92,7 @@ void balance()
 
 /// A ball without friction slides over the shelf, across the faces between mesh cells, without a
 /// bump.
-void rolls()
+void slides()
 {
   const double speed = 0.1, g = 9.81, mass = 1000. * 4. / 3. * M_PI * r * r * r;
   const double young = 1e6 / (2. * (1. - 0.09));
@@ -153,6 +153,6 @@ EUNOE_MPI_TEST()
     touches(test_case->get_domain());
   }
   balance();
-  rolls();
+  slides();
   floor_of_two();
 }
