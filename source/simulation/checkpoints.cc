@@ -2,6 +2,7 @@
 #include <eunoe/checkpoint/input_differences.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/input_file.h>
 #include <eunoe/core/log.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/checkpoints.h>
@@ -62,7 +63,7 @@ std::vector<std::string> Checkpoints::folders_nearby() const
     for (const fs::path &place : {fs::path("."), own / ".."}) {
       std::error_code failure;
       if (CheckpointStore(place.string(), parameters.name(), 1, MPI_COMM_SELF).has_any())
-        found.insert(place.lexically_normal().string());
+        found.insert(fs::canonical(place, failure).string());
       for (const auto &entry : fs::directory_iterator(place, failure)) {
         const std::string path = entry.path().lexically_normal().string();
         if (entry.is_directory(failure) && !fs::equivalent(entry.path(), own, failure) &&
@@ -128,6 +129,11 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
     throw checkpoint->damaged("it does not hold the input of its run.");
   Problems differences;
   find_input_differences(input, head["input"], checkpoint->path, differences);
+  // Where checkpoints have a path of their own, the results may lie elsewhere.
+  EntryValues entries = values_in(head["input"]);
+  has_own_results =
+      is_own_folder && (folder == control.output_path ||
+                        entries[{{"simulation control"}, "output path"}] == control.output_path);
   if (parameters.restart == "auto" && is_own_folder)
     for (const Problem &difference : differences.all())
       problems.add(difference.where, difference.what, difference.mend);

@@ -136,6 +136,21 @@ def same_folder(program: Program) -> None:
         raise Failure("the checkpoint from which the phase began is gone")
 
 
+def own_path(program: Program) -> None:
+    """Checkpoints that have a path of their own serve runs with different output folders."""
+    marks = ("restart/filename = marks/dem", "restart/checkpoint = true", "restart/frequency = 6000")
+    program.run("case.prm", *LOAD, *marks, OUTPUT + "one")
+    before = (program.folder / "one" / "energies.csv").read_text()
+    program.run("open.prm", *OPEN[:2], OPEN[3], *marks, OUTPUT + "two")
+    if (program.folder / "one" / "energies.csv").read_text() != before:
+        raise Failure("the second run has changed a table of the first")
+    if not (program.folder / "two" / "energies.csv").read_text().splitlines()[1].startswith("0.006"):
+        raise Failure("the second run has no tables of its own")
+    names = sorted(path.name for path in (program.folder / "marks").glob("*.checkpoint"))
+    if names != ["dem_000000006000.checkpoint", "dem_000000012000.checkpoint", "dem_phase_000000006000.checkpoint"]:
+        raise Failure(f"the checkpoints are {names}")
+
+
 def found_nearby(program: Program) -> None:
     place = program.folder / "nearby"
     shutil.copytree(program.folder / "load", place / "load")
@@ -171,7 +186,7 @@ def main() -> int:
     program = Program(sys.argv[1], Path(sys.argv[2]))
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
-    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, found_nearby, refused):
+    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, own_path, found_nearby, refused):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
 

@@ -33,6 +33,7 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
   ControlParameters control;
   control.end_control = "iteration";
   control.iteration_end = n_steps;
+  control.output_path = folder;
   checkpoints.find(text, control, fixed, log, problems);
   return problems.all().size();
 }

@@ -18,7 +18,7 @@ public:
   explicit Halo(MPI_Comm comm) : comm(comm) {}
 
   /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
-  /// @param separation separation up to which pairs are listed (m)
+  /// @param separation up to which pairs are listed (m)
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double separation);
 

@@ -18,7 +18,7 @@ namespace eunoe {
 class SavedLayout
 {
 public:
-  /// What `read` needs.
+  /// Adds what the constructor reads.
   static void write(nlohmann::ordered_json &head, const ParticleFields &fields,
                     const ContactModel &pairs, const ContactModel &walls);
 

@@ -32,8 +32,8 @@ public:
   const Checkpoint *opened() const { return checkpoint.get(); }
   /// Whether it is of a run with another input.
   bool begins_phase() const { return is_other_input; }
-  /// Whether it lies in the output folder, so that the results there are continued.
-  bool is_own() const { return is_own_folder; }
+  /// Whether its results lie in the output folder, where they are continued.
+  bool is_own() const { return has_own_results; }
   /// Lets @p action read the head of the one that was opened, which is the same on every rank, and
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;
@@ -73,7 +73,7 @@ private:
   MPI_Comm comm;
   CheckpointStore store;
   std::unique_ptr<Checkpoint> checkpoint;
-  bool is_other_input = false, is_own_folder = true;
+  bool is_other_input = false, is_own_folder = true, has_own_results = true;
   double last_time = 0.; ///< by the wall clock (s)
   int signal = 0;        ///< that asked the run to stop; 0: none
 };
