@@ -28,6 +28,57 @@ struct Level
   std::vector<std::string> entries, subsections;
 };
 
+/// What a handler would save of itself, of which only the tree of its entries is looked at. Asking
+/// the handler for an entry that is not declared would end a Debug build.
+struct TreeOfEntries
+{
+  explicit TreeOfEntries(const dealii::ParameterHandler &prm) { prm.save(*this, 0); }
+
+  TreeOfEntries &operator&(const boost::property_tree::ptree &entries)
+  {
+    tree = &entries;
+    return *this;
+  }
+  template <typename Other>
+  TreeOfEntries &operator&(const Other &)
+  {
+    return *this;
+  }
+
+  const boost::property_tree::ptree *tree = nullptr;
+};
+
+/// The key of a name in that tree: letters and digits as they are, of all else the code.
+std::string key_of(const std::string &name)
+{
+  constexpr char digits[] = "0123456789abcdef";
+  std::string key;
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0 && name != "value")
+      key += c;
+    else
+      key += {'_', digits[static_cast<unsigned char>(c) / 16],
+              digits[static_cast<unsigned char>(c) % 16]};
+  return key;
+}
+
+/// The value of an entry; none of one that is not declared by this name.
+std::optional<std::string> value_of(const boost::property_tree::ptree &entries, const Path &path,
+                                    const std::string &name)
+{
+  const boost::property_tree::ptree *node = &entries;
+  for (const std::string &section : path) {
+    const auto child = node->find(key_of(section));
+    if (child == node->not_found())
+      return std::nullopt;
+    node = &child->second;
+  }
+  const auto entry = node->find(key_of(name));
+  if (entry == node->not_found() || entry->second.count("value") == 0)
+    return std::nullopt;
+  return entry->second.get<std::string>("value");
+}
+
 /// What is declared, by subsections.
 boost::property_tree::ptree tree_of(
     const dealii::ParameterHandler &prm,
@@ -236,7 +287,7 @@ class EntrySetter
 public:
   EntrySetter(dealii::ParameterHandler &prm, const std::vector<RepeatedSections> &repeated,
               Problems &problems)
-      : prm(prm), repeated(repeated), problems(problems)
+      : prm(prm), entries(*TreeOfEntries(prm).tree), repeated(repeated), problems(problems)
   {
   }
 
@@ -251,7 +302,7 @@ public:
     try {
       const auto place_of_entry = std::pair(entry.path, entry.name);
       if (defaults.count(place_of_entry) == 0)
-        if (const auto value = present_value(entry.name))
+        if (const auto value = value_of(entries, entry.path, entry.name))
           defaults[place_of_entry] = *value;
       prm.set(entry.name, entry.value);
     } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
@@ -273,20 +324,11 @@ public:
   bool is_default(const InputEntry &entry) const
   {
     const auto declared = defaults.find({entry.path, entry.name});
-    return declared != defaults.end() && prm.get(entry.path, entry.name) == declared->second;
+    return declared != defaults.end() &&
+           value_of(entries, entry.path, entry.name) == declared->second;
   }
 
 private:
-  /// Of an entry of the present subsection; none of one that is not declared by this name.
-  std::optional<std::string> present_value(const std::string &name) const
-  {
-    try {
-      return prm.get(name);
-    } catch (const dealii::ParameterHandler::ExcEntryUndeclared &) {
-      return std::nullopt;
-    }
-  }
-
   Level known_at(const Path &path)
   {
     if (tree.empty())
@@ -330,6 +372,7 @@ private:
   }
 
   dealii::ParameterHandler &prm;
+  const boost::property_tree::ptree &entries; ///< of the handler, with their present values
   const std::vector<RepeatedSections> &repeated;
   Problems &problems;
   std::map<std::pair<Path, std::string>, std::string> defaults; ///< of the entries that were set
