@@ -11,7 +11,7 @@
 
 namespace eunoe::checkpoint_format {
 
-inline const std::string format_name = "Eunoe checkpoint ", format_version = "4";
+inline const std::string format_name = "Eunoe checkpoint ", format_version = "5";
 
 /// CRC-64 of ECMA-182.
 using Checksum = boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0, 0, false, false>;

@@ -11,9 +11,10 @@ const std::string section = "restart";
 void RestartParameters::declare(dealii::ParameterHandler &prm)
 {
   declare::enter(prm, section);
-  declare::entry(prm, "checkpoint", checkpoint,
-                 "Whether checkpoints are written: at intervals, and when the run is asked to "
-                 "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
+  declare::entry(
+      prm, "checkpoint", checkpoint,
+      "Whether checkpoints are written: at intervals, at the end, and when the run is asked to "
+      "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
   declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
   declare::not_negative(prm, "wall time interval", minutes,
                         "Minutes of wall-clock time between checkpoints; 0: by steps alone.");

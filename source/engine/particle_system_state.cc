@@ -133,12 +133,13 @@ Rows ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &la
 std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
                                               const std::vector<Solid> &solids,
                                               const LoadBalancingParameters &balancing,
-                                              const SparseContacts &sparse, const bool begins_phase)
+                                              const SparseContacts &sparse, const bool begins_phase,
+                                              const bool keeps_ledger)
 {
   MPI_Comm comm = domain.communicator();
   const SavedLayout layout(checkpoint.head, physics.fields, physics.model, physics.wall_model,
                            solids);
-  if (!begins_phase)
+  if (keeps_ledger)
     ledger.load(checkpoint.head.at("ledger"), comm);
   int rank;
   MPI_Comm_rank(comm, &rank);
@@ -158,7 +159,7 @@ std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
         begins_phase ? domain.periods().wrap(get(row + position)) : get(row + reference);
     list.push_back(particle);
     kept.push_back({rank, static_cast<std::int32_t>(k)});
-    if (begins_phase)
+    if (!keeps_ledger)
       ledger.inserted.count(particle.mass);
   }
   store.insert(list, extra_defaults, kept);

@@ -2,14 +2,24 @@
 
 namespace eunoe {
 
-void check_powder_of_process(const Parameters &parameters, const ParameterCheck &check,
-                             const std::string &who, const std::string &why)
+namespace {
+
+const ParameterCheck::Path section = {"lagrangian physical properties"};
+
+} // namespace
+
+void require_one_type(const Parameters &parameters, const ParameterCheck &check,
+                      const std::string &who)
 {
-  const ParameterCheck::Path section = {"lagrangian physical properties"};
   const std::size_t n_types = parameters.physics.types.size();
   check.require(n_types == 1, section, "number of particle types",
                 "is " + std::to_string(n_types) + ".",
                 who + " works with one type; give the size classes as a custom distribution.");
+}
+
+void check_gravity_of_process(const Parameters &parameters, const ParameterCheck &check,
+                              const std::string &why)
+{
   const Vec3 &g = parameters.physics.gravity;
   check.require(g.y < 0. && g.x == 0. && g.z == 0., section, "g", "does not point to -y.",
                 "Set it to 0, -9.81, 0: " + why + ".");

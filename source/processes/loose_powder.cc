@@ -3,10 +3,11 @@
 
 namespace eunoe {
 
-Delivery loose_powder(Simulation &simulation, const std::size_t n, const Vec3 &velocity,
+Delivery loose_powder(Simulation &simulation, const unsigned int type_number, const std::size_t n,
+                      const Vec3 &velocity,
                       const std::function<Vec3(std::size_t k, ParticleId id)> &place)
 {
-  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  const ParticleType &type = simulation.get_parameters().physics.types[type_number];
   const auto sizes = type.sizes.make();
   const ParticleId first = simulation.take_ids(n);
   const auto [begin, end] = share_of(n, simulation.communicator());
@@ -14,6 +15,7 @@ Delivery loose_powder(Simulation &simulation, const std::size_t n, const Vec3 &v
   for (std::size_t k = begin; k < end; ++k) {
     NewParticle particle;
     particle.id = first + static_cast<ParticleId>(k);
+    particle.type = static_cast<int>(type_number);
     particle.radius = 0.5 * sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
     particle.mass = sphere_mass(particle.radius, type.density);
     particle.position = place(k, particle.id);

@@ -109,7 +109,7 @@ void Checkpoints::open(Log &log)
 }
 
 void Checkpoints::find(const std::string &input, const ControlParameters &control,
-                       const std::vector<std::string> &fixed, Log &log, Problems &problems)
+                       const PhaseJudge &judge, Log &log, Problems &problems)
 {
   if (parameters.restart == "false")
     return;
@@ -139,18 +139,18 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
       problems.add(difference.where, difference.what, difference.mend);
   else if (!differences.empty()) {
     is_other_input = true;
-    for (const Problem &difference : differences.all())
-      if (std::any_of(fixed.begin(), fixed.end(), [&](const std::string &section) {
-            return difference.where.find(section) == 0;
-          }))
-        problems.add(difference.where, difference.what, difference.mend);
+    understand([&](const nlohmann::ordered_json &of_run) { judge(differences, of_run, problems); });
     tell_differences(differences, checkpoint->path, log);
   }
   understand([&](const nlohmann::ordered_json &of_run) {
     const auto step = count_in(of_run.at("clock").at("step"));
+    last_step = step;
     const double time = time_in(of_run.at("clock"));
-    const unsigned long long last =
-        is_other_input ? control.last_step(step, time) : control.n_steps();
+    const nlohmann::ordered_json &clock = of_run.at("clock");
+    const unsigned long long last = is_other_input
+                                        ? control.last_step(step, time)
+                                        : control.last_step(count_in(clock.at("begin_step")),
+                                                            number_in(clock.at("begin_time")));
     const bool by_time = is_other_input && control.end_control == "time";
     if (step > last || (is_other_input && step == last))
       problems.add("The checkpoint " + checkpoint->path,
@@ -203,6 +203,7 @@ bool Checkpoints::is_due(const unsigned long long step)
 void Checkpoints::write(CheckpointWriter &writer, const unsigned long long step, Log &log)
 {
   const std::string path = store.write(writer, step);
+  last_step = step;
   last_time = MPI_Wtime();
   if (signal != 0)
     log.line("Asked to stop by signal " + std::to_string(signal) + " at step " +

@@ -32,12 +32,21 @@ void Simulation::resume()
   const Checkpoint &checkpoint = *checkpoints.opened();
   checkpoints.understand([&](const nlohmann::ordered_json &head) {
     inserter.load(head.at("insertion"));
-    if (checkpoints.begins_phase())
+    const bool is_phase = checkpoints.begins_phase();
+    const Clock::End end = [this](const unsigned long long step, const double time) {
+      return parameters.control.last_step(step, time);
+    };
+    if (is_phase)
+      clock.begin_phase(head.at("clock"), end);
+    else
+      clock.load(head.at("clock"), end);
+    // Before the particles: it knows where the solids of the process are by now.
+    if (process)
+      process->resume(*this, checkpoint);
+    if (is_phase)
       begin_phase(checkpoint);
     else
       go_on(checkpoint);
-    if (process)
-      process->resume(*this, checkpoint);
     if (checkpoints.is_own())
       outputs.load(head.at("outputs"));
   });
@@ -54,26 +63,24 @@ void Simulation::resume()
 void Simulation::go_on(const Checkpoint &checkpoint)
 {
   const nlohmann::ordered_json &head = checkpoint.head;
-  clock.load(head.at("clock"));
   balancer.load(head.at("balancing"));
   domain.load(head.at("domain"));
   solids.load(head.at("solids"));
   guard.set_most_squeezed(count_in(head.at("most_squeezed")));
   if (sleeper.is_enabled())
     sleeper.load(head.at("sleep"), solids.list().size());
-  system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), false);
+  system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), false, true);
 }
 
 /// Takes the particles and what their contacts remember, and goes on with what the input says now:
 /// with other walls, solids, laws, loads, steps.
 void Simulation::begin_phase(const Checkpoint &checkpoint)
 {
-  clock.begin_phase(checkpoint.head.at("clock"), [this](const Clock &now) {
-    return parameters.control.last_step(now.step(), now.time());
-  });
   move_solids();
-  for (const std::string &loss :
-       system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), true))
+  // A process has the outlets that it had, and measures what goes through them.
+  const bool keeps_ledger = process != nullptr;
+  for (const std::string &loss : system.load(checkpoint, solids.list(), parameters.load_balancing,
+                                             sleeper.get(), true, keeps_ledger))
     get_log().line(loss);
   note_search();
   if (sleeper.is_enabled())
@@ -91,8 +98,12 @@ void Simulation::dump(const std::string &path)
 
 void Simulation::checkpoint_if_due()
 {
-  if (!checkpoints.is_due(clock.step()))
-    return;
+  if (checkpoints.is_due(clock.step()))
+    write_checkpoint();
+}
+
+void Simulation::write_checkpoint()
+{
   const Timers::Scope scope(progress.timers, Section::output);
   CheckpointWriter writer(communicator());
   save(writer);

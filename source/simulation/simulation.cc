@@ -48,13 +48,22 @@ std::vector<std::unique_ptr<Load>> make_loads(const Parameters &parameters)
   return loads;
 }
 
-/// Beginnings of the places of entries that must be those of the checkpoint from which a run goes
-/// on: a process finds its solids and its progress by them.
-std::vector<std::string> fixed_sections(const Parameters &parameters)
+/// Asks the process whether it can go on with another input: it finds its solids and its progress
+/// by its own subsection.
+void judge_phase(const Parameters &parameters, const Problems &differences,
+                 const nlohmann::ordered_json &head, Problems &problems)
 {
   if (parameters.process() == nullptr)
-    return {};
-  return {describe({}, "process"), describe({parameters.process_name}, "")};
+    return;
+  std::vector<Problem> of_process;
+  for (const Problem &difference : differences.all())
+    if (difference.where.find(describe({}, "process")) == 0) {
+      problems.add(difference.where, difference.what, difference.mend);
+      return;
+    } else if (difference.where.find(describe({parameters.process_name}, "")) == 0)
+      of_process.push_back(difference);
+  if (!of_process.empty())
+    parameters.process()->check_phase(of_process, head, problems);
 }
 
 double largest_diameter(const Parameters &parameters, const Inserter &inserter)
@@ -140,8 +149,12 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
     log.line("A period of the domain is short: the skin is " + format(skins.in(domain.periods())) +
              " m instead of " + format(skins.wanted) + " m, so contacts are searched more often.");
   std::vector<Solid> all = given_solids(problems);
-  checkpoints.find(parameters.as_input_file(), parameters.control, fixed_sections(parameters), log,
-                   problems);
+  checkpoints.find(
+      parameters.as_input_file(), parameters.control,
+      [this](const Problems &differences, const nlohmann::ordered_json &head, Problems &found) {
+        judge_phase(parameters, differences, head, found);
+      },
+      log, problems);
   if (const Insertion *const method = inserter.get_method();
       method != nullptr && checkpoints.opened() == nullptr)
   {
@@ -238,6 +251,9 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
   complete_step();
   if (checkpoints.is_stopped())
     return false;
+  // So that another phase can begin where this one ends.
+  if (checkpoints.is_due_at_end(clock.step()))
+    write_checkpoint();
   outputs.finish(*this);
   report_progress(true);
   write_measurements();

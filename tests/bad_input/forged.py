@@ -6,7 +6,7 @@ import json
 import struct
 from typing import Callable
 
-TITLE = b"Eunoe checkpoint 4\n"
+TITLE = b"Eunoe checkpoint 5\n"
 
 
 def checksum(data: bytes) -> int:

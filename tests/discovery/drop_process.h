@@ -83,7 +83,8 @@ public:
       };
       return Vec3{-5e-3 + along(k % 4, 0), 1e-3 + along(k / 16, 1), -5e-3 + along(k / 4 % 4, 2)};
     };
-    simulation.insert_and_remove(loose_powder(simulation, section.n_particles, Vec3(), place), {});
+    simulation.insert_and_remove(loose_powder(simulation, 0, section.n_particles, Vec3(), place),
+                                 {});
   }
 
   void step(Simulation &simulation) override

@@ -21,6 +21,7 @@ from eunoe.launch import Failure
 CASE = str(Path(__file__).with_name("stirred.prm"))
 LAST = "simulation control/iteration end = 3000"
 EVERY = ("restart/checkpoint = true", "restart/frequency = 700", "restart/number of checkpoints = 2")
+WITHOUT = "restart/checkpoint = false"
 AUTO = (*EVERY, "restart/restart = auto")
 NEWEST, OLDER = "restart_000000002100.checkpoint", "restart_000000001400.checkpoint"
 INDEX = "restart.latest"
@@ -110,7 +111,7 @@ def goes_on(reference: Case, stopped: Case, folder: Path, change: Change, ranks:
     case = crashed(stopped, folder, change)
     # Until the first new checkpoint is complete, the intact old ones must stay.
     before = contents(case.results)
-    short = subprocess.run(case.command(ranks, *AUTO, "simulation control/iteration end = 2110"),
+    short = subprocess.run(case.command(ranks, *AUTO, WITHOUT, "simulation control/iteration end = 2110"),
                            text=True, check=False, capture_output=True)
     if short.returncode != 0:
         raise Failure(f"exit code {short.returncode}\n{short.stdout}{short.stderr}")
@@ -150,7 +151,10 @@ def main(program: str, folder: Path) -> int:
     reference = Case(program, CASE, folder / "reference", [LAST])
     reference.run(1)
     stopped = Case(program, CASE, folder / "stopped", [])
-    stopped.run(1, *EVERY, "simulation control/iteration end = 2200")
+    stopped.run(1, *EVERY, "restart/number of checkpoints = 3", "simulation control/iteration end = 2200")
+    # As it was before the checkpoint of its end.
+    (stopped.results / "restart_000000002200.checkpoint").unlink()
+    (stopped.results / INDEX).write_text(f"{NEWEST}\n{OLDER}\n", encoding="utf-8")
     work = []
     for number, (name, change) in enumerate((INDICES | POINTING).items()):
         work.append((name, goes_on, reference, stopped, folder / name, change, 2 if number % 4 == 1 else 1, 2100))

@@ -15,7 +15,7 @@ from pathlib import Path
 from eunoe.endurance.kill_and_restart import Case
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
-STEPS = (700, 1400)
+STEPS = (700, 1400, 1500)  # the last is the end
 
 
 def main(program: str, library: str, folder: Path) -> int:
@@ -31,7 +31,7 @@ def main(program: str, library: str, folder: Path) -> int:
     calls = [line.replace(prefix, "") for line in lines]
     failures = []
     begin = 0
-    for step in STEPS:
+    for last, step in zip((0, *STEPS), STEPS):
         name = f"restart_{step:012}.checkpoint"
         steps = [f"sync {name}.new", f"name {name}", f"sync {case.results}", "sync restart.latest.new",
                  "name restart.latest", f"sync {case.results}"]
@@ -45,7 +45,7 @@ def main(program: str, library: str, folder: Path) -> int:
         tables = {f"sync {table}.csv" for table in ("energies", "solid_forces_00", "force_0")}
         pictures = {f"sync {series}_{number:05}.vtu" for series in
                     ("out", "out_solids", "out_cells", "out_force_chains")
-                    for number in range((step - 700) // 100 + (step > 700), step // 100 + 1)}
+                    for number in range(last // 100 + (last > 0), step // 100 + 1)}
         before = {line for line in here[:at] if line.startswith("sync ")}
         missing = (tables | pictures) - before
         if missing:

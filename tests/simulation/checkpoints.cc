@@ -34,7 +34,15 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
   control.end_control = "iteration";
   control.iteration_end = n_steps;
   control.output_path = folder;
-  checkpoints.find(text, control, fixed, log, problems);
+  checkpoints.find(
+      text, control,
+      [&fixed](const Problems &differences, const nlohmann::ordered_json &, Problems &found) {
+        for (const Problem &difference : differences.all())
+          for (const std::string &section : fixed)
+            if (difference.where.find(section) == 0)
+              found.add(difference.where, difference.what, difference.mend);
+      },
+      log, problems);
   return problems.all().size();
 }
 

@@ -27,13 +27,15 @@ public:
   /// At which this part of the run began.
   unsigned long long first_step() const { return first; }
 
+  /// The step at which a run ends, of those that are done at a time (s) and those of the present
+  /// time step.
+  using End = std::function<unsigned long long(unsigned long long step, double time)>;
+
   nlohmann::ordered_json save() const;
   /// Goes on at a step that was saved.
-  void load(const nlohmann::ordered_json &saved);
+  void load(const nlohmann::ordered_json &saved, const End &end);
   /// Goes on at a step that was saved by a run with another time step or another end.
-  /// @param end step at which the run ends, of those that are done and those of this time step
-  void begin_phase(const nlohmann::ordered_json &saved,
-                   const std::function<unsigned long long(const Clock &)> &end);
+  void begin_phase(const nlohmann::ordered_json &saved, const End &end);
 
 private:
   const double dt;

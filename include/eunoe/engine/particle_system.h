@@ -117,11 +117,12 @@ public:
   /// @param solids in their places at that search
   /// @param sparse has the sleepers
   /// @param begins_phase whether the checkpoint is of another input: then the lists are those of
-  ///                     the present places, all are awake, and the ledger begins with what is here
+  ///                     the present places, and all are awake
+  /// @param keeps_ledger whether the ledger goes on; else it begins with what is here
   /// @return what is lost on the way, in sentences
   std::vector<std::string> load(const Checkpoint &checkpoint, const std::vector<Solid> &solids,
                                 const LoadBalancingParameters &balancing,
-                                const SparseContacts &sparse, bool begins_phase);
+                                const SparseContacts &sparse, bool begins_phase, bool keeps_ledger);
 
   /// Memory of all contacts by owned particle.
   ContactRows contact_rows() const;

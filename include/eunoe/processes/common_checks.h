@@ -5,11 +5,15 @@
 
 namespace eunoe {
 
-/// Notes a problem unless there is one particle type and gravity points to -y.
+/// Notes a problem unless there is one particle type.
 /// @param who begins a sentence: "The heap"
-/// @param why gravity must point there
-void check_powder_of_process(const Parameters &parameters, const ParameterCheck &check,
-                             const std::string &who, const std::string &why);
+void require_one_type(const Parameters &parameters, const ParameterCheck &check,
+                      const std::string &who);
+
+/// Notes a problem unless gravity points to -y.
+/// @param why it must
+void check_gravity_of_process(const Parameters &parameters, const ParameterCheck &check,
+                              const std::string &why);
 
 /// Notes a problem if the user decides what a process decides: mesh, boundaries, insertion, end.
 /// @param end completes the sentence "The process ends when ..."

@@ -11,12 +11,12 @@ namespace eunoe {
 /// these places.
 constexpr double loose_pitch = 1.05, loose_offset = 0.05;
 
-/// This rank's share of new particles of the case's only type, with new ids and random sizes;
-/// collective.
+/// This rank's share of new particles of a type, with new ids and random sizes; collective.
 /// @param n number of all ranks
 /// @param velocity of each (m/s)
 /// @param place of the k-th particle, which has the id (m)
-Delivery loose_powder(Simulation &simulation, std::size_t n, const Vec3 &velocity,
+Delivery loose_powder(Simulation &simulation, unsigned int type, std::size_t n,
+                      const Vec3 &velocity,
                       const std::function<Vec3(std::size_t k, ParticleId id)> &place);
 
 } // namespace eunoe

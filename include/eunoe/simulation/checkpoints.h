@@ -5,6 +5,7 @@
 #include <eunoe/checkpoint/restart_parameters.h>
 
 #include <functional>
+#include <limits>
 
 namespace eunoe {
 
@@ -22,12 +23,16 @@ public:
   {
   }
 
+  /// Says what forbids to go on with another input.
+  /// @param head of the checkpoint
+  using PhaseJudge = std::function<void(const Problems &differences,
+                                        const nlohmann::ordered_json &head, Problems &problems)>;
+
   /// Opens the one from which the run is to continue, if there is one; collective.
   /// @param input complete text of the present input
   /// @param control says when the run ends
-  /// @param fixed first subsections of entries that must stay as they were
-  void find(const std::string &input, const ControlParameters &control,
-            const std::vector<std::string> &fixed, Log &log, Problems &problems);
+  void find(const std::string &input, const ControlParameters &control, const PhaseJudge &judge,
+            Log &log, Problems &problems);
   /// The one that was opened, null if the run begins anew.
   const Checkpoint *opened() const { return checkpoint.get(); }
   /// Whether it is of a run with another input.
@@ -54,6 +59,11 @@ public:
 
   /// Whether one is due after a step; collective.
   bool is_due(unsigned long long step);
+  /// Whether one is due as the run ends, with no step left to make.
+  bool is_due_at_end(unsigned long long step) const
+  {
+    return parameters.checkpoint && step != last_step;
+  }
   /// Whether the last `is_due` found that the run was asked to stop.
   bool is_stopped() const { return signal != 0; }
   /// Writes one and says so if it is the last; collective.
@@ -75,7 +85,9 @@ private:
   std::unique_ptr<Checkpoint> checkpoint;
   bool is_other_input = false, is_own_folder = true, has_own_results = true;
   double last_time = 0.; ///< by the wall clock (s)
-  int signal = 0;        ///< that asked the run to stop; 0: none
+  /// Of the one that was opened or written last.
+  unsigned long long last_step = std::numeric_limits<unsigned long long>::max();
+  int signal = 0; ///< that asked the run to stop; 0: none
 };
 
 } // namespace eunoe

@@ -78,6 +78,16 @@ public:
   /// What is wrong with the process together with the other parameters.
   virtual void check_with(const Parameters &parameters, const ParameterCheck &check) const = 0;
 
+  /// What forbids to go on, with this section, from the state of a run whose section differed.
+  /// @param differences what differs in this section
+  /// @param head of the checkpoint, with what the process has saved
+  virtual void check_phase(const std::vector<Problem> &differences,
+                           const nlohmann::ordered_json & /*head*/, Problems &problems) const
+  {
+    for (const Problem &difference : differences)
+      problems.add(difference.where, difference.what, difference.mend);
+  }
+
   /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
   /// Throws a UserError if they are impossible.
   virtual void decide(Parameters &parameters) const = 0;

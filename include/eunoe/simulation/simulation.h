@@ -127,6 +127,7 @@ private:
   void begin_phase(const Checkpoint &checkpoint);
   /// Writes a checkpoint if it is time or if the run was asked to stop.
   void checkpoint_if_due();
+  void write_checkpoint();
   void report_progress(bool at_end);
   void write_summary();
   /// Writes measurements.csv, where something was measured.

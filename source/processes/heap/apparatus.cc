@@ -29,6 +29,17 @@ RigidState Lift::at(const double time) const
   return state;
 }
 
+double wanted_particles(const HeapParameters &p, const ParticleType &type)
+{
+  const double mean_volume = M_PI / 6. * type.sizes.make()->mean_cube();
+  const double heap = M_PI / 3. * std::pow(0.5 * p.disc_diameter, 3) *
+                      std::tan(expected_angle * M_PI / 180.) * settled_fraction;
+  const double number = p.n_particles > 0 ? p.n_particles
+                        : p.mass > 0.     ? p.mass / (type.density * mean_volume)
+                                          : p.fill_ratio * heap / mean_volume;
+  return std::max(1., std::round(number));
+}
+
 Apparatus::Apparatus(const HeapParameters &p, const PhysicalProperties &physics)
     : gravity(-physics.gravity.y), tube(std::make_shared<Lift>(p.lifting_velocity)), p(p),
       largest_diameter(physics.largest_diameter()),
@@ -38,12 +49,7 @@ Apparatus::Apparatus(const HeapParameters &p, const PhysicalProperties &physics)
   const ParticleType &type = physics.types[0];
   const double mean_volume = M_PI / 6. * type.sizes.make()->mean_cube();
   const double disc_radius = 0.5 * p.disc_diameter, tube_radius = 0.5 * p.tube_diameter;
-  const double heap = M_PI / 3. * std::pow(disc_radius, 3) *
-                      std::tan(expected_angle * M_PI / 180.) * settled_fraction;
-  const double number = p.n_particles > 0 ? p.n_particles
-                        : p.mass > 0.     ? p.mass / (type.density * mean_volume)
-                                          : p.fill_ratio * heap / mean_volume;
-  n_particles = static_cast<unsigned int>(std::max(1., std::round(number)));
+  n_particles = static_cast<unsigned int>(wanted_particles(p, type));
   settled_height =
       n_particles * mean_volume / (settled_fraction * M_PI * tube_radius * tube_radius);
 

@@ -10,7 +10,7 @@ namespace eunoe::heap {
 void Heap::fill(Simulation &simulation)
 {
   simulation.insert_and_remove(
-      loose_powder(simulation, apparatus.n_particles, {0., -p.insertion_speed, 0.},
+      loose_powder(simulation, 0, apparatus.n_particles, {0., -p.insertion_speed, 0.},
                    [&](std::size_t k, ParticleId id) { return apparatus.loose_place(k, id); }),
       {});
 }

@@ -12,15 +12,28 @@ namespace {
 const ProcessRegistry::Registration registration(process_kinds(), "heap",
                                                  [] { return std::make_unique<HeapParameters>(); });
 
+/// Beyond these, numbers of places and of particles are mistakes in the input.
+constexpr double widest_tube = 5000., most_particles = 1e9;
+
 } // namespace
 
 void HeapParameters::check_with(const Parameters &parameters, const ParameterCheck &check) const
 {
-  check_powder_of_process(parameters, check, "The heap", "the tube is lifted along +y");
+  require_one_type(parameters, check, "The heap");
+  check_gravity_of_process(parameters, check, "the tube is lifted along +y");
   const double largest = parameters.physics.largest_diameter();
   check.require(tube_diameter >= 5. * largest, {section}, "tube inner diameter",
                 "is " + format(tube_diameter) + " m, less than five of the largest particles.",
                 "Give a wider tube, 10e-3 in the paper.");
+  check.require(!(tube_diameter > widest_tube * largest), {section}, "tube inner diameter",
+                "is " + format(tube_diameter) + " m, more than " + format(widest_tube) +
+                    " of the largest particles.",
+                "Give a narrower tube, 10e-3 in the paper.");
+  const double number = wanted_particles(*this, parameters.physics.types[0]);
+  check.require(number <= most_particles, {section}, "",
+                "asks for " + format(number) + " particles, and " + format(most_particles) +
+                    " are the most.",
+                "Give a smaller 'number of particles', 'mass' or 'fill ratio'.");
   check.advise(gap < largest, {section}, "gap below the tube",
                "is " + format(gap) + " m, so that powder flows out while the tube is filled.",
                "Give less than the largest diameter.");

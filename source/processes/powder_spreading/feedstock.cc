@@ -21,7 +21,7 @@ constexpr double moving_share = 0.01;
 
 void PowderSpreading::insert_loose_bed(Simulation &simulation)
 {
-  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  const ParticleType &type = feedstock(simulation);
   const double largest = type.sizes.make()->largest();
   const ParticleArrays &particles = simulation.complete_step();
 
@@ -44,7 +44,7 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
       static_cast<std::size_t>(loose_excess * apparatus.particles_in_bed(type, missing)) + 1);
 
   simulation.insert_and_remove(
-      loose_powder(simulation, n, {0., -p.insertion_speed, 0.},
+      loose_powder(simulation, p.particle_type, n, {0., -p.insertion_speed, 0.},
                    [&](std::size_t k, ParticleId id) { return grid.point(k, p.seed, id); }),
       {});
   phase_start = simulation.time();
@@ -54,7 +54,7 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
 void PowderSpreading::fill_reservoir(Simulation &simulation, const double platform_height)
 {
   simulation.insert_and_remove(bed.stack(simulation, apparatus, platform_height, p.seed,
-                                         static_cast<unsigned int>(next_feed)),
+                                         series.first_layer + static_cast<unsigned int>(next_feed)),
                                in_reservoir(simulation.complete_step(), apparatus));
 }
 
@@ -88,7 +88,7 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
   MPI_Allreduce(MPI_IN_PLACE, &n_above, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM,
                 simulation.communicator());
   constexpr unsigned int most_fillings = 20;
-  const ParticleType &type = simulation.get_parameters().physics.types[0];
+  const ParticleType &type = feedstock(simulation);
   if (phase == Phase::settling_bed && !apparatus.is_full(type, n_above) &&
       n_fillings < most_fillings) {
     insert_loose_bed(simulation);
@@ -99,10 +99,10 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
     bed.take(simulation, apparatus, -apparatus.bed_depth);
     simulation.get_log().line("The feedstock bed is at rest after " + format(simulation.time()) +
                               " s: " + std::to_string(bed.size()) + " particles");
-    if (apparatus.first_bed_depth > apparatus.bed_depth) {
+    if (reservoir_depth() > apparatus.bed_depth) {
       lower_platform(simulation.time());
       simulation.renew_solids();
-      fill_reservoir(simulation, -apparatus.first_bed_depth);
+      fill_reservoir(simulation, -reservoir_depth());
       phase = Phase::settling_stack;
       phase_start = simulation.time();
       return;
@@ -116,7 +116,17 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
 void PowderSpreading::lower_platform(const double time)
 {
   lowering = time;
-  apparatus.platform->add(time, 0., {0., apparatus.bed_depth - apparatus.first_bed_depth, 0.});
+  apparatus.platform->add(time, 0., {0., apparatus.bed_depth - reservoir_depth(), 0.});
+}
+
+/// Depth of the powder in the reservoir before the first pass (m).
+double PowderSpreading::reservoir_depth() const
+{
+  if (series.first_layer == 0)
+    return apparatus.first_bed_depth;
+  // The plates are covered, so no pass needs more powder than the others.
+  const unsigned int n_strokes = p.feedstock == "full" ? p.n_layers - series.first_layer : 1;
+  return std::max(apparatus.bed_depth, n_strokes * p.stroke + p.bed_margin);
 }
 
 } // namespace eunoe::spreading

@@ -31,8 +31,7 @@ LayerLog::Fields LayerLog::add_fields(ParticleFields &fields)
 LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
                    const Apparatus &apparatus, const Fields &fields)
     : apparatus(apparatus), fields(fields),
-      full_layer_mass(simulation.get_parameters().physics.types[0].density *
-                      apparatus.plate_area() * parameters.layer_thickness),
+      full_layer(apparatus.plate_area() * parameters.layer_thickness),
       file(simulation.output_folder().table(
           "layers.csv",
           {"layer", "time", "mass", "particles", "LRD", "CRD", "mass_removed", "mass_to_gap",
@@ -79,13 +78,16 @@ LayerLog::OnPlate LayerLog::look_at_particles(Simulation &simulation, const unsi
   const PeriodicBox &box = simulation.get_domain().periods();
   const Vec3 plate_moved = {0., plate_height - last_plate_height, 0.};
   Tally present, kept;
+  ExactSum volume;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const Vec3 x = p.position[row].vec();
     const double mass = p.mass(row);
     const bool is_on = apparatus.is_over_plate(x, plate_height);
     const bool was_on = on_plate[row] != 0.;
-    if (is_on)
+    if (is_on) {
       present.count(mass);
+      volume += sphere_mass(p.radius(row), 1.);
+    }
     if (is_on && was_on)
       kept.count(mass);
     if (is_on && tags[row] < 0.)
@@ -98,30 +100,34 @@ LayerLog::OnPlate LayerLog::look_at_particles(Simulation &simulation, const unsi
     p.set_vector(fields.displacement, row, moved);
     p.set_vector(fields.last_position, row, x);
   }
-  return {present.global(simulation.communicator()), kept.global(simulation.communicator())};
+  volume.reduce(simulation.communicator());
+  return {present.global(simulation.communicator()), kept.global(simulation.communicator()),
+          volume};
 }
 
 void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const double plate_height)
 {
-  const auto [present, kept] = look_at_particles(simulation, layer, plate_height);
+  const OnPlate on_plate = look_at_particles(simulation, layer, plate_height);
+  const Tally &present = on_plate.present;
   // Part of the removed powder has left the domain, so its mass is a difference and not counted.
   ExactSum removed = last_present;
-  removed -= kept.mass;
+  removed -= on_plate.kept.mass;
 
   const double nothing = std::numeric_limits<double>::quiet_NaN();
-  const double mass = present.mass.value();
+  // By volume: the layers may be of powders of different densities.
+  const double volume = on_plate.volume.value();
   if (layer == 1)
-    first_mass = mass;
+    first_volume = volume;
   const OutletTotals out = outlet_totals(simulation);
   ExactSum to_gap = out.gap, to_collector = out.collector;
   to_gap -= last_out.gap;
   to_collector -= last_out.collector;
   const double now = MPI_Wtime();
   record(layer, simulation.time(),
-         {{"mass", mass},
+         {{"mass", present.mass.value()},
           {"particles", static_cast<double>(present.number)},
-          {"LRD", layer >= 1 ? (mass - last_present.value()) / full_layer_mass : nothing},
-          {"CRD", layer >= 2 ? (mass - first_mass) / (full_layer_mass * (layer - 1)) : nothing},
+          {"LRD", layer >= 1 ? (volume - last_volume) / full_layer : nothing},
+          {"CRD", layer >= 2 ? (volume - first_volume) / (full_layer * (layer - 1)) : nothing},
           {"mass_removed", removed.value()},
           {"mass_to_gap", to_gap.value()},
           {"mass_to_collector", to_collector.value()},
@@ -129,6 +135,7 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
           {"spreader_force_max", force_max},
           {wall_clock, now - last_wall_time}});
   last_present = present.mass;
+  last_volume = volume;
   last_plate_height = plate_height;
   last_out = out;
   last_wall_time = now;
@@ -156,10 +163,12 @@ void LayerLog::record(const unsigned int layer, const double time,
 
 void LayerLog::take_profile(Simulation &simulation, const double plate_height)
 {
-  const auto sizes = simulation.get_parameters().physics.types[0].sizes.make();
+  double smallest = std::numeric_limits<double>::max();
+  for (const ParticleType &type : simulation.get_parameters().physics.types)
+    smallest = std::min(smallest, type.sizes.make()->smallest());
   PlateProfile profile({apparatus.x_plate, apparatus.x_plate_end, apparatus.depth,
                         simulation.get_domain().periods().is_periodic(2), plate_height},
-                       n_bins, column_width * sizes->smallest());
+                       n_bins, column_width * smallest);
   const ParticleArrays &p = simulation.complete_step();
   for (std::size_t row = 0; row < p.n_owned; ++row)
     profile.add(p.position[row].vec(), p.radius(row), p.mass(row));
@@ -196,7 +205,8 @@ std::vector<ObservableDescription> LayerLog::observables()
 nlohmann::ordered_json LayerLog::save() const
 {
   return {{"last_present", last_present.words()},
-          {"first_mass", first_mass},
+          {"last_volume", last_volume},
+          {"first_volume", first_volume},
           {"last_plate_height", last_plate_height},
           {"last_to_gap", last_out.gap.words()},
           {"last_to_collector", last_out.collector.words()},
@@ -209,7 +219,8 @@ nlohmann::ordered_json LayerLog::save() const
 void LayerLog::load(const nlohmann::ordered_json &saved)
 {
   last_present = exact_sum_in(saved.at("last_present"));
-  first_mass = number_in(saved.at("first_mass"));
+  last_volume = number_in(saved.at("last_volume"));
+  first_volume = number_in(saved.at("first_volume"));
   last_plate_height = number_in(saved.at("last_plate_height"));
   last_out.gap = exact_sum_in(saved.at("last_to_gap"));
   last_out.collector = exact_sum_in(saved.at("last_to_collector"));

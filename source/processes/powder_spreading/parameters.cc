@@ -74,6 +74,9 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
                   "replenished: a shallow bed is settled once and copied back before every pass, "
                   "shifted and mirrored in z at random, after the old powder has been taken out. "
                   "full: one deep reservoir for all passes.");
+  declare::count(prm, "feedstock particle type", p.particle_type,
+                 "Type of the particles of the feedstock. Others may lie on the plate from an "
+                 "earlier series of layers.");
   not_negative(prm, "feedstock bed depth", p.bed_depth,
                "Depth of the bed that is settled (m); 0: the stroke and the margin.");
   not_negative(prm, "feedstock margin", p.bed_margin,

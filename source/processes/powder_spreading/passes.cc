@@ -6,11 +6,11 @@ namespace eunoe::spreading {
 
 void PowderSpreading::schedule_passes(const double beginning)
 {
-  passes = make_schedule(p, apparatus, beginning);
-  double height = -apparatus.first_bed_depth;
+  passes = make_schedule(p, apparatus, beginning, series.first_layer);
+  double height = -reservoir_depth();
   for (std::size_t k = 0; k < passes.size(); ++k) {
     const Pass &pass = passes[k];
-    const double stroke = p.actual_stroke(static_cast<unsigned int>(k));
+    const double stroke = p.actual_stroke(series.first_layer + static_cast<unsigned int>(k));
     if (k > 0 && p.feedstock == "replenished") {
       apparatus.platform->add(pass.feed, 0., {0., -apparatus.bed_depth - height, 0.});
       height = -apparatus.bed_depth;
@@ -23,6 +23,7 @@ void PowderSpreading::schedule_passes(const double beginning)
     if (apparatus.yielding_plate)
       apparatus.yielding_plate->add(pass.over_plate, pass.past_plate - pass.over_plate);
   }
+  last_platform_height = height;
 }
 
 void PowderSpreading::step_passes(Simulation &simulation)
@@ -41,7 +42,8 @@ void PowderSpreading::step_passes(Simulation &simulation)
       pass_over_plate = static_cast<int>(k);
   if (t >= passes[next_weighing].weighing) {
     const double plate_height = apparatus.plate->at(t).centre.y;
-    layers->weigh(simulation, static_cast<unsigned int>(next_weighing), plate_height);
+    layers->weigh(simulation, series.first_layer + static_cast<unsigned int>(next_weighing),
+                  plate_height);
     if (++next_weighing == passes.size()) {
       layers->take_profile(simulation, plate_height);
       phase = Phase::done;

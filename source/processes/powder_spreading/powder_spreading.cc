@@ -9,14 +9,16 @@ namespace eunoe::spreading {
 void PowderSpreading::start(Simulation &simulation)
 {
   layers = std::make_unique<LayerLog>(simulation, p, apparatus, layer_fields);
-  simulation.output_folder().write(
-      "apparatus.json", apparatus.as_json(simulation.get_parameters().physics.types[0].density));
+  simulation.output_folder().write("apparatus.json",
+                                   apparatus.as_json(feedstock(simulation).density));
   insert_loose_bed(simulation);
 }
 
 void PowderSpreading::step(Simulation &simulation)
 {
-  if (phase == Phase::passes)
+  if (n_fillings == 0 && phase == Phase::settling_bed)
+    empty_reservoir(simulation);
+  else if (phase == Phase::passes)
     step_passes(simulation);
   else if (phase != Phase::done && has_settled(simulation))
     go_on_after_settling(simulation);
@@ -32,6 +34,10 @@ void PowderSpreading::save(CheckpointWriter &writer) const
                                      {"next_feed", next_feed},
                                      {"next_weighing", next_weighing},
                                      {"pass_over_plate", pass_over_plate},
+                                     {"series", save_series()},
+                                     {"is done", phase == Phase::done},
+                                     {"layers weighed", series.first_layer + next_weighing},
+                                     {"last platform height", last_platform_height},
                                      {"layers", layers->save()}};
   bed.save(writer);
 }
@@ -39,6 +45,19 @@ void PowderSpreading::save(CheckpointWriter &writer) const
 void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoint)
 {
   const auto &saved = checkpoint.head.at("powder spreading");
+  simulation.output_folder().write("apparatus.json",
+                                   apparatus.as_json(feedstock(simulation).density));
+  layers = std::make_unique<LayerLog>(simulation, p, apparatus, layer_fields);
+  layers->load(saved.at("layers"));
+  const auto weighed = count_in<unsigned int>(saved.at("layers weighed"));
+  if (saved.at("is done").get<bool>() && p.n_layers > weighed) {
+    begin_series(simulation.time(), weighed, number_in(saved.at("last platform height")));
+    return;
+  }
+  load_series(saved.at("series"));
+  checkpoint.require(series.first_layer < p.n_layers, "its layers are not those of the case.");
+  if (series.first_layer > 0)
+    set_out_series();
   const auto phase_number = count_in<unsigned int>(saved.at("phase"));
   phase_start = number_in(saved.at("phase_start"));
   n_fillings = count_in<unsigned int>(saved.at("fillings"));
@@ -58,8 +77,6 @@ void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoin
     throw checkpoint.damaged("its passes are not those of the case.");
   phase = static_cast<Phase>(phase_number);
   pass_over_plate = static_cast<int>(over_plate);
-  layers = std::make_unique<LayerLog>(simulation, p, apparatus, layer_fields);
-  layers->load(saved.at("layers"));
   bed.load(simulation, checkpoint);
 }
 
@@ -67,8 +84,8 @@ double PowderSpreading::progress(const Simulation &simulation) const
 {
   const double begin =
       passes.empty() ? simulation.time() + 0.25 * p.settling_time : passes.front().feed;
-  const double end = begin + make_schedule(p, apparatus, 0.).back().weighing;
-  return std::min(1., simulation.time() / end);
+  const double end = begin + make_schedule(p, apparatus, 0., series.first_layer).back().weighing;
+  return std::min(1., (simulation.time() - series.start) / (end - series.start));
 }
 
 std::string PowderSpreading::stage() const
@@ -79,7 +96,8 @@ std::string PowderSpreading::stage() const
   case Phase::settling_stack:
     return "filling the reservoir";
   case Phase::passes:
-    return "layer " + std::to_string(next_weighing) + " of " + std::to_string(passes.size() - 1);
+    return "layer " + std::to_string(series.first_layer + next_weighing) + " of " +
+           std::to_string(p.n_layers - 1);
   default:
     return "";
   }

@@ -19,8 +19,12 @@ const ProcessRegistry::Registration registration(process_kinds(), "powder spread
 void SpreadingParameters::check_with(const Parameters &parameters,
                                      const ParameterCheck &check) const
 {
-  check_powder_of_process(parameters, check, "Powder spreading",
-                          "in powder spreading y points upwards");
+  const std::size_t n_types = parameters.physics.types.size();
+  check.require(particle_type < n_types, {section}, "feedstock particle type",
+                "is " + std::to_string(particle_type) + ", and 'number of particle types' is " +
+                    std::to_string(n_types) + ".",
+                "Types are counted from 0.");
+  check_gravity_of_process(parameters, check, "in powder spreading y points upwards");
   check_lengths(parameters, check);
   // Errors of the stroke do not change the powder.
   const double bed = bed_depth > 0. ? bed_depth : stroke + bed_margin;
@@ -75,8 +79,11 @@ void SpreadingParameters::decide(Parameters &parameters) const
   decide_boundaries(parameters);
   // The process decides when all is done; this is no more than an upper bound.
   parameters.control.end_control = "time";
+  const double longest_pass = a.path() / velocity + plate_stroke() / plate_velocity +
+                              std::max(actual_stroke(0), actual_stroke(1)) / platform_velocity;
+  // Each layer may begin a series of its own, with a bed of its own.
   parameters.control.time_end =
-      make_schedule(*this, a, 22. * settling_time).back().end + settling_time;
+      make_schedule(*this, a, 0.).back().end + n_layers * (23. * settling_time + longest_pass);
 }
 
 void SpreadingParameters::decide_boundaries(Parameters &parameters) const
@@ -109,7 +116,7 @@ void SpreadingParameters::decide_boundaries(Parameters &parameters) const
 
 RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
 {
-  const ParticleType &type = parameters.physics.types[0];
+  const ParticleType &type = parameters.physics.types[particle_type];
   const Apparatus a(*this, parameters.physics.largest_diameter());
   const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
   const double layer = bed_fraction * a.plate_area() * layer_thickness / volume;

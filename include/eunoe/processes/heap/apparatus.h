@@ -31,6 +31,9 @@ private:
   double start = std::numeric_limits<double>::infinity(), way = 0.;
 };
 
+/// Number of particles that the tube is to hold, at least 1; may be too large for any run.
+double wanted_particles(const HeapParameters &parameters, const ParticleType &type);
+
 /// The heap instrument: a disc whose face is the plane y = 0 around the origin, and a tube over
 /// it. SI units.
 class Apparatus

@@ -53,6 +53,7 @@ private:
   struct OnPlate
   {
     Tally present, kept; ///< now; now and at the last weighing
+    ExactSum volume;     ///< of the solid material that is present (m3)
   };
   /// Looks which particles are on the plate, and notes it with each of them; collective.
   OnPlate look_at_particles(Simulation &simulation, unsigned int layer, double plate_height) const;
@@ -62,14 +63,15 @@ private:
 
   const Apparatus &apparatus;
   const Fields fields;
-  const double full_layer_mass; ///< of solid material that fills a layer (kg)
+  const double full_layer; ///< volume of a layer (m3)
   const std::shared_ptr<CsvFile> file;
   const std::shared_ptr<PictureSeries> pictures, solid_pictures;
   const bool draws;
   const unsigned int n_bins;
   std::vector<Measurement> measured;
-  ExactSum last_present;
-  double first_mass = 0., last_plate_height = 0.;
+  ExactSum last_present;                      ///< mass (kg)
+  double last_volume = 0., first_volume = 0.; ///< of solid material on the plate (m3)
+  double last_plate_height = 0.;
   OutletTotals last_out;
   double force_sum = 0., force_max = 0.;
   unsigned int n_forces = 0;

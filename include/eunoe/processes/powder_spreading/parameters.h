@@ -36,6 +36,7 @@ struct SpreadingParameters : public ProcessSection
   double rest_before_weighing = 0.;
 
   std::string feedstock = "replenished";
+  unsigned int particle_type = 0; ///< of the feedstock
   double bed_depth = 0.;
   double bed_margin = 0.4e-3;
   double insertion_speed = 0.1;
@@ -61,6 +62,8 @@ struct SpreadingParameters : public ProcessSection
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
   void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
+  void check_phase(const std::vector<Problem> &differences, const nlohmann::ordered_json &head,
+                   Problems &problems) const override;
   void decide(Parameters &parameters) const override;
   RunEstimate estimate(const Parameters &parameters) const override;
   double fastest_solid() const override;

@@ -53,8 +53,22 @@ private:
   bool has_settled(Simulation &simulation);
   void go_on_after_settling(Simulation &simulation);
   void lower_platform(double time);
+  double reservoir_depth() const;
   void schedule_passes(double beginning);
   void step_passes(Simulation &simulation);
+  const ParticleType &feedstock(const Simulation &simulation) const
+  {
+    return simulation.get_parameters().physics.types[p.particle_type];
+  }
+
+  /// @name A series of layers on those of an earlier run: series.cc
+  ///@{
+  void begin_series(double time, unsigned int n_layers_so_far, double platform_height);
+  void set_out_series();
+  void empty_reservoir(Simulation &simulation);
+  nlohmann::ordered_json save_series() const;
+  void load_series(const nlohmann::ordered_json &saved);
+  ///@}
 
   const SpreadingParameters p;
   const int wall_material;
@@ -64,12 +78,24 @@ private:
   std::unique_ptr<LayerLog> layers;
   FeedBed bed;
 
+  /// The layers that this run spreads, if others lie on the plate.
+  struct Series
+  {
+    unsigned int first_layer = 0;
+    double start = 0.;           ///< (s)
+    double platform_height = 0.; ///< at the start (m)
+    /// When what was left of the old feedstock was taken out (s); negative: not yet.
+    double emptying = -1.;
+  };
+
+  Series series;
   Phase phase = Phase::settling_bed;
   double phase_start = 0.;
   /// When the platform went down for the reservoir of the first pass (s); negative: it did not.
   double lowering = -1.;
   unsigned int n_fillings = 0;
   std::vector<Pass> passes;
+  double last_platform_height = 0.; ///< after all passes (m)
   std::size_t next_feed = 0, next_weighing = 0;
   int pass_over_plate = -1;
 };

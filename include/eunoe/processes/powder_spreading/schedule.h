@@ -16,9 +16,9 @@ struct Pass
   double end;        ///< the spreader has left
 };
 
-/// All passes, beginning at a given time.
+/// All passes from that of a layer on, beginning at a given time.
 std::vector<Pass> make_schedule(const SpreadingParameters &parameters, const Apparatus &apparatus,
-                                double beginning);
+                                double beginning, unsigned int first_layer = 0);
 
 } // namespace eunoe::spreading
 
