@@ -14,9 +14,7 @@ void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "contact detection method", method, "constant|dynamic",
                   "Search for pairs every so many steps, or when a particle has moved too far.");
   declare::count(prm, "frequency", frequency,
-                 "Steps between searches (constant) or between checks of the displacement "
-                 "(dynamic).",
-                 1);
+                 "constant: steps between searches. dynamic looks at every step.", 1);
   declare::at_least(prm, "dynamic contact search size coefficient", displacement_share, 1e-3,
                     "Share of the safe displacement after which the search is repeated; more than "
                     "1 is as 1.");
@@ -36,10 +34,11 @@ void ContactDetectionParameters::check(const ParameterCheck &check) const
 
 void SearchCriterion::ask(const unsigned long long step, const double moved2)
 {
-  if (step % parameters.frequency != 0)
+  const bool is_constant = parameters.method == "constant";
+  if (is_constant && step % parameters.frequency != 0)
     return;
   // Whether MPI_MAX keeps a NaN depends on the MPI library.
-  if (parameters.method == "constant" || std::isnan(moved2))
+  if (is_constant || std::isnan(moved2))
     largest = std::numeric_limits<double>::infinity();
   else
     largest = std::sqrt(moved2);

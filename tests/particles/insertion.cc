@@ -129,6 +129,45 @@ void test_number_of_files()
   }
 }
 
+/// A list comes again at every event, until there are as many of each type as it has.
+void test_repeated_list()
+{
+  const std::string two =
+      " set insertion method = list\n set list x = 1e-3, -2e-3\n"
+      " set list y = 0, 1e-3\n set list z = 5e-3, 0\n set list diameters = 1e-3\n"
+      " set list velocity y = 0.5\n set remove particles = true\n"
+      " set removal box points coordinates = -1, -1, -1 : 1, 1, 1\n";
+  const auto types = [](const int first, const int second) {
+    return "subsection lagrangian physical properties\n set number of particle types = 2\n"
+           " subsection particle type 0\n  set number of particles = " +
+           std::to_string(first) +
+           "\n end\n subsection particle type 1\n  set number of particles = " +
+           std::to_string(second) +
+           "\n  set diameter = 1e-3\n  set density particles = 3000\n"
+           " end\nend\nsubsection simulation control\n set time end = 1e-4\nend\n";
+  };
+  const std::string often = " set insertion frequency = 10\n";
+  for (const auto &[settings, first, second, wanted] :
+       {std::tuple(often, 3, 3, 6u), std::tuple(often, 0, 1, 3u),
+        std::tuple(std::string(), 3, 3, 2u), std::tuple(often, 1, 0, 1u)})
+  {
+    Case list(case_with(two + settings) + types(first, second));
+    list.run([](Simulation &simulation) {
+      const auto now = particle_table(simulation);
+      if (simulation.step_number() == 0 && now.size() == 2)
+        check("the velocity of the first alone", now[0][c_vy] > 0.4 && now[1][c_vy] == 0.);
+    });
+    const Tally all = list->get_ledger().inserted.global(list->communicator());
+    const std::string name = "a list of two for " + std::to_string(first) + " and " +
+                             std::to_string(second) + (settings.empty() ? ", once" : "");
+    check(name, all.number == wanted, std::to_string(all.number));
+    const unsigned int n_first = std::min<unsigned int>(first == 0 ? 2 : first, wanted);
+    check_close(name + ": types", all.mass.value(),
+                sphere_mass(0.5e-3, 1000.) * (n_first + 3. * (wanted - n_first)), 1e-12);
+    check("their number is known before", list->estimate().most_particles == wanted);
+  }
+}
+
 /// All types in a single event, and over several.
 void test_types()
 {
@@ -243,6 +282,7 @@ EUNOE_MPI_TEST()
   test_single_particle();
   test_large_particles_of_a_file();
   test_number_of_files();
+  test_repeated_list();
   test_types();
   test_acceptance();
   test_removal();

@@ -13,26 +13,45 @@ struct Lists
   std::vector<double> x, y, z, vx, vy, vz, wx, wy, wz, diameters;
 };
 
-/// Particles written into the input one by one, all of type 0, in a single event.
+/// Particles written into the input one by one, again at every event, until there are as many of
+/// a type as it has; then those of the next type. Where type 0 has no number it comes once.
 class List : public Insertion
 {
 public:
-  List(const Lists &lists, const PhysicalProperties &physics, MPI_Comm comm)
-      : p(lists), type(physics.types[0]), sizes(type.sizes.make()), comm(comm)
+  List(const Lists &lists, const bool repeats, const PhysicalProperties &physics, MPI_Comm comm)
+      : p(lists), comm(comm)
   {
+    const std::size_t n = p.x.size();
+    for (std::size_t k = 0; k < physics.types.size(); ++k) {
+      Kind kind = {static_cast<int>(k), physics.types[k], physics.types[k].sizes.make(), 0};
+      kind.number = k == 0 && kind.type.number == 0 ? n : kind.type.number;
+      n_events += events_of(kind);
+      kinds.push_back(std::move(kind));
+    }
+    if (!repeats)
+      n_events = 1;
   }
 
   double largest_diameter() const override
   {
-    double largest = p.diameters.empty() ? sizes->largest() : 0.;
+    double largest = p.diameters.empty() ? largest_of_types() : 0.;
     for (const double diameter : p.diameters)
-      largest = std::max(largest, diameter > 0. ? diameter : sizes->largest());
+      largest = std::max(largest, diameter > 0. ? diameter : largest_of_types());
     return largest;
   }
 
   bool gives_particles() const override { return true; }
 
-  std::size_t supply(std::size_t) const override { return p.x.size(); }
+  std::size_t supply(const std::size_t n) const override
+  {
+    std::size_t sum = 0, left = std::min(n, n_events);
+    for (const Kind &kind : kinds) {
+      const std::size_t of_kind = std::min(left, events_of(kind));
+      sum += std::min(of_kind * p.x.size(), kind.number);
+      left -= of_kind;
+    }
+    return sum;
+  }
 
   std::vector<Vec3> known_places() const override
   {
@@ -42,33 +61,79 @@ public:
     return places;
   }
 
-  std::vector<std::vector<NewParticle>> known_events() const override { return {particles(1)}; }
+  std::vector<std::vector<NewParticle>> known_events() const override
+  {
+    return {particles(event_of(0), 1)};
+  }
 
-  void skip(std::size_t n_events, std::size_t) override { done = n_events > 0; }
+  void skip(const std::size_t n, std::size_t) override { n_done = n; }
 
-  bool finished() const override { return done; }
+  bool finished() const override { return n_done >= n_events; }
 
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
-    done = true;
-    return particles(ids.take(p.x.size()));
+    const Event event = event_of(n_done++);
+    return particles(event, ids.take(event.number));
   }
 
 private:
-  /// This rank's share of all.
-  std::vector<NewParticle> particles(const ParticleId first) const
+  struct Kind
+  {
+    int number_of_type;
+    ParticleType type;
+    std::unique_ptr<SizeDistribution> sizes;
+    std::size_t number; ///< of particles
+  };
+
+  /// The first so many of the list, as particles of a kind.
+  struct Event
+  {
+    const Kind *kind;
+    std::size_t number;
+  };
+
+  std::size_t events_of(const Kind &kind) const
+  {
+    return (kind.number + p.x.size() - 1) / p.x.size();
+  }
+
+  Event event_of(std::size_t event) const
+  {
+    const std::size_t n = p.x.size();
+    for (const Kind &kind : kinds) {
+      if (event < events_of(kind))
+        return {&kind, std::min(n, kind.number - event * n)};
+      event -= events_of(kind);
+    }
+    return {&kinds.back(), 0};
+  }
+
+  double largest_of_types() const
+  {
+    double largest = 0.;
+    for (const Kind &kind : kinds)
+      largest = std::max(largest, kind.sizes->largest());
+    return largest;
+  }
+
+  /// This rank's share of an event.
+  std::vector<NewParticle> particles(const Event &event, const ParticleId first) const
   {
     const auto value = [](const std::vector<double> &list, std::size_t k) {
-      return list.empty() ? 0. : list[list.size() == 1 ? 0 : k];
+      return k < list.size() ? list[k] : 0.;
     };
-    const auto [begin, end] = share_of(p.x.size(), comm);
+    const ParticleType &type = event.kind->type;
+    const auto [begin, end] = share_of(event.number, comm);
     std::vector<NewParticle> share;
     for (std::size_t k = begin; k < end; ++k) {
       NewParticle particle;
       particle.id = first + static_cast<ParticleId>(k);
-      const double wanted = value(p.diameters, k);
+      particle.type = event.kind->number_of_type;
+      const double wanted = value(p.diameters, p.diameters.size() == 1 ? 0 : k);
       const double diameter =
-          wanted > 0. ? wanted : sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
+          wanted > 0.
+              ? wanted
+              : event.kind->sizes->diameter(uniform(type.sizes.seed, Draw::size, particle.id));
       particle.radius = 0.5 * diameter;
       particle.mass = sphere_mass(particle.radius, type.density);
       particle.position = {p.x[k], p.y[k], p.z[k]};
@@ -80,10 +145,9 @@ private:
   }
 
   const Lists p;
-  const ParticleType type;
-  const std::unique_ptr<SizeDistribution> sizes;
   MPI_Comm comm;
-  bool done = false;
+  std::vector<Kind> kinds;
+  std::size_t n_events = 0, n_done = 0;
 };
 
 class ListSection : public InsertionSection
@@ -100,31 +164,42 @@ public:
     for (const auto &[name, values] : entries)
       declare::list(prm, name, *values, {},
                     "list: one value a particle (SI units)" +
-                        std::string(name.size() > 6 ? ", or one for all; empty: 0, or the type's "
-                                                      "sizes."
-                                                    : "."));
+                        std::string(values == &lists.diameters
+                                        ? ", or one for all; empty: sizes of the type."
+                                    : name.size() > 6 ? "; 0 for those without one."
+                                                      : "."));
   }
 
   void check(const InsertionSettings &, const ParameterCheck &check) const override
   {
     const ParameterCheck::Path section = {InsertionParameters::section};
-    const std::vector<double> *const others[] = {&lists.y,  &lists.z,  &lists.vx,
-                                                 &lists.vy, &lists.vz, &lists.wx,
-                                                 &lists.wy, &lists.wz, &lists.diameters};
+    const std::size_t n = lists.x.size();
+    const auto fits = [&](const std::vector<double> &list, const bool ok) {
+      check.require(ok, section, "list x",
+                    "has " + std::to_string(n) + " values, another list " +
+                        std::to_string(list.size()) + ".",
+                    "Give one value a particle in every list.");
+    };
     check.require(!lists.x.empty(), section, "list x", "is empty.",
                   "Give the coordinates of at least one particle.");
-    for (std::size_t k = 0; k < std::size(others); ++k)
-      check.require(others[k]->size() == lists.x.size() || (k >= 2 && others[k]->size() <= 1),
-                    section, "list x",
-                    "has " + std::to_string(lists.x.size()) + " values, another list " +
-                        std::to_string(others[k]->size()) + ".",
-                    "Give one value a particle in every list.");
+    for (const std::vector<double> *const list : {&lists.y, &lists.z})
+      fits(*list, list->size() == n);
+    fits(lists.diameters, lists.diameters.size() == n || lists.diameters.size() <= 1);
+    for (const std::vector<double> *const list :
+         {&lists.vx, &lists.vy, &lists.vz, &lists.wx, &lists.wy, &lists.wz})
+    {
+      fits(*list, list->size() <= n);
+      check.advise(list->empty() || list->size() >= n, section, "list x",
+                   "has " + std::to_string(n) + " values, and a list of velocities " +
+                       std::to_string(list->size()) + ": the other particles have 0 there.",
+                   "Give one value a particle in every list.");
+    }
   }
 
-  std::unique_ptr<Insertion> make(const InsertionSettings &, const PhysicalProperties &physics,
-                                  MPI_Comm comm) const override
+  std::unique_ptr<Insertion> make(const InsertionSettings &settings,
+                                  const PhysicalProperties &physics, MPI_Comm comm) const override
   {
-    return std::make_unique<List>(lists, physics, comm);
+    return std::make_unique<List>(lists, settings.frequency > 0, physics, comm);
   }
 
 private:
