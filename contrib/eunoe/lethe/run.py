@@ -3,10 +3,12 @@
 Usage: contrib/tools lethe path/to/eunoe-particles path/to/lethe/examples/dem FOLDER
            [--only NAME ...] [--ranks 2] [--set ENTRY=VALUE ...]
        contrib/tools lethe path/to/eunoe-particles path/to/lethe FOLDER --first-steps 1000
+       contrib/tools lethe path/to/eunoe-particles path/to/lethe/applications_tests/lethe-particles FOLDER --last-states
 
 The inputs are copied into the folder. An example that has finished is not run again. lethe.md in the
 folder has the table. With --first-steps, every input beneath the second path goes through --check and so
-many steps, and the table says of each whether it runs, or why not.
+many steps, and the table says of each whether it runs, or why not. With --last-states it runs to its end, whose
+particles are compared with those that Lethe prints.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from pathlib import Path
 from eunoe.launch import Failure, mpirun, overrides, parser
 from eunoe.tables import Table, as_markdown
 
+from . import last_states
 from .examples import EXAMPLES, Example
 
 
@@ -67,8 +70,8 @@ def rows_of(name: str, place: Path) -> Table:
             for k, result in enumerate(example.measure(place))]
 
 
-def first_steps(path: Path, options: argparse.Namespace) -> list[str]:
-    """Whether an input passes --check and goes through its first steps."""
+def attempt(path: Path, options: argparse.Namespace) -> list[str]:
+    """Whether an input passes --check and goes through its first steps, or all of them."""
     program, name = str(Path(options.program).resolve()), path.name
     place = options.folder / path.relative_to(options.examples).parent
     # Tests of Lethe run one level beneath their files.
@@ -77,7 +80,8 @@ def first_steps(path: Path, options: argparse.Namespace) -> list[str]:
         name, place = str((place / name).resolve()), files / "run"
         place.mkdir(exist_ok=True)
     control = "simulation control/"
-    settings = overrides([control + "end control = iteration", control + f"iteration end = {options.first_steps}",
+    few = [control + "end control = iteration", control + f"iteration end = {options.first_steps}"]
+    settings = overrides([*(few if options.first_steps > 0 else ["post-processing/final state/calculation = true"]),
                           control + "output frequency = 0", "restart/checkpoint = false",
                           control + f"output path = results_{path.stem}", *options.settings])
     for words in ([program, "--check", name], [program, "--quiet", name, *settings]):
@@ -85,7 +89,11 @@ def first_steps(path: Path, options: argparse.Namespace) -> list[str]:
         if done.returncode != 0:
             problems = [line for line in done.stderr.splitlines() if line and not line.startswith("Warning")]
             return ["refused" if words[1] == "--check" else "stops", problems[0] if problems else "?"]
-    summary = json.loads((place / f"results_{path.stem}" / "summary.json").read_text(encoding="utf-8"))
+    results = place / f"results_{path.stem}"
+    if options.last_states:
+        theirs = last_states.published(path)
+        return ["runs", last_states.compared(theirs, last_states.ours(results)) if theirs else "nothing to compare"]
+    summary = json.loads((results / "summary.json").read_text(encoding="utf-8"))
     return ["runs", f"{summary['particles']} particles, {summary['lost_particles']} lost"]
 
 
@@ -97,14 +105,15 @@ def main(words: list[str]) -> int:
     arguments.add_argument("--only", nargs="+", default=list(EXAMPLES), choices=EXAMPLES, metavar="NAME")
     arguments.add_argument("--ranks", type=int, default=1)
     arguments.add_argument("--first-steps", type=int, default=0)
+    arguments.add_argument("--last-states", action="store_true")
     arguments.add_argument("--set", action="append", default=[], dest="settings", metavar="ENTRY=VALUE")
     options = arguments.parse_args(words)
-    if options.first_steps > 0:
+    if options.first_steps > 0 or options.last_states:
         if not options.folder.exists():
             shutil.copytree(options.examples, options.folder)
         table = [["input", "", ""]]
         for path in sorted(options.examples.rglob("*.prm")):
-            table.append([str(path.relative_to(options.examples)), *first_steps(path, options)])
+            table.append([str(path.relative_to(options.examples)), *attempt(path, options)])
             print(*table[-1], sep=": ", flush=True)
     else:
         options.folder.mkdir(parents=True, exist_ok=True)
