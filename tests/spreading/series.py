@@ -99,7 +99,7 @@ def stopped(series: Series) -> None:
     middle = [file for file in files if file.name > series.checkpoints("first")[-1].name]
     for late in middle[len(middle) // 2:]:
         late.unlink()
-    said = series.run("stopped", "restart/restart = auto", *MORE[1:], ranks=1)
+    said = series.run("stopped", "restart/restart = auto", *MORE[1:], ranks=2)
     expect("The newest checkpoint that is whole is" in said, said)
     expect((series.folder / "stopped.dump").read_bytes() == (series.folder / "more.dump").read_bytes(),
            "a stop within the new series changes bits")
@@ -133,9 +133,9 @@ def longer(series: Series) -> None:
 def main() -> int:
     program, case, folder = sys.argv[1:]
     series = Series(program, case, Path(folder))
-    series.run("first", ranks=2)
+    series.run("first")
     shutil.copytree(series.folder / "first", series.folder / "more")
-    series.run("more", *MORE, ranks=2)
+    series.run("more", *MORE)
     attempts = Attempts()
     for attempt in (results, stopped, longer):
         attempts.make(attempt.__name__, attempt, series)
