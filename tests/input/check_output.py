@@ -42,7 +42,8 @@ subsection insertion info
   set insertion box points coordinates = 0.005, 0.005, 0.005 : 0.015, 0.015, 0.015
 end
 """
-LIST = ["insertion info/insertion method = list", "insertion info/list x = 0.01, 0.01",
+LIST = ["lagrangian physical properties/particle type 0/number of particles = 2",
+        "insertion info/insertion method = list", "insertion info/list x = 0.01, 0.01",
         "insertion info/list y = 0.01, 0.01", "insertion info/list z = 0.01, 0.012"]
 SOLID = ["solid objects/solid surfaces/number of solids = 1",
          "solid objects/solid surfaces/solid object 0/mesh/type = shape",

@@ -254,11 +254,12 @@ EUNOE_MPI_TEST()
       "end\nsubsection DEM boundary conditions\n set number of boundary conditions = 1\n"
       " subsection boundary condition 0\n  set type = rotational\n"
       "  set rotational vector x = 0\n  set rotational vector z = 1\n end\nend\n");
-  print_problems("set dimension = 3\nsubsection insertion info\n set insertion method = list\n"
-                 " set list x = 0, 1\n set list y = 0, 0\n set list z = 0, 0\n"
-                 " set list velocity x = 0.5\nend\nsubsection restart\n set restart = true\nend\n"
-                 "subsection model parameters\n set integration method = explicit_euler\n"
-                 " subsection load balancing\n  set load balance method = dynamic\n end\nend\n");
+  print_problems(
+      "set dimension = 3\nsubsection insertion info\n set insertion method = list\n"
+      " set list x = 0, 1\n set list y = 0, 0\n set list z = 0, 0\n"
+      " set list velocity x = 0.5, 0.5\nend\nsubsection restart\n set restart = true\nend\n"
+      "subsection model parameters\n set integration method = explicit_euler\n"
+      " subsection load balancing\n  set load balance method = dynamic\n end\nend\n");
   print_problems("set dimension = 3\nsubsection simulation control\n set output frequency = 10\n"
                  "end\nsubsection insertion info\n set insertion frequency = 7\nend\n");
 }

@@ -106,7 +106,8 @@ std::string batches(const std::string &action)
       " set insertion box points coordinates = -9e-3, -9e-3, -9e-3 : 9e-3, 9e-3, 9e-3\n"
       " set insertion distance threshold = 4\nend\n" +
           model(" set lost particles = " + action +
-                "\n subsection contact detection\n  set frequency = 50\n end"));
+                "\n subsection contact detection\n  set contact detection method = constant\n"
+                "  set frequency = 50\n end"));
 }
 
 void test_insertion()

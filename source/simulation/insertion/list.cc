@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/core/log.h>
 #include <eunoe/core/random.h>
 #include <eunoe/simulation/insertion.h>
 
@@ -194,6 +195,16 @@ public:
                        std::to_string(list->size()) + ": the other particles have 0 there.",
                    "Give one value a particle in every list.");
     }
+  }
+
+  void announce(const InsertionSettings &, const PhysicalProperties &physics,
+                Log &log) const override
+  {
+    const unsigned int number = physics.types[0].number;
+    if (number > 0 && number < lists.x.size())
+      log.line("The list has " + std::to_string(lists.x.size()) +
+               " particles, of which the first " + std::to_string(number) +
+               " come at a time: that is the 'number of particles' of type 0.");
   }
 
   std::unique_ptr<Insertion> make(const InsertionSettings &settings,
