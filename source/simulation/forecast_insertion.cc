@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace eunoe {
@@ -137,11 +138,16 @@ void judge_overlap(const Overlap &overlap, const std::string &what, const FaultP
 }
 
 /// Whether the particles of one event are out of the way before the next comes into the same box.
-void judge_interval(const Parameters &parameters, const double largest_diameter, Problems &problems)
+/// @param event this rank's share of one event
+void judge_interval(const Parameters &parameters, const std::vector<NewParticle> &event,
+                    const double largest_diameter, MPI_Comm comm, Problems &problems)
 {
-  const InsertionParameters &p = parameters.insertion;
-  const double time = p.frequency * parameters.control.time_step;
-  const double way = norm(p.velocity) * time + 0.5 * norm(parameters.physics.gravity) * time * time;
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const NewParticle &particle : event)
+    slowest = std::min(slowest, norm(particle.velocity));
+  MPI_Allreduce(MPI_IN_PLACE, &slowest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  const double time = parameters.insertion.frequency * parameters.control.time_step;
+  const double way = slowest * time + 0.5 * norm(parameters.physics.gravity) * time * time;
   if (way < largest_diameter)
     problems.warn(insertion_info + " / entry 'insertion frequency':",
                   "between two events, the particles move by no more than " + format(way) +
@@ -219,9 +225,10 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
 {
   Problems &problems = forecast.problems;
   judge_number(parameters, insertion, problems);
-  if (insertion.repeats_places() && !parameters.insertion.removes &&
+  if (insertion.repeats_places() && !events.empty() && !parameters.insertion.removes &&
       number_of_events(parameters) > 1 && insertion.supply(2) > insertion.supply(1))
-    judge_interval(parameters, insertion.largest_diameter(), problems);
+    judge_interval(parameters, events[0], insertion.largest_diameter(), domain.communicator(),
+                   problems);
   Overlap of_pairs, with_solids;
   for (std::size_t e = 0; e < events.size(); ++e) {
     std::vector<NewParticle> event = events[e];

@@ -43,6 +43,8 @@ public:
 
   bool gives_particles() const override { return true; }
 
+  bool repeats_places() const override { return true; }
+
   std::size_t supply(const std::size_t n) const override
   {
     std::size_t sum = 0, left = std::min(n, n_events);
