@@ -1,3 +1,4 @@
+#include <eunoe/core/input_file.h>
 #include <eunoe/simulation/simulation.h>
 #include <eunoe/solids/crossings.h>
 
@@ -64,6 +65,22 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
                  "a mesh that moves has walls and outlets only, no surfaces that move in place nor "
                  "periodic ones, and neither a process nor insertion by 'plane'.",
                  "Give 'none', or take these out.");
+}
+
+void check_phase(const Parameters &parameters, const Problems &differences,
+                 const nlohmann::ordered_json &head, Problems &problems)
+{
+  if (parameters.process() == nullptr)
+    return;
+  std::vector<Problem> of_process;
+  for (const Problem &difference : differences.all())
+    if (difference.where.find(describe({}, "process")) == 0) {
+      problems.add(difference.where, difference.what, difference.mend);
+      return;
+    } else if (difference.where.find(describe({parameters.process_name}, "")) == 0)
+      of_process.push_back(difference);
+  if (!of_process.empty())
+    parameters.process()->check_phase(of_process, head, problems);
 }
 
 } // namespace eunoe

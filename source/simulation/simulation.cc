@@ -48,24 +48,6 @@ std::vector<std::unique_ptr<Load>> make_loads(const Parameters &parameters)
   return loads;
 }
 
-/// Asks the process whether it can go on with another input: it finds its solids and its progress
-/// by its own subsection.
-void judge_phase(const Parameters &parameters, const Problems &differences,
-                 const nlohmann::ordered_json &head, Problems &problems)
-{
-  if (parameters.process() == nullptr)
-    return;
-  std::vector<Problem> of_process;
-  for (const Problem &difference : differences.all())
-    if (difference.where.find(describe({}, "process")) == 0) {
-      problems.add(difference.where, difference.what, difference.mend);
-      return;
-    } else if (difference.where.find(describe({parameters.process_name}, "")) == 0)
-      of_process.push_back(difference);
-  if (!of_process.empty())
-    parameters.process()->check_phase(of_process, head, problems);
-}
-
 double largest_diameter(const Parameters &parameters, const Inserter &inserter)
 {
   return inserter.get_method() != nullptr ? inserter.get_method()->largest_diameter()
@@ -152,7 +134,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
   checkpoints.find(
       parameters.as_input_file(), parameters.control,
       [this](const Problems &differences, const nlohmann::ordered_json &head, Problems &found) {
-        judge_phase(parameters, differences, head, found);
+        check_phase(parameters, differences, head, found);
       },
       log, problems);
   if (const Insertion *const method = inserter.get_method();

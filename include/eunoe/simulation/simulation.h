@@ -163,6 +163,12 @@ void check_crossings(const std::vector<Solid> &solids, std::size_t n_given, Prob
 void give_materials(std::vector<Solid> &solids, const PhysicalProperties &physics,
                     Problems &problems);
 
+/// Asks the process whether it can go on with another input: it finds its solids and its progress
+/// by its own subsection.
+/// @param head of the checkpoint
+void check_phase(const Parameters &parameters, const Problems &differences,
+                 const nlohmann::ordered_json &head, Problems &problems);
+
 /// What is wrong with parameters only in the light of the made domain and the sizes of particles.
 /// @param reach least distance of two centres up to which a search must look (m)
 void check_domain(const Domain &domain, const Parameters &parameters, double reach,

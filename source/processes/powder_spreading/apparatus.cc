@@ -46,7 +46,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   const double strokes =
       p.feedstock == "full" ? p.first_stroke + (p.n_layers - 1) * p.stroke : p.first_stroke;
   bed_depth = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
-  first_bed_depth = std::max(bed_depth, strokes + p.bed_margin);
+  first_bed_depth = depth_for(strokes);
 
   const double largest_stroke =
       std::max(1., 1. + p.stroke_error) * std::max(p.first_stroke, p.stroke);

@@ -126,7 +126,7 @@ double PowderSpreading::reservoir_depth() const
     return apparatus.first_bed_depth;
   // The plates are covered, so no pass needs more powder than the others.
   const unsigned int n_strokes = p.feedstock == "full" ? p.n_layers - series.first_layer : 1;
-  return std::max(apparatus.bed_depth, n_strokes * p.stroke + p.bed_margin);
+  return apparatus.depth_for(n_strokes * p.stroke);
 }
 
 } // namespace eunoe::spreading

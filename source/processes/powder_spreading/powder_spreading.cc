@@ -51,6 +51,7 @@ void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoin
   layers->load(saved.at("layers"));
   const auto weighed = count_in<unsigned int>(saved.at("layers weighed"));
   if (saved.at("is done").get<bool>() && p.n_layers > weighed) {
+    checkpoint.require(weighed > 0, "its layers are not those of the case.");
     begin_series(simulation.time(), weighed, number_in(saved.at("last platform height")));
     return;
   }

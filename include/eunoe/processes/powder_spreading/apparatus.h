@@ -8,6 +8,7 @@
 #include <eunoe/solids/triangulated_surface.h>
 #include <eunoe/state/physical_properties.h>
 
+#include <algorithm>
 #include <array>
 
 namespace eunoe::spreading {
@@ -38,6 +39,9 @@ public:
   /// Depth of the settled bed, of the one for the first pass, and the platform's height under each.
   double bed_depth, first_bed_depth;
   ///@}
+
+  /// Depth of the bed that a reservoir needs for strokes of so much together (m).
+  double depth_for(double strokes) const { return std::max(bed_depth, strokes + p.bed_margin); }
 
   double plate_area() const { return (x_plate_end - x_plate) * depth; }
   /// Length of the path of a pass.
