@@ -139,7 +139,7 @@ def packing(folder: Path) -> list[Result]:
     """Centre of mass of the balls at rest."""
     points = points_at(folder / "output", "out")[-1][1]["points"]
     return [Result("balls", "5000", str(len(points))),
-            Result("height of their centre", "", f"{points[:, 1].mean():.4f} m")]
+            Result("height of their centre", "", f"{points[:, 2].mean():.4f} m")]
 
 
 def inside(folder: Path) -> list[Result]:
