@@ -17,7 +17,7 @@ Vec3 hit(const std::string &solid, const Vec3 &position, double dt, double time)
   Case test_case(
       box_input(dt, time, powder.input() + insertion_input({{position, {}, {}}}) + solid));
   test_case.run();
-  const Sphere s = spheres(*test_case)[0];
+  const TouchingSphere s = spheres(*test_case)[0];
   check("the solid has passed on", s.normals.empty() && test_case->get_system().n_searches() > 2);
   return s.velocity;
 }

@@ -13,7 +13,7 @@ namespace {
 const Vec3 corner = {-8e-3, -1.3e-3, -4e-3}, u = {16e-3, 0., 0.}, v = {0., 0., 8e-3};
 
 /// All spheres after every step.
-using Track = std::vector<std::vector<Sphere>>;
+using Track = std::vector<std::vector<TouchingSphere>>;
 
 Track run(const Powder &powder, const std::vector<Start> &starts, const std::string &surface)
 {
@@ -33,14 +33,14 @@ bool same_bits(const Track &a, const Track &b)
   bool same = a.size() == b.size();
   for (std::size_t step = 0; step < a.size() && same; ++step)
     for (std::size_t k = 0; k < a[step].size(); ++k) {
-      const Sphere &s = a[step][k], &t = b[step][k];
+      const TouchingSphere &s = a[step][k], &t = b[step][k];
       same = same && s.position == t.position && s.velocity == t.velocity && s.spin == t.spin &&
              s.force == t.force && s.torque == t.torque && s.memories == t.memories;
     }
   return same;
 }
 
-double largest_difference(const Track &a, const Track &b, Vec3 Sphere::*vector)
+double largest_difference(const Track &a, const Track &b, Vec3 TouchingSphere::*vector)
 {
   double largest = 0.;
   for (std::size_t step = 0; step < a.size(); ++step)
@@ -55,7 +55,7 @@ int steps_without_one_contact(const Track &track)
   // A contact is remembered from the first step on.
   return static_cast<int>(std::count_if(track.begin() + 1, track.end(), [](const auto &all) {
     return std::any_of(all.begin(), all.end(),
-                       [](const Sphere &s) { return s.normals.size() != 1; });
+                       [](const TouchingSphere &s) { return s.normals.size() != 1; });
   }));
 }
 
@@ -114,9 +114,10 @@ EUNOE_MPI_TEST()
   {
     const std::string what = std::string(" is that on ") + name;
     // Round-off of the coordinates, 1e-18 m, is 1e-12 of the overlap and so of the force.
-    check_close("path" + what, largest_difference(turned, *other, &Sphere::position), 0., 1e-15);
-    check_close("velocity" + what, largest_difference(turned, *other, &Sphere::velocity), 0.,
-                1e-12);
-    check_close("spin" + what, largest_difference(turned, *other, &Sphere::spin), 0., 2e-9);
+    check_close("path" + what, largest_difference(turned, *other, &TouchingSphere::position), 0.,
+                1e-15);
+    check_close("velocity" + what, largest_difference(turned, *other, &TouchingSphere::velocity),
+                0., 1e-12);
+    check_close("spin" + what, largest_difference(turned, *other, &TouchingSphere::spin), 0., 2e-9);
   }
 }

@@ -82,7 +82,7 @@ void rest_and_fall()
                 powder.input() + insertion_input({{{0., rest, 0.}, {}, {}}}) +
                     walls_input({{{2e-3, height, 0.}, {0., 0.01, 0.}, 0., (end + 0.5) * dt}})));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     const auto n = static_cast<int>(simulation.step_number());
     if (n <= end) {
       // A contact is remembered from the first step on.
@@ -116,7 +116,7 @@ void be_pushed()
                            powder.input() + insertion_input({{(R - overlap) * direction, {}, {}}}) +
                                walls_input({{{}, 5. * direction, (start - 0.5) * dt, 1.}})));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     if (simulation.step_number() < start)
       waits = waits && s.normals.empty() && s.force == Vec3() && s.velocity == Vec3();
     else if (simulation.step_number() == start)

@@ -35,7 +35,7 @@ void ride(const std::string &name, const std::string &belt, double height)
   Case test_case(box_input(1e-5, 2. * caught,
                            powder.input() + insertion_input({{{-4e-3, y, 0.}, {}, {}}}) + belt));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     if (simulation.time() < 0.97 * caught) {
       worst_velocity = std::max(worst_velocity, std::abs(s.velocity.x - a * simulation.time()));
       worst_spin =
@@ -43,7 +43,7 @@ void ride(const std::string &name, const std::string &belt, double height)
     } else if (simulation.time() > 1.1 * caught)
       slip = std::max(slip, std::abs(s.velocity.x + s.spin.z * powder.radius() - speed));
   });
-  const Sphere s = spheres(*test_case)[0];
+  const TouchingSphere s = spheres(*test_case)[0];
   check_close(name + ": velocity while it slips", worst_velocity / speed, 0., 1e-12);
   check_close(name + ": spin while it slips", worst_spin / speed, 0., 1e-12);
   // The elastic contact oscillates for a while when it sticks.
@@ -54,12 +54,12 @@ void ride(const std::string &name, const std::string &belt, double height)
 }
 
 /// Spheres on a floor that turns about a vertical axis.
-std::vector<std::vector<Sphere>> turn(const std::string &floor, double height)
+std::vector<std::vector<TouchingSphere>> turn(const std::string &floor, double height)
 {
   Powder powder = make_powder();
   powder.rolling_friction = 0.1;
   const double y = height + powder.radius() - powder.overlap(powder.mass() * 9.81);
-  std::vector<std::vector<Sphere>> track;
+  std::vector<std::vector<TouchingSphere>> track;
   Case test_case(box_input(1e-5, 0.02,
                            powder.input() +
                                insertion_input({{{3e-3, y, 1e-3}, {}, {}},
@@ -67,7 +67,7 @@ std::vector<std::vector<Sphere>> turn(const std::string &floor, double height)
                                floor));
   test_case.run([&](Simulation &simulation) {
     track.push_back(spheres(simulation));
-    for (Sphere &s : track.back())
+    for (TouchingSphere &s : track.back())
       s.position.y -= height;
   });
   return track;
@@ -90,12 +90,12 @@ void drum()
                          " set rotational vector = 0, 0, 1\n"
                          " set point on rotational vector = 2e-3, -0.03, 0\n")));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     if (simulation.time() < 0.97 * caught)
       worst = std::max(worst, std::abs(s.spin.z - rate * simulation.time()));
     twist = std::max(twist, std::abs(s.spin.y - 70.));
   });
-  const Sphere s = spheres(*test_case)[0];
+  const TouchingSphere s = spheres(*test_case)[0];
   check_close("drum: spin while it is taken along", worst / spin, 0., 1e-10);
   // At the end the torque changes its sign in every step.
   check_close("drum: spin in the end", s.spin.z, spin, rate * 1e-5);

@@ -17,7 +17,7 @@ void rest(const std::string &name, const Powder &powder, const Vec3 &start,
   Case test_case(
       box_input(1e-5, 0.1, powder.input() + insertion_input({{start, {}, {}}}) + surface));
   test_case.run();
-  const Sphere s = spheres(*test_case)[0];
+  const TouchingSphere s = spheres(*test_case)[0];
   check(name + ": one contact a wall", s.normals.size() == walls.size());
   const double weight = powder.mass() * norm(powder.gravity);
   check_close(name + ": at rest", norm(s.velocity), 0., 1e-6);
@@ -28,9 +28,10 @@ void rest(const std::string &name, const Powder &powder, const Vec3 &start,
   }
 }
 
-std::vector<Sphere> slide(const Powder &powder, const Start &start, const std::string &surface)
+std::vector<TouchingSphere> slide(const Powder &powder, const Start &start,
+                                  const std::string &surface)
 {
-  std::vector<Sphere> track;
+  std::vector<TouchingSphere> track;
   Case test_case(box_input(1e-5, 0.02, powder.input() + insertion_input({start}) + surface));
   test_case.run([&](Simulation &simulation) { track.push_back(spheres(simulation)[0]); });
   return track;

@@ -37,7 +37,7 @@ Result run(const Powder &powder, const Way &way, double v0)
                            powder.input() + insertion_input({{start, v0 * way.direction, spin}}) +
                                shape_input("box", "-3e-3,-2e-3,-2e-3 : 0,0,2e-3")));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     if (result.leaving_cosine < 1.)
       return;
     const double beyond = std::max(0., dot(s.position - way.end, way.direction));

@@ -88,7 +88,7 @@ void exchange_momentum(double plate_spin)
           shape_input("plane", "-4e-3,0,-4e-3 : 8e-3,0,0 : 0,0,8e-3",
                       motion_input("0; 0; 0", "0; " + text_of(plate_spin) + "; 0", centre))));
   test_case.run([&](Simulation &simulation) {
-    const Sphere s = spheres(simulation)[0];
+    const TouchingSphere s = spheres(simulation)[0];
     const Load load = load_of(simulation);
     impulse += 0.5 * dt * (load.force + last_force);
     last_force = load.force;
@@ -99,7 +99,7 @@ void exchange_momentum(double plate_spin)
     worst_torque = std::max(worst_torque, norm(torque) - 1.000001 * overlap * shear);
     largest_torque = std::max(largest_torque, norm(s.torque));
   });
-  const Sphere s = spheres(*test_case)[0];
+  const TouchingSphere s = spheres(*test_case)[0];
   check("the impact is over", s.normals.empty() && s.velocity.y > 0.05);
   const Vec3 lost = powder.mass() * (start.velocity - s.velocity);
   check_close("impulse on the plate", norm(impulse - lost) / norm(lost), 0., 1e-12);

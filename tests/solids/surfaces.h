@@ -212,7 +212,7 @@ inline std::string walls_input(const std::vector<Wall> &walls)
 }
 
 /// State of a sphere, with the memory of its contacts with solids.
-struct Sphere
+struct TouchingSphere
 {
   Vec3 position, velocity, spin, force, torque;
   std::vector<Vec3> normals;                 ///< one for each contact
@@ -220,13 +220,13 @@ struct Sphere
 };
 
 /// The spheres of a run on one rank, by id.
-inline std::vector<Sphere> spheres(Simulation &simulation)
+inline std::vector<TouchingSphere> spheres(Simulation &simulation)
 {
   const ParticleArrays &p = simulation.complete_step();
   const ContactRows rows = simulation.get_system().contact_rows();
-  std::vector<Sphere> all(p.n_owned);
+  std::vector<TouchingSphere> all(p.n_owned);
   for (std::size_t k = 0; k < p.n_owned; ++k) {
-    Sphere &s = all.at(p.id[k] - 1);
+    TouchingSphere &s = all.at(p.id[k] - 1);
     s.position = p.position[k].vec();
     s.velocity = p.velocity[k].vec();
     s.spin = p.spin[k].vec();

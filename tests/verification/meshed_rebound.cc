@@ -10,7 +10,7 @@ namespace {
 
 const Start start = {{-6e-3, -5e-3, 2e-3}, {0.07, 0.06, 0.1}, {20., 30., 40.}};
 
-Sphere bounce(const std::string &floor)
+TouchingSphere bounce(const std::string &floor)
 {
   Powder powder;
   powder.restitution = 0.6;
@@ -22,7 +22,7 @@ Sphere bounce(const std::string &floor)
   return spheres(*test_case)[0];
 }
 
-void expect_same(const std::string &name, const Sphere &a, const Sphere &b)
+void expect_same(const std::string &name, const TouchingSphere &a, const TouchingSphere &b)
 {
   check(name, a.position == b.position && a.velocity == b.velocity && a.spin == b.spin,
         "off by " + format(norm(a.position - b.position)) + " m");
@@ -32,7 +32,7 @@ void expect_same(const std::string &name, const Sphere &a, const Sphere &b)
 
 EUNOE_MPI_TEST()
 {
-  const Sphere plane = bounce(walls_input({{{}, {0., 0., 1.}}}));
+  const TouchingSphere plane = bounce(walls_input({{{}, {0., 0., 1.}}}));
   check("it rolls, far from where it started",
         plane.position.z < 0.51e-3 && norm(plane.position - start.position) > 5e-3,
         format(plane.position.x) + ", " + format(plane.position.y) + ", " +
