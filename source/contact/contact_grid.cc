@@ -114,55 +114,73 @@ private:
   std::vector<std::int32_t> start;
 };
 
-/// Places and radii in the order of cells, one array per component.
+/// What decides which particles are pairs, in the order of cells, one array per component.
 class Spheres
 {
 public:
   /// Behind the last there is room for a whole batch.
-  static constexpr unsigned int batch = 16;
+  static constexpr std::int32_t batch = 8;
 
   Spheres(const ParticleArrays &p, const std::vector<std::int32_t> &rows)
+      : rows(rows), n_owned(static_cast<std::int32_t>(p.n_owned))
   {
     for (auto *component : {&x, &y, &z, &radius})
       component->assign(rows.size() + batch, 0.);
+    id.resize(rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
       const Quad &q = p.position[rows[k]];
       x[k] = q.x;
       y[k] = q.y;
       z[k] = q.z;
       radius[k] = q.w;
+      id[k] = p.id[rows[k]];
     }
   }
 
-  /// Whether each of the spheres [first, first + batch) has a separation of less than @p reach from
-  /// sphere @p a.
-  void find_near(const std::size_t a, const std::size_t first, const double reach,
-                 const Vec3 &period, const Vec3 &half, bool *near) const
+  /// Writes the pairs of sphere @p a with those of a run that have a separation of less than
+  /// @p reach and are not both ghosts: the rows of the lower ids to @p i, of the higher ones to
+  /// @p j, which need room for as many as the run has and one more.
+  /// @return number of pairs
+  EUNOE_MULTIVERSION std::int32_t find_near(const std::size_t a, const Run &run, const double reach,
+                                            const Vec3 &period, const Vec3 &half, std::int32_t *i,
+                                            std::int32_t *j) const
   {
-    compare({x[a], y[a], z[a]}, radius[a], reach, &x[first], &y[first], &z[first], &radius[first],
-            period, half, near);
+    const double ax = x[a], ay = y[a], az = z[a], radius_a = radius[a] + reach;
+    const std::int32_t row_a = rows[a];
+    const ParticleId id_a = id[a];
+    const bool a_is_owned = row_a < n_owned;
+    std::int32_t n = 0;
+    for (std::int32_t first = run.begin; first < run.end; first += batch) {
+      alignas(64) double excess[batch];
+      const double *const bx = &x[first], *const by = &y[first], *const bz = &z[first],
+                          *const br = &radius[first];
+#pragma omp simd
+      for (std::int32_t k = 0; k < batch; ++k) {
+        const double dx = shortest_image(bx[k] - ax, half.x, period.x);
+        const double dy = shortest_image(by[k] - ay, half.y, period.y);
+        const double dz = shortest_image(bz[k] - az, half.z, period.z);
+        const double near = radius_a + br[k];
+        excess[k] = dx * dx + dy * dy + dz * dz - near * near;
+      }
+      // Without branches, which could not be foretold.
+      const std::int32_t count = std::min(batch, run.end - first);
+      for (std::int32_t k = 0; k < count; ++k) {
+        const std::int32_t row = rows[first + k];
+        const bool is_lower = id[first + k] < id_a;
+        i[n] = is_lower ? row : row_a;
+        j[n] = is_lower ? row_a : row;
+        n += static_cast<std::int32_t>(excess[k] < 0.) &
+             (static_cast<std::int32_t>(a_is_owned) | static_cast<std::int32_t>(row < n_owned));
+      }
+    }
+    return n;
   }
 
 private:
-  EUNOE_MULTIVERSION static void compare(const Vec3 &a, const double radius_a, const double reach,
-                                         const double *x, const double *y, const double *z,
-                                         const double *radius, const Vec3 &period, const Vec3 &half,
-                                         bool *near)
-  {
-    alignas(64) double excess[batch];
-#pragma omp simd
-    for (unsigned int k = 0; k < batch; ++k) {
-      const double dx = shortest_image(x[k] - a.x, half.x, period.x);
-      const double dy = shortest_image(y[k] - a.y, half.y, period.y);
-      const double dz = shortest_image(z[k] - a.z, half.z, period.z);
-      const double distance = radius_a + radius[k] + reach;
-      excess[k] = dx * dx + dy * dy + dz * dz - distance * distance;
-    }
-    for (unsigned int k = 0; k < batch; ++k)
-      near[k] = excess[k] < 0.;
-  }
-
+  const std::vector<std::int32_t> &rows;
+  const std::int32_t n_owned;
   std::vector<double> x, y, z, radius;
+  std::vector<ParticleId> id;
 };
 
 } // namespace
@@ -217,29 +235,27 @@ void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairLi
   const std::array<bool, 3> periodic = {
       {box.is_periodic(axis[0]), box.is_periodic(axis[1]), box.is_periodic(axis[2])}};
 
-  const auto n_owned = static_cast<std::int32_t>(p.n_owned);
   std::array<Run, 27> runs;
   unsigned int n_runs = 0;
   const Cell *run_cell = nullptr;
-  for (std::size_t a_place = 0; a_place < order.rows.size(); ++a_place) {
-    const std::int32_t a = order.rows[a_place];
-    if (run_cell == nullptr || *run_cell != cells[a]) {
-      n_runs = order.runs_around(cells[a], periodic, runs.data());
-      run_cell = &cells[a];
+  std::vector<std::int32_t> i, j;
+  for (std::size_t place = 0; place < order.rows.size(); ++place) {
+    const Cell &own_cell = cells[order.rows[place]];
+    if (run_cell == nullptr || *run_cell != own_cell) {
+      n_runs = order.runs_around(own_cell, periodic, runs.data());
+      run_cell = &own_cell;
+      std::size_t most = 1;
+      for (unsigned int r = 0; r < n_runs; ++r)
+        most += runs[r].end - runs[r].begin;
+      i.resize(std::max(i.size(), most));
+      j.resize(std::max(j.size(), most));
     }
-    for (unsigned int r = 0; r < n_runs; ++r)
-      for (auto first = std::max<std::int32_t>(runs[r].begin, a_place + 1); first < runs[r].end;
-           first += Spheres::batch)
-      {
-        bool near[Spheres::batch];
-        spheres.find_near(a_place, first, reach, box.length, half, near);
-        const auto count = std::min<std::int32_t>(Spheres::batch, runs[r].end - first);
-        for (std::int32_t k = 0; k < count; ++k) {
-          const std::int32_t b = order.rows[first + k];
-          if (near[k] && (a < n_owned || b < n_owned))
-            p.id[a] < p.id[b] ? pairs.push_back(a, b) : pairs.push_back(b, a);
-        }
-      }
+    std::int32_t found = 0;
+    for (unsigned int r = 0; r < n_runs; ++r) {
+      const Run rest = {std::max(runs[r].begin, static_cast<std::int32_t>(place) + 1), runs[r].end};
+      found += spheres.find_near(place, rest, reach, box.length, half, &i[found], &j[found]);
+    }
+    pairs.append(i.data(), j.data(), found);
   }
 }
 

@@ -154,58 +154,99 @@ unsigned int Forest::owner(const Place &place) const
   return static_cast<unsigned int>(next - begin) - 1;
 }
 
-template <typename Look>
-void Forest::look_around(const Cell &cell, const Look &look) const
+std::vector<Forest::Cube> Forest::coarse_cells(const Place &begin, const Place &end) const
 {
-  const int size = 1 << (n_levels - static_cast<unsigned int>(cell->level()));
-  Place begin;
+  // First the ranges along each axis, cut at the ends of the domain or continued behind them.
+  std::array<std::set<int>, 3> along;
   for (unsigned int d = 0; d < 3; ++d)
-    begin[d] = static_cast<int>(std::lround((cell->vertex(0)[d] - lower[d]) / width[d]));
-  for (unsigned int corner = 0; corner < 8; ++corner)
-    for (unsigned int side = 0; side < 8; ++side) {
-      if ((corner ^ side) == 7)
-        continue; // Within the cell itself.
-      Place place;
-      bool exists = true;
-      for (unsigned int d = 0; d < 3; ++d) {
-        const int n = n_coarse[d] << n_levels;
-        const int at =
-            begin[d] + ((corner >> d & 1) != 0 ? size : 0) - ((side >> d & 1) != 0 ? 0 : 1);
-        place[d] = box.is_periodic(d) ? (at + n) % n : at;
-        exists = exists && place[d] >= 0 && place[d] < n;
-      }
-      if (exists)
-        look(find(place));
-    }
+    for (int c = begin[d] >> n_levels; c << n_levels < end[d]; ++c)
+      if (box.is_periodic(d))
+        along[d].insert((c % n_coarse[d] + n_coarse[d]) % n_coarse[d]);
+      else if (c >= 0 && c < n_coarse[d])
+        along[d].insert(c);
+  std::vector<Cube> cubes;
+  for (const int x : along[0])
+    for (const int y : along[1])
+      for (const int z : along[2])
+        cubes.push_back({{{x << n_levels, y << n_levels, z << n_levels}}, 1 << n_levels});
+  return cubes;
 }
 
-std::vector<std::vector<Forest::ForeignCell>> Forest::foreign_neighbours() const
+bool Forest::overlap(const Cube &cube, const Place &begin, const Place &end) const
+{
+  for (unsigned int d = 0; d < 3; ++d) {
+    const int n = n_coarse[d] << n_levels;
+    bool some = false;
+    for (const int shift : {-n, 0, n})
+      some = some || ((shift == 0 || box.is_periodic(d)) && cube.first[d] + shift < end[d] &&
+                      cube.first[d] + shift + cube.size > begin[d]);
+    if (!some)
+      return false;
+  }
+  return true;
+}
+
+std::vector<Forest::ForeignCell> Forest::foreign_near(const ActiveCell &cell, const double reach,
+                                                      const unsigned int own_rank) const
+{
+  const int size = 1 << (n_levels - static_cast<unsigned int>(cell->level()));
+  Place begin, end;
+  for (unsigned int d = 0; d < 3; ++d) {
+    const int first = static_cast<int>(std::lround((cell->vertex(0)[d] - lower[d]) / width[d]));
+    const int ring = static_cast<int>(std::ceil(reach / width[d]));
+    begin[d] = first - ring;
+    end[d] = first + size + ring;
+  }
+  std::vector<ForeignCell> found;
+  std::vector<Cube> cubes = coarse_cells(begin, end);
+  while (!cubes.empty()) {
+    const Cube cube = cubes.back();
+    cubes.pop_back();
+    if (!overlap(cube, begin, end))
+      continue;
+    Place last = cube.first;
+    for (int &coordinate : last)
+      coordinate += cube.size - 1;
+    const unsigned int rank = owner(cube.first);
+    if (rank == owner(last)) {
+      // A piece of p4est's curve, so all of it has one owner.
+      if (rank != own_rank)
+        found.push_back(foreign_cell(rank, cube));
+      continue;
+    }
+    const int half = cube.size / 2;
+    for (int child = 0; child < 8; ++child)
+      cubes.push_back(
+          {{{cube.first[0] + (child & 1) * half, cube.first[1] + (child >> 1 & 1) * half,
+             cube.first[2] + (child >> 2) * half}},
+           half});
+  }
+  std::stable_sort(found.begin(), found.end(), [](const ForeignCell &one, const ForeignCell &two) {
+    return one.rank < two.rank;
+  });
+  return found;
+}
+
+Forest::ForeignCell Forest::foreign_cell(const unsigned int rank, const Cube &cube) const
+{
+  ForeignCell cell = {static_cast<int>(rank), {}, {}};
+  for (unsigned int d = 0; d < 3; ++d) {
+    cell.half[d] = 0.5 * cube.size * width[d];
+    cell.centre[d] = lower[d] + cube.first[d] * width[d] + cell.half[d];
+  }
+  return cell;
+}
+
+std::vector<std::vector<Forest::ForeignCell>> Forest::foreign_neighbours(const double reach) const
 {
   std::vector<std::vector<ForeignCell>> neighbours(triangulation.n_active_cells());
   if (triangulation.ghost_owners().empty())
     return neighbours;
-  std::vector<std::set<ActiveCell>> foreign(triangulation.n_active_cells());
+  const unsigned int rank =
+      dealii::Utilities::MPI::this_mpi_process(triangulation.get_communicator());
   for (const auto &cell : triangulation.active_cell_iterators())
     if (cell->is_locally_owned())
-      look_around(cell, [&](const ActiveCell &other) {
-        if (other->is_ghost())
-          foreign[cell->active_cell_index()].insert(other);
-      });
-    else if (cell->is_ghost())
-      look_around(cell, [&](const ActiveCell &other) {
-        if (other->is_locally_owned())
-          foreign[other->active_cell_index()].insert(cell);
-      });
-  for (std::size_t k = 0; k < foreign.size(); ++k) {
-    for (const ActiveCell &cell : foreign[k]) {
-      const Vec3 first = to_vec3(cell->vertex(0)), last = to_vec3(cell->vertex(7));
-      neighbours[k].push_back(
-          {static_cast<int>(cell->subdomain_id()), 0.5 * (first + last), 0.5 * (last - first)});
-    }
-    std::stable_sort(
-        neighbours[k].begin(), neighbours[k].end(),
-        [](const ForeignCell &one, const ForeignCell &two) { return one.rank < two.rank; });
-  }
+      neighbours[cell->active_cell_index()] = foreign_near(cell, reach, rank);
   return neighbours;
 }
 

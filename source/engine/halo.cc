@@ -122,11 +122,22 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
   int n_ranks;
   MPI_Comm_size(comm, &n_ranks);
   neighbours.clear();
+  everyone.clear();
   if (n_ranks == 1)
     return;
   send_new(particles, rows_near(particles, store, separation));
   append_received(particles, grid);
+  for (Neighbour &neighbour : neighbours)
+    neighbour.out = neighbour.in = {};
+  everyone = neighbours;
   include_sleepers();
+}
+
+void Halo::update_all(ParticleArrays &particles)
+{
+  neighbours = everyone;
+  include_sleepers();
+  update(particles);
 }
 
 void Halo::leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs)

@@ -4,9 +4,9 @@
 
 namespace eunoe {
 
-ParticleStore::ParticleStore(const Domain &domain, const double least_width,
+ParticleStore::ParticleStore(const Domain &domain, const double least_width, const double reach,
                              const unsigned int n_extra, const std::optional<FieldHandle> asleep)
-    : implementation(std::make_unique<Implementation>(domain, least_width, n_extra, asleep))
+    : implementation(std::make_unique<Implementation>(domain, least_width, reach, n_extra, asleep))
 {
 }
 
@@ -107,7 +107,7 @@ void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, cons
   // Particles that stick out of the domain are in its outermost cells.
   const Vec3 x = implementation->forest.clamp(implementation->domain.to_own_frame(position));
   ranks.clear();
-  for (const auto &cell : implementation->near_cell[implementation->cells[row]]) {
+  for (const Forest::ForeignCell &cell : implementation->near_cell[implementation->cells[row]]) {
     if (!ranks.empty() && ranks.back() == cell.rank)
       continue;
     const Vec3 away = box.shortest(x - cell.centre);

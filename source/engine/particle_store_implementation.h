@@ -55,12 +55,12 @@ struct ParticleStore::Implementation
 {
   using Handler = dealii::Particles::ParticleHandler<3>;
 
-  Implementation(const Domain &domain, double least_width, unsigned int n_extra,
+  Implementation(const Domain &domain, double least_width, double reach, unsigned int n_extra,
                  std::optional<FieldHandle> asleep)
-      : domain(domain), forest(domain, least_width), n_extra(n_extra), asleep(asleep),
+      : domain(domain), forest(domain, least_width), reach(reach), n_extra(n_extra), asleep(asleep),
         handler(forest.mesh(), forest.get_mapping(), property::extra + n_extra),
         rank(dealii::Utilities::MPI::this_mpi_process(domain.communicator())),
-        near_cell(forest.foreign_neighbours())
+        near_cell(forest.foreign_neighbours(reach))
   {
   }
 
@@ -114,7 +114,7 @@ struct ParticleStore::Implementation
     handler.prepare_for_coarsening_and_refinement();
     change(forest.mesh());
     handler.unpack_after_coarsening_and_refinement();
-    near_cell = forest.foreign_neighbours();
+    near_cell = forest.foreign_neighbours(reach);
     particles.clear();
   }
 
@@ -147,6 +147,7 @@ struct ParticleStore::Implementation
 
   const Domain &domain;
   Forest forest;
+  const double reach; ///< largest distance at which a rank's cell may need a particle (m)
   const unsigned int n_extra;
   const std::optional<FieldHandle> asleep;
   Handler handler;

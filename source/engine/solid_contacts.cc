@@ -61,6 +61,19 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
     }
 }
 
+void SolidContacts::search_again(const ParticleArrays &particles, const std::vector<Solid> &solids,
+                                 const double reach)
+{
+  const std::vector<Candidate> before = std::move(candidates);
+  const std::vector<Vec3> normals_before = std::move(normals);
+  const ContactMemory memory_before = std::move(memory);
+  search(particles, solids, reach);
+  for (const Candidate &candidate : before)
+    for (unsigned int l = 0; l < candidate.n_living; ++l)
+      restore(candidate.particle, candidate.solid, normals_before[candidate.living[l]],
+              memory_before[candidate.living[l]]);
+}
+
 std::int32_t SolidContacts::create(const Vec3 &normal)
 {
   const std::int32_t record = memory.create();

@@ -311,7 +311,10 @@ void Simulation::search()
   if (sleeper.is_enabled())
     system.stir_around_leaving(sleeper.get(), lost, clock.step());
   const auto imbalance = [this] { return system.imbalance(parameters.load_balancing); };
-  system.search(solids.list(), balancer.at_search(clock.step(), imbalance), lost);
+  const LoadBalancingParameters *const balance = balancer.at_search(clock.step(), imbalance);
+  if (balance != nullptr ||
+      !system.search_again(solids.list(), criterion.largest_displacement(), lost))
+    system.search(solids.list(), balance, lost);
   note_search();
 }
 

@@ -94,6 +94,7 @@ void Simulation::write_summary()
   summary["wall_seconds"] = progress.seconds_of_run();
   summary["share_asleep"] = progress.share_asleep(comm);
   summary["contact_searches"] = system.n_searches();
+  summary["searches_in_place"] = system.n_searches_in_place();
   summary["load_balances"] = system.n_balances();
   summary["most_squeezed_particles"] = guard.most_squeezed();
   add_balance(summary, system, domain);

@@ -11,13 +11,18 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
     array->resize(size());
   id.resize(size());
   type.resize(size());
-  awake.clear();
-  awake_rows.clear();
-  sleepers_moved2 = 0.;
+  wake_all();
   reference.resize(owned);
   extra.resize(n_extra);
   for (auto &component : extra)
     component.resize(owned);
+}
+
+void ParticleArrays::wake_all()
+{
+  awake.clear();
+  awake_rows.clear();
+  sleepers_moved2 = 0.;
 }
 
 void ParticleArrays::clear_forces_on_sleepers()

@@ -74,8 +74,10 @@ EUNOE_MPI_TEST()
   ParticleArrays p = row_of_spheres();
   PairList pairs;
   pairs.clear(model.history_size());
-  for (std::int32_t k = 0; k + 1 < static_cast<std::int32_t>(n); ++k)
-    pairs.push_back(k, k + 1);
+  for (std::int32_t k = 0; k + 1 < static_cast<std::int32_t>(n); ++k) {
+    const std::int32_t next = k + 1;
+    pairs.append(&k, &next, 1);
+  }
   for (unsigned int step = 0; step < 10; ++step)
     forces.add(p, pairs, 1e-6);
   std::size_t n_before = 0, n_after = 0;

@@ -1,7 +1,7 @@
 // The mesh that distributes the particles: its cells are as wide as asked and fill the domain;
 // every place, also on faces and outside, is owned by the rank that has its cell; and the
-// neighbours of other ranks, across periodic ends and levels, are those that an all-to-all
-// comparison of boxes finds.
+// ranks near a place, across periodic ends and levels, are those that an all-to-all comparison of
+// boxes finds.
 
 #include <eunoe/domain/mesh.h>
 #include <eunoe/engine/forest.h>
@@ -97,44 +97,73 @@ void check_owners(const Forest &forest, MPI_Comm comm)
   check("centres of places lie inside cells", dealii::Utilities::MPI::sum(outside, comm) == 0);
 }
 
-/// Whether two boxes touch, also over the periods in x and z.
-bool touch(const Forest::ActiveCell &one, const Forest::ActiveCell &other, const double depth)
+/// Distance of a place from a box, also over the periods in x and z.
+double distance(const Vec3 &place, const Forest::ForeignCell &cell, const double depth)
 {
   const double period[3] = {length, 0., depth};
-  bool touches = true;
+  double sum = 0.;
   for (unsigned int d = 0; d < 3; ++d) {
-    bool here = false;
+    double least = std::numeric_limits<double>::max();
     for (const int image : {-1, 0, 1})
-      here = here || std::abs(one->center()[d] - other->center()[d] + image * period[d]) <=
-                         0.5 * (one->extent_in_direction(d) + other->extent_in_direction(d)) + 1e-9;
-    touches = touches && here;
+      least = std::min(least, std::max(0., std::abs(place[d] - cell.centre[d] + image * period[d]) -
+                                               cell.half[d]));
+    sum += least * least;
   }
-  return touches;
+  return std::sqrt(sum);
 }
 
-void check_neighbours(const Forest &forest, double depth, MPI_Comm comm)
+std::set<int> ranks_near(const Vec3 &place, const std::vector<Forest::ForeignCell> &cells,
+                         const double reach, const double depth)
 {
-  using Known = std::set<std::array<double, 4>>;
+  std::set<int> ranks;
+  for (const Forest::ForeignCell &cell : cells)
+    if (distance(place, cell, depth) <= reach)
+      ranks.insert(cell.rank);
+  return ranks;
+}
+
+/// The cells of all other ranks.
+std::vector<Forest::ForeignCell> cells_of_others(const Forest &forest, MPI_Comm comm)
+{
+  std::vector<std::array<double, 6>> own;
+  for (const auto &cell : forest.mesh().active_cell_iterators())
+    if (cell->is_locally_owned()) {
+      const Vec3 first = to_vec3(cell->vertex(0)), last = to_vec3(cell->vertex(7));
+      own.push_back({{first.x, first.y, first.z, last.x, last.y, last.z}});
+    }
+  const auto all = dealii::Utilities::MPI::all_gather(comm, own);
+  const auto rank = static_cast<std::size_t>(dealii::Utilities::MPI::this_mpi_process(comm));
+  std::vector<Forest::ForeignCell> others;
+  for (std::size_t r = 0; r < all.size(); ++r)
+    for (const auto &[x0, y0, z0, x1, y1, z1] : all[r])
+      if (r != rank)
+        others.push_back({static_cast<int>(r),
+                          {0.5 * (x0 + x1), 0.5 * (y0 + y1), 0.5 * (z0 + z1)},
+                          {0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.5 * (z1 - z0)}});
+  return others;
+}
+
+/// Ranks that own something near the corners and the centre of each cell, beside the definition.
+void check_neighbours(const Forest &forest, const double reach, const double depth, MPI_Comm comm)
+{
   std::size_t wrong = 0, n = 0;
-  const auto neighbours = forest.foreign_neighbours();
+  const auto neighbours = forest.foreign_neighbours(reach);
+  const std::vector<Forest::ForeignCell> others = cells_of_others(forest, comm);
   for (const auto &cell : forest.mesh().active_cell_iterators()) {
     if (!cell->is_locally_owned())
       continue;
-    Known found, expected;
-    for (const Forest::ForeignCell &near : neighbours[cell->active_cell_index()])
-      found.insert({{static_cast<double>(near.rank), near.centre.x, near.centre.y, near.centre.z}});
-    for (const auto &other : forest.mesh().active_cell_iterators())
-      if (other->is_ghost() && touch(cell, other, depth)) {
-        const Vec3 centre = 0.5 * (to_vec3(other->vertex(0)) + to_vec3(other->vertex(7)));
-        expected.insert(
-            {{static_cast<double>(other->subdomain_id()), centre.x, centre.y, centre.z}});
-      }
-    wrong += found != expected;
-    n += expected.size();
+    std::vector<Vec3> places = {to_vec3(cell->center())};
+    for (const unsigned int v : cell->vertex_indices())
+      places.push_back(to_vec3(cell->vertex(v)));
+    for (const Vec3 &place : places) {
+      const std::set<int> expected = ranks_near(place, others, reach, depth);
+      wrong += ranks_near(place, neighbours[cell->active_cell_index()], reach, depth) != expected;
+      n += expected.size();
+    }
   }
   const bool is_alone = dealii::Utilities::MPI::n_mpi_processes(comm) == 1;
-  check("neighbours of other ranks", dealii::Utilities::MPI::sum(wrong, comm) == 0 &&
-                                         (dealii::Utilities::MPI::sum(n, comm) > 0) == !is_alone);
+  check("ranks near", dealii::Utilities::MPI::sum(wrong, comm) == 0 &&
+                          (dealii::Utilities::MPI::sum(n, comm) > 0) == !is_alone);
 }
 
 } // namespace
@@ -157,6 +186,7 @@ EUNOE_MPI_TEST()
     check("levels", n_levels == n_levels_wanted, std::to_string(n_levels));
     check_cells(forest, least_width, depth, comm);
     check_owners(forest, comm);
-    check_neighbours(forest, depth, comm);
+    for (const double reach : {0.9 * least_width, 2.3 * least_width})
+      check_neighbours(forest, reach, depth, comm);
   }
 }

@@ -29,10 +29,16 @@ struct PairList
 
   void clear(unsigned int n_history)
   {
+    clear_pairs();
+    memory.clear(n_history);
+  }
+
+  /// Keeps the memory.
+  void clear_pairs()
+  {
     i.clear();
     j.clear();
     record.clear();
-    memory.clear(n_history);
     some_sleep = false;
     awake.clear();
   }
@@ -49,11 +55,12 @@ struct PairList
       }
   }
 
-  void push_back(std::int32_t a, std::int32_t b)
+  /// Appends @p n pairs, out of reach as yet.
+  void append(const std::int32_t *first, const std::int32_t *second, const std::size_t n)
   {
-    i.push_back(a);
-    j.push_back(b);
-    record.push_back(ContactMemory::none);
+    i.insert(i.end(), first, first + n);
+    j.insert(j.end(), second, second + n);
+    record.insert(record.end(), n, ContactMemory::none);
   }
 };
 

@@ -51,15 +51,15 @@ public:
     return static_cast<unsigned int>(cell->level()) >= n_levels;
   }
 
-  /// A cell of another rank: its owner and its box.
+  /// A cube of lattice cells that another rank owns.
   struct ForeignCell
   {
     int rank;
     Vec3 centre, half; ///< (m)
   };
-  /// What others own around each cell of this rank, across periodic ends, too: by active cell
-  /// index, ordered by rank.
-  std::vector<std::vector<ForeignCell>> foreign_neighbours() const;
+  /// What others own within @p reach (m) of each cell of this rank, across periodic ends, too: by
+  /// active cell index, ordered by rank.
+  std::vector<std::vector<ForeignCell>> foreign_neighbours(double reach) const;
 
   /// The nearest point of the box around the domain; in periodic directions every point is in it.
   Vec3 clamp(Vec3 x) const;
@@ -71,10 +71,21 @@ public:
 private:
   /// Index of the coarse cell that holds a place.
   int coarse_cell(const Place &place) const;
-  /// Calls @p look for the cells around the corners of a cell. Of two cells that touch, one has a
-  /// corner of the other in its boundary.
-  template <typename Look>
-  void look_around(const Cell &cell, const Look &look) const;
+
+  /// Lattice cells that a cell of the forest would hold.
+  struct Cube
+  {
+    Place first;
+    int size; ///< along each axis, a power of two
+  };
+  /// The coarse cells of a box of the lattice, which may stick out of it: [begin, end).
+  std::vector<Cube> coarse_cells(const Place &begin, const Place &end) const;
+  /// Whether a cube, or one of its images across periodic ends, has cells of such a box.
+  bool overlap(const Cube &cube, const Place &begin, const Place &end) const;
+  ForeignCell foreign_cell(unsigned int rank, const Cube &cube) const;
+  /// What others own within @p reach (m) of a cell, ordered by rank.
+  std::vector<ForeignCell> foreign_near(const ActiveCell &cell, double reach,
+                                        unsigned int own_rank) const;
 
   const PeriodicBox box;
   const Vec3 lower, upper;

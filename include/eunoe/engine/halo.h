@@ -18,9 +18,13 @@ public:
   explicit Halo(MPI_Comm comm) : comm(comm) {}
 
   /// Appends the ghosts to freshly read arrays, ordered by (cell of @p grid, id); collective.
-  /// @param separation up to which pairs are listed (m)
+  /// @param separation up to which particles become ghosts (m)
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double separation);
+
+  /// Brings all ghosts of the last `build` up to date, and receives all of them from now on;
+  /// collective.
+  void update_all(ParticleArrays &particles);
 
   /// From now on receives only ghosts of pairs, about half of them; collective.
   void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
@@ -63,7 +67,8 @@ private:
   void exchange(int tag);
 
   MPI_Comm comm;
-  std::vector<Neighbour> neighbours;
+  std::vector<Neighbour> neighbours; ///< with the ghosts of pairs
+  std::vector<Neighbour> everyone;   ///< with all ghosts
 };
 
 } // namespace eunoe

@@ -20,10 +20,11 @@ struct LoadBalancingParameters;
 class ParticleStore
 {
 public:
-  /// @param least_width of the mesh's cells (m): how far particles can meet the centres of others
+  /// @param least_width of the mesh's cells (m)
+  /// @param reach largest one that `ranks_near` is asked for (m)
   /// @param n_extra doubles per particle beside those of the engine
   /// @param asleep field that is not 0 for sleepers; none: nobody sleeps
-  ParticleStore(const Domain &domain, double least_width, unsigned int n_extra,
+  ParticleStore(const Domain &domain, double least_width, double reach, unsigned int n_extra,
                 std::optional<FieldHandle> asleep);
   ~ParticleStore();
 
@@ -67,7 +68,7 @@ public:
   void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &origins);
 
   /// Ranks that need a copy of an owned particle by its row in the last `read`: those that own a
-  /// neighbour of its cell, across periodic faces too, within reach.
+  /// place within reach, across periodic faces too.
   /// @param position of the particle as it was read
   /// @param reach distance up to which it can meet the centres of others (m)
   /// @param ranks ascending

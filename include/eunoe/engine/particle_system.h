@@ -59,6 +59,14 @@ public:
   void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
               const std::vector<std::size_t> &lost = {});
 
+  /// Rebuilds the lists of the particles on the ranks and in the rows that they have, which costs
+  /// half as much and gives the same bits. Collective.
+  /// @param moved largest displacement of a particle since the last search (m)
+  /// @param lost as for `search`
+  /// @return false if only `search` will do; nothing has been done then
+  bool search_again(const std::vector<Solid> &solids, double moved,
+                    const std::vector<std::size_t> &lost);
+
   /// What is wrong with this rank's particles.
   Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const
   {
@@ -133,7 +141,9 @@ public:
     return store.imbalance(parameters);
   }
   std::uint64_t n_global() const { return store.n_global(); }
+  /// Of both kinds.
   unsigned long long n_searches() const { return searches; }
+  unsigned long long n_searches_in_place() const { return searches_in_place; }
   unsigned long long n_balances() const { return balances; }
   std::size_t n_pairs() const { return pairs.size(); }
   const SolidContacts &get_solid_contacts() const { return solid_contacts; }
@@ -166,11 +176,17 @@ private:
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
+  /// Lists the pairs of the particles' present places.
+  void list_pairs();
 
   Domain &domain;
   const ParticlePhysics physics;
   const ContactModel &model;
   const double skin, largest_diameter;
+  /// Distance from where the last `search` found them up to which the ghosts suffice (m); larger:
+  /// more ghosts, fewer of the expensive searches.
+  const double largest_drift;
+  double drift = 0.; ///< at most so far has a particle moved from there (m)
   Ledger ledger;
   Timers &timers;
   ParticleStore store;
@@ -182,7 +198,7 @@ private:
   ContactRows rows;
   const std::vector<double> extra_defaults; ///< extra doubles of a new particle
   std::size_t pairs_with_room = 0;          ///< for whose contacts there is room in the memory
-  unsigned long long searches = 0, balances = 0;
+  unsigned long long searches = 0, searches_in_place = 0, balances = 0;
 };
 
 } // namespace eunoe

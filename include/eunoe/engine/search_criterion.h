@@ -46,6 +46,10 @@ public:
   /// @param moved2 square of the largest displacement on this rank (m2), NaN if any is NaN
   void ask(unsigned long long step, double moved2);
 
+  /// Of a particle since the last search, on any rank, once all have answered (m); infinite if it
+  /// is not known.
+  double largest_displacement() const { return largest; }
+
   /// Whether a search is due, once all ranks have answered; collective.
   /// @param solids which have moved, too
   bool is_due(const MovingSolids &solids);

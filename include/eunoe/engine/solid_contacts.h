@@ -34,6 +34,10 @@ public:
   /// ordered by particle and solid. All contacts are forgotten.
   void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
 
+  /// Likewise for the same particles in the same rows; every contact keeps its memory.
+  void search_again(const ParticleArrays &particles, const std::vector<Solid> &solids,
+                    double reach);
+
   /// Adds the forces and torques on the owned particles and advances the memory by @p dt.
   /// @param loads if not null, one per solid: what the particles exert is added to it
   void add_forces(ParticleArrays &particles, const std::vector<Solid> &solids, double time,

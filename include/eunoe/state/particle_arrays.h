@@ -70,6 +70,8 @@ struct ParticleArrays
   /// All are awake afterwards.
   void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
 
+  void wake_all();
+
   /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
 

@@ -1,0 +1,56 @@
+#ifndef eunoe_contact_living_contacts_h
+#define eunoe_contact_living_contacts_h
+
+#include <eunoe/contact/pair_list.h>
+
+#include <numeric>
+
+namespace eunoe {
+
+/// The contacts of a list of pairs by their first particles, so that a new list of the same
+/// particles finds what they remember.
+class LivingContacts
+{
+public:
+  /// @param n_rows number of particles
+  LivingContacts(const PairList &pairs, const std::size_t n_rows) : starts(n_rows + 1, 0)
+  {
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      if (pairs.record[k] != ContactMemory::none)
+        ++starts[pairs.i[k] + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    contacts.resize(starts.back());
+    std::vector<std::int32_t> next(starts.begin(), starts.end() - 1);
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      if (pairs.record[k] != ContactMemory::none)
+        contacts[next[pairs.i[k]]++] = {pairs.j[k], pairs.record[k]};
+  }
+
+  /// Gives the records to the same pairs of a new list.
+  void attach(PairList &pairs) const
+  {
+    const std::size_t n = pairs.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::int32_t first = pairs.i[k], second = pairs.j[k];
+      std::int32_t record = ContactMemory::none;
+      // Without branches on what is found, which could not be foretold.
+      const Contact *const end = contacts.data() + starts[first + 1];
+      for (const Contact *c = contacts.data() + starts[first]; c != end; ++c)
+        record = c->second == second ? c->record : record;
+      pairs.record[k] = record;
+    }
+  }
+
+private:
+  struct Contact
+  {
+    std::int32_t second, record;
+  };
+
+  std::vector<std::int32_t> starts;
+  std::vector<Contact> contacts;
+};
+
+} // namespace eunoe
+
+#endif
