@@ -19,8 +19,7 @@ except ImportError:
     sys.exit(77)
 
 from eunoe.benchmarks import bed, blade, table
-from eunoe.benchmarks.cases import CASES
-from eunoe.benchmarks.programs import Lammps, Liggghts, Peer, loop_seconds
+from eunoe.benchmarks.programs import CASES, Lammps, Liggghts, Peer, loop_seconds
 from eunoe.launch import Failure
 from eunoe.tables import as_markdown, as_text
 
@@ -112,7 +111,7 @@ class Bed(unittest.TestCase):
     def test_data_files(self):
         particles = bed.read()[:2]
         with tempfile.TemporaryDirectory() as folder:
-            bed.write_for_peer(Path(folder) / "data", particles, (4e-3, 6e-3, 1e-3), "Atoms")
+            bed.write_for_peer(Path(folder) / "data", particles, (4e-3, 6e-3, 1e-3), 4386., "Atoms")
             lines = (Path(folder) / "data").read_text().splitlines()
             bed.write_for_eunoe(Path(folder) / "csv", particles)
             table_lines = (Path(folder) / "csv").read_text().splitlines()
@@ -142,7 +141,7 @@ class Runs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             results = Path(folder) / "results.json"
             page = Path(folder) / "results.md"
-            done = self.run_it("--cases", "bed_20k,collapse,plough", "--ranks", "1", "--repeats",
+            done = self.run_it("--cases", "bed_20k,collapse,plough,soft_column", "--ranks", "1", "--repeats",
                                "1", "--steps", "3", "--shares", "--json", str(results),
                                "--markdown", str(page))
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -150,7 +149,7 @@ class Runs(unittest.TestCase):
             self.assertIn("| case | ranks | Eunoe |", page.read_text())
             self.assertEqual("NOT COMPARED" in page.read_text(), bool(data["missing_peers"]))
         installed = {peer.name for peer in (Lammps(), Liggghts()) if peer.path}
-        self.assertEqual(len(data["speeds"]), 3)
+        self.assertEqual(len(data["speeds"]), 4)
         for row in data["speeds"]:
             self.assertEqual(set(row["speeds"]), installed | {"Eunoe"})
             self.assertEqual(row["ratio"] is None, not installed)

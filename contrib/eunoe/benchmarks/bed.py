@@ -48,12 +48,12 @@ def write_for_eunoe(path: Path, bed: np.ndarray) -> None:
                header="p_x; p_y; p_z; diameters", comments="")
 
 
-def write_for_peer(path: Path, bed: np.ndarray, size: tuple[float, float, float],
+def write_for_peer(path: Path, bed: np.ndarray, size: tuple[float, float, float], density: float,
                    style: str) -> None:
     """A data file for LAMMPS (style 'Atoms # sphere') or LIGGGHTS ('Atoms'); `size` of the box
-    (m)."""
+    (m), `density` of the particles (kg/m3)."""
     with open(path, "w", encoding="utf-8") as file:
         file.write(f"settled bed\n\n{len(bed)} atoms\n1 atom types\n\n0 {size[0]} xlo xhi\n"
-                   f"-1e-4 {size[1]} ylo yhi\n0 {size[2]} zlo zhi\n\n{style}\n\n")
+                   f"{-0.02 * size[1]} {size[1]} ylo yhi\n0 {size[2]} zlo zhi\n\n{style}\n\n")
         rows = np.column_stack((np.arange(1, len(bed) + 1), bed))
-        np.savetxt(file, rows, fmt=f"%d 1 %.9e {DENSITY} %.12e %.12e %.12e")
+        np.savetxt(file, rows, fmt=f"%d 1 %.9e {density} %.12e %.12e %.12e")

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+
+import numpy as np
+
 from . import bed
 
 
@@ -22,27 +25,38 @@ class Case:
     length: float = bed.LENGTH
     plough: bool = False
     peers: bool = True
+    deck: str = ""  # how the names of the other programs' decks begin
+    density: float = bed.DENSITY  # kg/m3
+    time_step: float = 2.816e-7  # s, that of prm/spreading/parts/model.prm
+    skins: tuple[float, ...] = (1e-5,)  # m, of the other programs' lists, which take the best
 
     @property
     def depth(self) -> float:
         return self.copies * bed.PERIOD
 
     @property
+    def box(self) -> tuple[float, float, float]:
+        """Its size (m)."""
+        return self.length, bed.HEIGHT, self.depth
+
+    def particles(self) -> np.ndarray:
+        """Columns diameter, x, y, z (m)."""
+        return bed.read(self.copies)
+
+    @property
     def collapse(self) -> bool:
         return self.length > bed.LENGTH
 
-    def mesh(self) -> tuple[str, int]:
-        """Arguments of Eunoe's background mesh and how often it is refined: as in settled_bed.prm,
-        mesh cells of 1 mm that are cut twice. This gives ranks compact parts of the mesh."""
-        cells = ", ".join(str(round(1e3 * size)) for size in (self.length, bed.HEIGHT, self.depth))
-        return f"{cells} : 0, 0, 0 : {self.length}, {bed.HEIGHT}, {self.depth} : true", 2
+    def mesh(self) -> str:
+        """Arguments of Eunoe's mesh, a single cell."""
+        return f"1, 1, 1 : 0, 0, 0 : {', '.join(str(size) for size in self.box)} : true"
 
 
-CASES = {case.name: case for case in (
+BEDS = (
     Case("bed_20k", "settled bed, 20,000", "settled_bed.prm", 2000),
     Case("bed_200k", "settled bed, 200,000", "settled_bed.prm", 400, copies=10),
     Case("bed_1M", "settled bed, 1,000,000", "settled_bed.prm", 100, copies=50),
     Case("collapse", "column collapse, 20,000", "column_collapse.prm", 10000, length=16e-3),
     Case("plough", "plough, 20,000", "plough.prm", 10000, plough=True),
     Case("two_passes", "two passes of spreading", "two_passes.prm", 0, peers=False),
-)}
+)

@@ -24,8 +24,7 @@ from eunoe.tables import as_markdown, read_rows
 from eunoe.vtk_files import read_pvd, read_vtu
 
 from . import bed
-from .cases import CASES
-from .programs import TIME_STEP, Eunoe, Lammps, add_program
+from .programs import CASES, Eunoe, Lammps, add_program
 
 CASE = CASES["collapse"]
 PHYSICS = ("model parameters/particle particle contact force method = hertz_mindlin_limit_overlap",
@@ -144,7 +143,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     options = arguments.parse_args(words)
     if options.seeds < 2 or options.samples < 1:
         raise Failure("Give at least 2 seeds and 1 sample.")
-    options.every = max(1, round(options.time / TIME_STEP / options.samples))
+    options.every = max(1, round(options.time / CASE.time_step / options.samples))
     options.steps = options.every * options.samples
     return options
 
@@ -173,7 +172,7 @@ def compute(options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
 def main(words: list[str]) -> int:
     options = parse(words)
     ours, theirs = compute(options)
-    times = TIME_STEP * options.every * np.arange(options.samples + 1)
+    times = CASE.time_step * options.every * np.arange(options.samples + 1)
     if options.keep:
         np.savez(options.keep, times=times, eunoe=ours, lammps=theirs)
     if options.figure:

@@ -15,14 +15,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from eunoe.launch import Failure, mpirun, output_of, overrides
-from eunoe.repository import BENCHMARKS, CASES, PROGRAM
+from eunoe.repository import BENCHMARKS, PROGRAM
+from eunoe.repository import CASES as INPUTS
 
 from . import bed, blade
-from .cases import Case
+from .cases import BEDS, Case
+from .soft_column import SoftColumn
 
-TIME_STEP = 2.816e-7  # s, that of prm/spreading/parts/model.prm
+CASES = {case.name: case for case in (
+    *BEDS, SoftColumn("soft_column", "collapse of soft grains, 37,800", "soft_column.prm", 8000))}
 MEASURE_RSS = Path(__file__).with_name("measure_rss.py")
-SKIN = 1e-5           # m, of the other programs' lists; in Eunoe the skin is a tenth of a diameter
 
 
 @dataclass
@@ -64,16 +66,14 @@ class Eunoe:
             settings: tuple[str, ...] = (), particles=None) -> Run:
         if case.peers:
             if particles is None:
-                particles = bed.read(case.copies)
+                particles = case.particles()
             bed.write_for_eunoe(folder / "bed.csv", particles)
-            arguments, refinement = case.mesh()
             settings += (f"insertion info/list of input files = {folder / 'bed.csv'}",
-                         f"mesh/grid arguments = {arguments}",
-                         f"mesh/initial refinement = {refinement}",
+                         f"mesh/grid arguments = {case.mesh()}", "mesh/initial refinement = 0",
                          f"simulation control/iteration end = {steps}")
         for old in folder.glob("rss.*"):
             old.unlink()
-        summary = self.compute(CASES / "benchmarks" / case.input, settings, ranks, folder,
+        summary = self.compute(INPUTS / "benchmarks" / case.input, settings, ranks, folder,
                                [sys.executable, str(MEASURE_RSS), str(folder / "rss")])
         memory = sum(float(file.read_text()) for file in folder.glob("rss.*"))
         return Run(summary["particle_steps_per_second"], summary, memory)
@@ -107,19 +107,19 @@ class Peer:
         self.path = shutil.which(self.executable)
 
     def run(self, case: Case, ranks: int, steps: int, folder: Path) -> Run:
-        particles = bed.read(case.copies)
-        log = self.start(case, particles, ranks, {"steps": steps, "every": 1000}, folder)
-        return Run(len(particles) * steps / loop_seconds(log, self.name))
+        particles = case.particles()
+        logs = [self.start(case, particles, ranks, {"steps": steps, "every": 1000, "skin": skin}, folder)
+                for skin in case.skins]
+        return Run(len(particles) * steps / min(loop_seconds(log, self.name) for log in logs))
 
     def start(self, case: Case, particles, ranks: int, variables: dict, folder: Path) -> str:
         """Runs the deck and returns its log."""
-        bed.write_for_peer(folder / "bed.data", particles, (case.length, bed.HEIGHT, case.depth),
-                           self.atoms)
-        values = {"data": folder / "bed.data", "timestep": TIME_STEP, "skin": SKIN,
+        bed.write_for_peer(folder / "bed.data", particles, case.box, case.density, self.atoms)
+        values = {"data": folder / "bed.data", "timestep": case.time_step, "skin": case.skins[0],
                   "plough": int(case.plough), "speed": blade.SPEED,
                   **self.variables(case, folder), **variables}
         options = [word for name, value in values.items() for word in ("-var", name, str(value))]
-        deck = BENCHMARKS / "decks" / self.deck
+        deck = BENCHMARKS / "decks" / f"{case.deck}{self.deck}"
         return output_of([*mpirun(ranks), self.path or self.executable, "-in", str(deck), *options], folder)
 
 

@@ -26,9 +26,9 @@ from statistics import median
 from eunoe.launch import Failure, parser, rank_numbers
 from eunoe.tables import Table, as_markdown, as_text
 
-from . import bed, machine, table
-from .cases import CASES, Case
-from .programs import Eunoe, Lammps, Liggghts, Run, add_program
+from . import machine, table
+from .cases import Case
+from .programs import CASES, Eunoe, Lammps, Liggghts, Run, add_program
 
 PEERS = {"lammps": Lammps, "liggghts": Liggghts}
 
@@ -98,7 +98,7 @@ def memory_row(case: Case, ranks: int, runs: list[Run], eunoe: Eunoe) -> list[st
     if not case.peers:
         return [*row, "-", "-"]
     with tempfile.TemporaryDirectory(prefix="eunoe_benchmark_") as folder:
-        empty = eunoe.run(case, ranks, 1, Path(folder), particles=bed.read()[:100]).memory
+        empty = eunoe.run(case, ranks, 1, Path(folder), particles=case.particles()[:100]).memory
     return [*row, f"{empty / 2**20:.0f} MiB", f"{(total - empty) / n:.0f} B"]
 
 
