@@ -79,12 +79,17 @@ void ParticleSystem::save(CheckpointWriter &writer) const
   SavedLayout::write(writer.head, physics.fields, physics.model, physics.wall_model);
 }
 
+int ParticleSystem::outlet_passed(const double *const row) const
+{
+  return domain.passed_outlet(get(row + reference), get(row + position));
+}
+
 void ParticleSystem::check_guests(const Rows &rows, const std::string &path) const
 {
   std::uint64_t n_outside = 0;
   double largest[2] = {0., 0.}; // type, radius
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    n_outside += domain.contains(get(rows[k] + position)) ? 0 : 1;
+    n_outside += domain.contains(get(rows[k] + position)) || outlet_passed(rows[k]) >= 0 ? 0 : 1;
     largest[0] = std::max(largest[0], rows[k][type]);
     largest[1] = std::max(largest[1], rows[k][radius]);
   }
@@ -149,6 +154,12 @@ std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
   std::vector<Origin> kept;
   for (std::size_t k = 0; k < share.size(); ++k) {
     const double *const row = share[k];
+    // A run may end before those are taken out that have passed an outlet.
+    if (const int outlet = begins_phase ? outlet_passed(row) : -1; outlet >= 0) {
+      if (keeps_ledger)
+        ledger.through_outlet[outlet].count(row[mass]);
+      continue;
+    }
     NewParticle particle;
     particle.id = static_cast<ParticleId>(row[id]);
     particle.type = static_cast<int>(row[type]);

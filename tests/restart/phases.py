@@ -164,6 +164,59 @@ def found_nearby(program: Program) -> None:
            "are in several folders: ", "Name one as 'restart folder'.")
 
 
+# A grain that flies through an outlet between two searches, and one that stays.
+LEAVING = """
+subsection simulation control
+  set end control   = iteration
+  set time step     = 1e-5
+  set iteration end = 50
+end
+subsection mesh
+  set grid type      = subdivided_hyper_rectangle
+  set grid arguments = 1, 1, 1 : 0, 0, 0 : 1e-2, 1e-2, 1e-2 : true
+end
+subsection DEM boundary conditions
+  set number of boundary conditions = 1
+  subsection boundary condition 0
+    set type        = outlet
+    set boundary id = 1
+  end
+end
+subsection lagrangian physical properties
+  set g = 0, 0, 0
+  subsection particle type 0
+    set diameter            = 1e-3
+    set number of particles = 2
+  end
+end
+subsection model parameters
+  subsection contact detection
+    set neighborhood threshold = 3
+  end
+end
+subsection insertion info
+  set insertion method = list
+  set list x           = 9.8e-3, 2e-3
+  set list y           = 5e-3, 5e-3
+  set list z           = 5e-3, 5e-3
+  set list velocity x  = 1, 0
+  set list velocity y  = 0, 0
+  set list velocity z  = 0, 0
+end
+"""
+
+
+def leaving(program: Program) -> None:
+    (program.folder / "leaving.prm").write_text(LEAVING, encoding="utf-8")
+    program.run("leaving.prm", "restart/checkpoint = true", OUTPUT + "leaving")
+    if program.summary("leaving")["particles"] != 2:
+        raise Failure("the grain that leaves is gone before the phase begins, so nothing is tested")
+    program.run("leaving.prm", CONTINUE, "restart/restart folder = leaving", END + "60", OUTPUT + "left",
+                "lagrangian physical properties/g = 0, -1, 0")
+    if program.summary("left")["particles"] != 1:
+        raise Failure(f"{program.summary('left')['particles']} grains instead of one")
+
+
 def refused(program: Program) -> None:
     start = (*LOAD[1:], CONTINUE, "restart/restart folder = load", OUTPUT + "refused")
     kind = "lagrangian physical properties/"
@@ -186,7 +239,8 @@ def main() -> int:
     program = Program(sys.argv[1], Path(sys.argv[2]))
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
-    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, own_path, found_nearby, refused):
+    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, own_path, found_nearby, leaving,
+                    refused):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
 

@@ -152,6 +152,9 @@ public:
   ParticleArrays particles;
 
 private:
+  /// The outlet through which a particle of a checkpoint has gone since its last search, -1 if
+  /// none.
+  int outlet_passed(const double *row) const;
   /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
   /// collective.
   void check_guests(const Rows &rows, const std::string &path) const;
