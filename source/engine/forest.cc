@@ -158,8 +158,9 @@ std::vector<Forest::Cube> Forest::coarse_cells(const Place &begin, const Place &
 {
   // First the ranges along each axis, cut at the ends of the domain or continued behind them.
   std::array<std::set<int>, 3> along;
+  const int size = 1 << n_levels;
   for (unsigned int d = 0; d < 3; ++d)
-    for (int c = begin[d] >> n_levels; c << n_levels < end[d]; ++c)
+    for (int c = begin[d] >> n_levels; c * size < end[d]; ++c)
       if (box.is_periodic(d))
         along[d].insert((c % n_coarse[d] + n_coarse[d]) % n_coarse[d]);
       else if (c >= 0 && c < n_coarse[d])
@@ -168,7 +169,7 @@ std::vector<Forest::Cube> Forest::coarse_cells(const Place &begin, const Place &
   for (const int x : along[0])
     for (const int y : along[1])
       for (const int z : along[2])
-        cubes.push_back({{{x << n_levels, y << n_levels, z << n_levels}}, 1 << n_levels});
+        cubes.push_back({{{x * size, y * size, z * size}}, size});
   return cubes;
 }
 

@@ -29,16 +29,10 @@ public:
   /// Gives the records to the same pairs of a new list.
   void attach(PairList &pairs) const
   {
-    const std::size_t n = pairs.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      const std::int32_t first = pairs.i[k], second = pairs.j[k];
-      std::int32_t record = ContactMemory::none;
-      // Without branches on what is found, which could not be foretold.
-      const Contact *const end = contacts.data() + starts[first + 1];
-      for (const Contact *c = contacts.data() + starts[first]; c != end; ++c)
-        record = c->second == second ? c->record : record;
-      pairs.record[k] = record;
-    }
+    for (std::size_t k = 0; k < pairs.size(); ++k)
+      for (std::int32_t c = starts[pairs.i[k]]; c < starts[pairs.i[k] + 1]; ++c)
+        if (contacts[c].second == pairs.j[k])
+          pairs.record[k] = contacts[c].record;
   }
 
 private:
