@@ -106,7 +106,7 @@ struct Result
   std::vector<std::vector<double>> particles;
   std::vector<double> load;
   ExactSum lost;
-  unsigned long long balances;
+  unsigned long long searches, in_place;
 };
 
 /// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to matter.
@@ -136,6 +136,8 @@ const char *const all_laws = R"(
     end
 )";
 
+const std::string none = "set load balance method = none";
+
 Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
 {
   Case test_case(input(balancing) + laws +
@@ -150,17 +152,27 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
   for (const ExactSum &component : load.force)
     result.load.push_back(component.value());
   result.lost = test_case->get_ledger().through_outlet[0].global(comm).mass;
-  result.balances = test_case->get_system().n_balances();
+  const ParticleSystem &system = test_case->get_system();
+  result.searches = system.n_searches();
+  result.in_place = system.n_searches_in_place();
   return result;
 }
 
-void compare(const std::string &laws, const std::vector<const char *> &balancings)
+/// Both kinds of search must have happened for their equality to be seen.
+void check_searches(const Result &result)
+{
+  check("searches of both kinds",
+        4 * result.in_place > result.searches && result.in_place < result.searches,
+        std::to_string(result.in_place) + " of " + std::to_string(result.searches) + " in place");
+}
+
+void compare(const std::string &laws, const std::vector<std::string> &balancings)
 {
   Result alone;
   if (is_first_rank())
-    alone = run(laws, "set load balance method = none", MPI_COMM_SELF);
+    alone = run(laws, none, MPI_COMM_SELF);
   alone.particles = of_all_ranks(MPI_COMM_WORLD, alone.particles);
-  for (const char *const balancing : balancings) {
+  for (const std::string &balancing : balancings) {
     const Result together = run(laws, balancing, MPI_COMM_WORLD);
     if (!is_first_rank())
       continue;
@@ -169,6 +181,8 @@ void compare(const std::string &laws, const std::vector<const char *> &balancing
     check("the same bits", together.particles == alone.particles);
     check("the same force on the paddle",
           together.load == alone.load && std::abs(alone.load[1]) > 0.);
+    if (balancing == none)
+      check_searches(together);
     check("the same mass lost", together.lost == alone.lost && alone.lost.value() > 0.);
   }
 }
@@ -178,7 +192,7 @@ void compare(const std::string &laws, const std::vector<const char *> &balancing
 EUNOE_MPI_TEST()
 {
   const char *const frequent = "set load balance method = frequent\n set frequency = 100";
-  compare("", {"set load balance method = none", frequent,
+  compare("", {none, frequent,
                "set load balance method = dynamic\n set threshold = 0.1\n set dynamic check "
                "frequency = 50"});
   compare(all_laws, {frequent});
