@@ -1,6 +1,7 @@
 #include "particle_store_implementation.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace eunoe {
 
@@ -103,6 +104,8 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
 void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, const double reach,
                                std::vector<int> &ranks) const
 {
+  if (reach > implementation->reach)
+    throw std::logic_error("ghosts are wanted from farther away than the mesh looks");
   const PeriodicBox &box = implementation->domain.periods();
   // Particles that stick out of the domain are in its outermost cells.
   const Vec3 x = implementation->forest.clamp(implementation->domain.to_own_frame(position));
