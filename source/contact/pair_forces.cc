@@ -31,6 +31,16 @@ EUNOE_ALWAYS_INLINE void gather(const Quad *quads, const std::int32_t *rows, dou
   }
 }
 
+/// The pairs of a list that count: all, those at some places, or those that are near.
+struct Chosen
+{
+  const PairList &pairs;
+  const std::vector<std::int32_t> *places = nullptr; ///< null: all
+  bool are_near = false;                             ///< places are those of `pairs.near`
+
+  std::size_t size() const { return places != nullptr ? places->size() : pairs.size(); }
+};
+
 /// B pairs that may be within reach; those behind the first n repeat a valid one.
 struct Candidates
 {
@@ -38,33 +48,52 @@ struct Candidates
   std::int32_t place[B]; ///< in the list of pairs
   unsigned int n;
 
-  /// The pairs of the list from @p first on.
-  /// @param places of the pairs that count, null for all
-  void take(const PairList &pairs, const std::vector<std::int32_t> *places, const std::size_t first)
+  /// The pairs from @p first on.
+  void take(const Chosen &chosen, const std::size_t first)
   {
-    const std::size_t size = places != nullptr ? places->size() : pairs.size();
-    n = static_cast<unsigned int>(std::min<std::size_t>(B, size - first));
+    n = static_cast<unsigned int>(std::min<std::size_t>(B, chosen.size() - first));
+    if (n == B && chosen.places == nullptr)
+      take_all(chosen.pairs, first);
+    else if (n == B && chosen.are_near)
+      take_near(chosen.pairs, first);
+    else
+      take_some(chosen, first);
+  }
+
+private:
+  void take_all(const PairList &pairs, const std::size_t first)
+  {
     for (unsigned int k = 0; k < B; ++k)
       place[k] = static_cast<std::int32_t>(first + k);
-    if (places == nullptr && n == B) {
-      i = &pairs.i[first];
-      j = &pairs.j[first];
-      record = &pairs.record[first];
-      return;
-    }
-    for (unsigned int k = 0; k < B; ++k) {
-      const std::size_t at = std::min<std::size_t>(first + k, size - 1);
-      place[k] = places != nullptr ? (*places)[at] : static_cast<std::int32_t>(at);
-      own_i[k] = pairs.i[place[k]];
-      own_j[k] = pairs.j[place[k]];
+    i = &pairs.i[first];
+    j = &pairs.j[first];
+    record = &pairs.record[first];
+  }
+
+  void take_near(const PairList &pairs, const std::size_t first)
+  {
+    std::copy_n(&pairs.near.places[first], B, place);
+    for (unsigned int k = 0; k < B; ++k)
       own_record[k] = pairs.record[place[k]];
+    i = &pairs.near.i[first];
+    j = &pairs.near.j[first];
+    record = own_record;
+  }
+
+  void take_some(const Chosen &chosen, const std::size_t first)
+  {
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::size_t at = std::min<std::size_t>(first + k, chosen.size() - 1);
+      place[k] = chosen.places != nullptr ? (*chosen.places)[at] : static_cast<std::int32_t>(at);
+      own_i[k] = chosen.pairs.i[place[k]];
+      own_j[k] = chosen.pairs.j[place[k]];
+      own_record[k] = chosen.pairs.record[place[k]];
     }
     i = own_i;
     j = own_j;
     record = own_record;
   }
 
-private:
   std::int32_t own_i[B], own_j[B], own_record[B];
 };
 
@@ -95,6 +124,48 @@ EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidate
   }
   n_active = a;
   n_ended = e;
+}
+
+/// Appends the candidates with a separation of up to @p margin beyond reach, and those that have a
+/// contact, which may have to end.
+EUNOE_MULTIVERSION void sift(const Quad *position, const Candidates &candidates,
+                             const Period &period, const double margin, NearPairs &near)
+{
+  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj, excess;
+  gather(position, candidates.i, xi, yi, zi, ri);
+  gather(position, candidates.j, xj, yj, zj, rj);
+#pragma omp simd
+  for (unsigned int k = 0; k < B; ++k) {
+    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
+    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
+    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
+    const double reach = (ri[k] + rj[k] + margin) * (1. + NearPairs::slack);
+    excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
+  }
+  std::size_t n = near.places.size();
+  for (auto *list : {&near.places, &near.i, &near.j})
+    list->resize(n + B);
+  for (unsigned int k = 0; k < candidates.n; ++k) {
+    near.places[n] = candidates.place[k];
+    near.i[n] = candidates.i[k];
+    near.j[n] = candidates.j[k];
+    n += static_cast<unsigned int>(excess[k] <= 0.) |
+         static_cast<unsigned int>(candidates.record[k] >= 0);
+  }
+  for (auto *list : {&near.places, &near.i, &near.j})
+    list->resize(n);
+}
+
+/// Makes the list of near pairs anew.
+void find_near(const Quad *position, const Chosen &chosen, const Period &period, const double range,
+               NearPairs &near)
+{
+  const double margin = near.begin() + range;
+  Candidates candidates;
+  for (std::size_t first = 0; first < chosen.size(); first += B) {
+    candidates.take(chosen, first);
+    sift(position, candidates, period, margin, near);
+  }
 }
 
 /// Fills in the geometry and kinematics of the pairs (i[k], j[k]).
@@ -209,17 +280,16 @@ EUNOE_MULTIVERSION void scatter(const PairBlock &b, ParticleArrays &p, const std
 
 /// Walks along the list: `end(place)` is called for pairs that have a contact and are out of reach,
 /// `run(places, n)` with up to B pairs within reach at a time.
-/// @param chosen places of the pairs that count, null for all
 template <typename End, typename Run>
-void walk(const Quad *position, const PairList &pairs, const std::vector<std::int32_t> *chosen,
-          const Period &period, const double range, const End &end, const Run &run)
+void walk(const Quad *position, const Chosen &chosen, const Period &period, const double range,
+          const End &end, const Run &run)
 {
   std::int32_t active[2 * B], ended[2 * B];
-  const std::size_t n_pairs = chosen != nullptr ? chosen->size() : pairs.size();
+  const std::size_t n_pairs = chosen.size();
   unsigned int n_active = 0;
   Candidates candidates;
   for (std::size_t first = 0; first < n_pairs; first += B) {
-    candidates.take(pairs, chosen, first);
+    candidates.take(chosen, first);
     unsigned int n_ended = 0;
     select(position, candidates, period, range, active, n_active, ended, n_ended);
     for (unsigned int e = 0; e < n_ended; ++e)
@@ -288,7 +358,11 @@ void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt
     scatter(*block, particles, rows.i, rows.j, rows.ri, rows.rj);
     remember(*block, pairs.memory, record);
   };
-  walk(particles.position.data(), pairs, pairs.some_sleep ? &pairs.awake : nullptr, period,
+  const Quad *const position = particles.position.data();
+  const Chosen awake{pairs, pairs.some_sleep ? &pairs.awake : nullptr};
+  if (pairs.near.is_used() && pairs.near.is_due())
+    find_near(position, awake, period, model.range(), pairs.near);
+  walk(position, pairs.near.is_used() ? Chosen{pairs, &pairs.near.places, true} : awake, period,
        model.range(), end, run);
 }
 
@@ -320,7 +394,7 @@ void PairForces::evaluate(const ParticleArrays &particles, const PairList &pairs
             {b.torque_x[k], b.torque_y[k], b.torque_z[k]}});
   };
   walk(
-      particles.position.data(), pairs, places, period, model.range(), [](std::int32_t) {}, run);
+      particles.position.data(), {pairs, places}, period, model.range(), [](std::int32_t) {}, run);
 }
 
 } // namespace eunoe

@@ -59,6 +59,7 @@ void ParticleSystem::leave_out_sleepers()
   halo.leave_out_sleepers(particles);
   pairs.some_sleep = !particles.awake.empty();
   pairs.awake.clear();
+  pairs.near.forget();
   if (!pairs.some_sleep)
     return;
   for (std::size_t k = 0; k < pairs.size(); ++k)

@@ -32,17 +32,17 @@ void ContactDetectionParameters::check(const ParameterCheck &check) const
                 "Give a value above 1, for example 1.1.");
 }
 
-void SearchCriterion::ask(const unsigned long long step, const double moved2)
+void SearchCriterion::ask(const unsigned long long step, const Travel &travel)
 {
+  largest.fill(std::numeric_limits<double>::infinity());
   const bool is_constant = parameters.method == "constant";
   if (is_constant && step % parameters.frequency != 0)
     return;
   // Whether MPI_MAX keeps a NaN depends on the MPI library.
-  if (is_constant || std::isnan(moved2))
-    largest = std::numeric_limits<double>::infinity();
-  else
-    largest = std::sqrt(moved2);
-  MPI_Iallreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm, &answer);
+  if (!is_constant && !std::isnan(travel.moved2))
+    largest = {std::sqrt(travel.moved2), std::sqrt(travel.step2)};
+  MPI_Iallreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE,
+                 MPI_MAX, comm, &answer);
 }
 
 bool SearchCriterion::is_due(const MovingSolids &solids)
@@ -50,7 +50,7 @@ bool SearchCriterion::is_due(const MovingSolids &solids)
   if (answer == MPI_REQUEST_NULL)
     return false;
   MPI_Wait(&answer, MPI_STATUS_IGNORE);
-  return !(largest + std::max(largest, solids.moved_since_search()) <= allowed);
+  return !(largest[0] + std::max(largest[0], solids.moved_since_search()) <= allowed);
 }
 
 } // namespace eunoe

@@ -258,15 +258,15 @@ void Simulation::advance()
   clock.advance();
   move_solids();
 
-  double moved2;
+  Travel travel;
   {
     const Timers::Scope scope(progress.timers, Section::integration);
-    moved2 = integrator->begin_step(system.particles, clock.time_step());
+    travel = integrator->begin_step(system.particles, clock.time_step());
   }
   // Sleepers keep the displacement from before their sleep. NaN stays NaN.
-  if (moved2 < system.particles.sleepers_moved2)
-    moved2 = system.particles.sleepers_moved2;
-  criterion.ask(clock.step(), moved2);
+  if (travel.moved2 < system.particles.sleepers_moved2)
+    travel.moved2 = system.particles.sleepers_moved2;
+  criterion.ask(clock.step(), travel);
   const bool look_is_due = sleeper.is_look_due(clock, solids.list());
   if (!look_is_due) {
     // Done while the answers of all ranks arrive; wasted if these demand a search.
@@ -274,6 +274,7 @@ void Simulation::advance()
     system.update_ghosts();
   }
   const bool searches = criterion.is_due(solids);
+  system.note_step(criterion.largest_step());
   if (searches)
     search();
   if (look_is_due || (sleeper.is_enabled() && searches))

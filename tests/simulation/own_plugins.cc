@@ -52,14 +52,14 @@ class Syrup : public Integrator
 public:
   explicit Syrup(double share) : share(share) {}
 
-  double begin_step(ParticleArrays &p, double dt) override
+  Travel begin_step(ParticleArrays &p, double dt) override
   {
     p.for_each_awake([&](const std::size_t k) {
       p.velocity[k].add(dt / p.mass(k) * p.force[k].vec());
       p.position[k].add(share * dt * p.velocity[k].vec());
       p.force[k] = p.torque[k] = Quad();
     });
-    return 0.;
+    return {0.};
   }
   void complete(ParticleArrays &, double) override {}
 

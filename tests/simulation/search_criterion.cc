@@ -26,7 +26,7 @@ bool is_due(const ContactDetectionParameters &parameters, double moved, double s
   MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   SearchCriterion criterion(parameters, skin, MPI_COMM_WORLD);
-  criterion.ask(step, rank + 1 == n_ranks ? moved * moved : 0.);
+  criterion.ask(step, {rank + 1 == n_ranks ? moved * moved : 0.});
   return criterion.is_due(solids);
 }
 

@@ -2,6 +2,7 @@
 #define eunoe_contact_pair_list_h
 
 #include <eunoe/contact/contact_memory.h>
+#include <eunoe/contact/near_pairs.h>
 
 #include <cstdint>
 #include <vector>
@@ -24,6 +25,8 @@ struct PairList
   /// Whether some pairs are of two sleepers; `awake` are the places of all others, ascending.
   bool some_sleep = false;
   std::vector<std::int32_t> awake;
+  /// Of all, or of those that are awake.
+  NearPairs near;
 
   std::size_t size() const { return i.size(); }
 
@@ -41,6 +44,7 @@ struct PairList
     record.clear();
     some_sleep = false;
     awake.clear();
+    near.forget();
   }
 
   /// Gives back room beyond a tenth more than there is, which vectors take when they grow.

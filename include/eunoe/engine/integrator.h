@@ -20,9 +20,8 @@ public:
 
   /// Brings positions to the end of the step and sets forces and torques to zero.
   /// @param dt (s)
-  /// @return square of the largest distance of a particle that is awake from its reference position
-  ///         (m2), NaN if one of them is NaN
-  virtual double begin_step(ParticleArrays &particles, double dt) = 0;
+  /// @return how far the particles that are awake have gone
+  virtual Travel begin_step(ParticleArrays &particles, double dt) = 0;
 
   /// To be called when the forces at the end of the step are complete.
   virtual void end_step() {}

@@ -67,6 +67,9 @@ public:
   bool search_again(const std::vector<Solid> &solids, double moved,
                     const std::vector<std::size_t> &lost);
 
+  /// Particles have gone by at most @p step (m), infinite if that is not known.
+  void note_step(double step) { pairs.near.note_step(step, skin); }
+
   /// What is wrong with this rank's particles.
   Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const
   {

@@ -3,8 +3,10 @@
 
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/engine/moving_solids.h>
+#include <eunoe/state/particle_arrays.h>
 
 #include <algorithm>
+#include <array>
 
 namespace eunoe {
 
@@ -42,13 +44,15 @@ public:
   /// Largest sum of the displacements of two bodies before the next search (m).
   double allowed_displacement() const { return allowed; }
 
-  /// Asks how far particles have moved on any rank since the last search; collective.
-  /// @param moved2 square of the largest displacement on this rank (m2), NaN if any is NaN
-  void ask(unsigned long long step, double moved2);
+  /// Asks how far particles have gone on any rank; collective.
+  /// @param travel on this rank
+  void ask(unsigned long long step, const Travel &travel);
 
   /// Of a particle since the last search, on any rank, once all have answered (m); infinite if it
   /// is not known.
-  double largest_displacement() const { return largest; }
+  double largest_displacement() const { return largest[0]; }
+  /// Of a particle in this step, likewise.
+  double largest_step() const { return largest[1]; }
 
   /// Whether a search is due, once all ranks have answered; collective.
   /// @param solids which have moved, too
@@ -58,7 +62,7 @@ private:
   const ContactDetectionParameters &parameters;
   const double allowed;
   MPI_Comm comm;
-  double largest = 0.; ///< displacement of a particle since the last search, on any rank (m)
+  std::array<double, 2> largest = {}; ///< since the last search and in this step, on any rank (m)
   MPI_Request answer = MPI_REQUEST_NULL;
 };
 

@@ -5,12 +5,20 @@
 #include <eunoe/state/particle_field.h>
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace eunoe {
 
 /// Identity of a particle, unique over the whole run and never used again.
 using ParticleId = std::uint32_t;
+
+/// How far particles have gone at most: squares (m2).
+struct Travel
+{
+  double moved2; ///< from the reference positions, NaN if a place is not a number
+  double step2 = std::numeric_limits<double>::infinity(); ///< in a step, infinite if not known
+};
 
 /// The hot state of the particles that a rank computes with: those that it owns, then copies of
 /// those that its neighbours own (ghosts), each part ordered by (contact-grid cell, id). Rebuilt

@@ -7,7 +7,7 @@ namespace {
 class ExplicitEuler : public Integrator
 {
 public:
-  double begin_step(ParticleArrays &p, double dt) override
+  Travel begin_step(ParticleArrays &p, double dt) override
   {
     // A maximum ignores NaN; this sum does not.
     double largest = 0., poison = 0.;
@@ -22,7 +22,7 @@ public:
     });
     if (!p.awake.empty())
       p.clear_forces_on_sleepers();
-    return largest + poison;
+    return {largest + poison};
   }
 
   void complete(ParticleArrays &, double) override {}

@@ -1,0 +1,119 @@
+// Forces of near pairs alone equal those of the whole list, to the last bit, while particles fly
+// through each other, touch and part.
+// Reference: the whole list, looked at in every step.
+
+#include <eunoe/contact/pair_forces.h>
+#include <eunoe/core/random.h>
+
+#include "../tests.h"
+
+#include <cmath>
+
+using namespace test;
+
+namespace {
+
+constexpr std::size_t n = 300;
+constexpr double radius = 1e-3, mass = 1e-6, box = 0.03, dt = 3e-5;
+
+double draw(std::size_t row, unsigned int component)
+{
+  return uniform(1, Draw::size, row, component) - 0.5;
+}
+
+ParticleArrays cloud()
+{
+  ParticleArrays p;
+  p.resize(n, 0, 0);
+  for (std::size_t k = 0; k < n; ++k) {
+    p.position[k] = {box * draw(k, 0), box * draw(k, 1), box * draw(k, 2), radius};
+    p.velocity[k] = {draw(k, 3), draw(k, 4), draw(k, 5), mass};
+    p.spin[k] = {50. * draw(k, 6), 50. * draw(k, 7), 50. * draw(k, 8),
+                 0.4 * mass * radius * radius};
+    p.id[k] = static_cast<ParticleId>(k);
+  }
+  return p;
+}
+
+PairList all_pairs(const ContactModel &model)
+{
+  PairList pairs;
+  pairs.clear(model.history_size());
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(n); ++i)
+    for (std::int32_t j = i + 1; j < static_cast<std::int32_t>(n); ++j)
+      pairs.append(&i, &j, 1);
+  return pairs;
+}
+
+/// Moves the particles by a step; some become faster on the way.
+/// @return the largest step
+double move(ParticleArrays &p, const unsigned int step)
+{
+  double largest = 0.;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double hurry = k % 50 == 0 && step > 100 ? 5. : 1.;
+    const Vec3 way = hurry * dt * p.velocity[k].vec();
+    p.position[k].add(way);
+    largest = std::max(largest, norm(way));
+    p.force[k] = p.torque[k] = Quad();
+  }
+  return largest;
+}
+
+bool same(const std::vector<Quad> &a, const std::vector<Quad> &b)
+{
+  for (std::size_t k = 0; k < n; ++k)
+    if (!(a[k].vec() == b[k].vec()))
+      return false;
+  return true;
+}
+
+} // namespace
+
+EUNOE_MPI_TEST()
+{
+  ContactModelNames names;
+  names.rolling = "epsd";
+  Material material;
+  material.friction = 0.3;
+  const ContactModel model(Materials({material}, 1), names, ContactLawSections(), radius);
+  PairForces of_all(model, PeriodicBox()), of_near(model, PeriodicBox());
+  ParticleArrays p = cloud();
+  PairList all = all_pairs(model), near = all;
+
+  bool forces = true, memory = true;
+  unsigned int n_lists = 0, n_ended = 0;
+  double longest = 0.;
+  for (unsigned int step = 0; step < 400; ++step) {
+    // Something is left out of account for a while, as after an insertion.
+    near.near.note_step(move(p, step), 2. * radius);
+    if (step % 150 == 149)
+      near.near.forget();
+    n_lists += near.near.is_due() ? 1 : 0;
+    const std::vector<std::int32_t> before = all.record;
+    of_all.add(p, all, dt);
+    const std::vector<Quad> force = p.force, torque = p.torque;
+    p.force.assign(n, Quad());
+    p.torque.assign(n, Quad());
+    of_near.add(p, near, dt);
+    forces = forces && same(force, p.force) && same(torque, p.torque);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      memory = memory && (all.record[k] >= 0) == (near.record[k] >= 0);
+      n_ended += before[k] >= 0 && all.record[k] == ContactMemory::none ? 1 : 0;
+    }
+    longest = std::max(longest, static_cast<double>(near.near.places.size()));
+  }
+  check("contacts come and go", n_ended > 50);
+  check("few pairs are near", longest < 0.1 * static_cast<double>(all.size()));
+  check("a list lasts for some steps", n_lists > 5 && n_lists < 200);
+  check("forces and torques", forces);
+  check("the same contacts are known", memory);
+
+  NearPairs unknown;
+  unknown.note_step(std::numeric_limits<double>::infinity(), radius);
+  check("steps that are not known", !unknown.is_used());
+  unknown.note_step(0., radius);
+  check("at rest", unknown.is_used() && unknown.is_due());
+  unknown.note_step(0.4 * radius, radius);
+  check("too fast", !unknown.is_used());
+}
