@@ -16,7 +16,7 @@ using Path = std::vector<std::string>;
 bool is_harmless(const Path &path, const std::string &entry)
 {
   if (path == Path{"simulation control"})
-    return entry != "time step";
+    return entry != "time step" && entry != "time step share";
   if (path == Path{"model parameters", "load balancing"})
     return true;
   if (path == Path{"model parameters"})

@@ -27,6 +27,29 @@ std::string as_text(const Vec3 &v)
   return to_string(v.x) + ", " + to_string(v.y) + ", " + to_string(v.z);
 }
 
+/// A number, or a word.
+class NumberOrWord : public Patterns::PatternBase
+{
+public:
+  NumberOrWord(const std::string &word, const Patterns::Double &number) : word(word), number(number)
+  {
+  }
+
+  bool match(const std::string &text) const override { return text == word || number.match(text); }
+  std::string description(const OutputStyle style = Machine) const override
+  {
+    return "[" + word + " or " + number.description(style) + "]";
+  }
+  std::unique_ptr<PatternBase> clone() const override
+  {
+    return std::make_unique<NumberOrWord>(*this);
+  }
+
+private:
+  const std::string word;
+  const Patterns::Double number;
+};
+
 } // namespace
 
 void enter(ParameterHandler &prm, const std::string &subsection)
@@ -60,6 +83,19 @@ void between(ParameterHandler &prm, const std::string &name, double &value, cons
              const double largest, const std::string &documentation)
 {
   prm.add_parameter(name, value, documentation, Patterns::Double(smallest, largest));
+}
+
+void number_or_word(ParameterHandler &prm, const std::string &name, const std::string &word,
+                    const std::string &at_first, const double smallest, const double largest,
+                    const std::string &documentation,
+                    const std::function<void(const std::optional<double> &)> &take)
+{
+  prm.declare_entry(name, at_first, NumberOrWord(word, Patterns::Double(smallest, largest)),
+                    documentation);
+  prm.add_action(name, [word, take](const std::string &value) {
+    take(value == word ? std::nullopt
+                       : std::make_optional(dealii::Utilities::string_to_double(value)));
+  });
 }
 
 template <typename Number>

@@ -45,8 +45,8 @@ std::string in_words(const std::string &pattern)
     const std::string number = part[2] == part[3] ? part[2].str() + " values" : "a list of values";
     return number + ", each " + items;
   }
-  if (std::regex_match(pattern, part, std::regex(R"(\[common or (\[.*\])\])")))
-    return in_words(part[1]) + ", or 'common'";
+  if (std::regex_match(pattern, part, std::regex(R"(\[(\w+) or (\[.*\])\])")))
+    return in_words(part[2]) + ", or '" + part[1].str() + "'";
   const std::regex range(
       R"(\[(Double|Integer)(?: range)?(?: (\S+?)\.\.\.(\S+?) \(inclusive\))?\])");
   if (std::regex_match(pattern, part, range)) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe {
 
@@ -14,7 +15,16 @@ const std::string section = "simulation control";
 void ControlParameters::declare(dealii::ParameterHandler &prm)
 {
   declare::enter(prm, section);
-  declare::not_negative(prm, "time step", time_step, "Time step (s).");
+  declare::number_or_word(
+      prm, "time step", "auto", format(*given_time_step), 0., std::numeric_limits<double>::max(),
+      "Time step (s). 'auto': 'time step share' of the Rayleigh time of the smallest particle, and "
+      "at most a tenth of the stiffest contact's time.",
+      [this](const std::optional<double> &value) {
+        given_time_step = value;
+        time_step = value.value_or(time_step);
+      });
+  declare::between(prm, "time step share", rayleigh_share, 0., 1.,
+                   "Share of the Rayleigh time that 'time step = auto' takes.");
   declare::choice(prm, "end control", end_control, "time|iteration",
                   "Whether 'time end' or 'iteration end' ends the run. A process may end it "
                   "earlier, when all its work is done.");
@@ -43,7 +53,9 @@ void ControlParameters::declare(dealii::ParameterHandler &prm)
 void ControlParameters::check(const ParameterCheck &check) const
 {
   check.require(time_step > 0., {section}, "time step", "is " + format(time_step) + " s.",
-                "Give a positive time step, about 15 % of the Rayleigh time.");
+                "Give a positive time step, about 15 % of the Rayleigh time, or 'auto'.");
+  check.require(rayleigh_share > 0., {section}, "time step share", "is 0.",
+                "Give a positive share, such as 0.2.");
   check.require(output_control != "time" || output_time > 0., {section}, "output time",
                 "is " + format(output_time) + " s.", "Give a positive interval.");
   check.require(end_control != "iteration" || iteration_end > 0, {section}, "iteration end",

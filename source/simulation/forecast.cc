@@ -55,15 +55,9 @@ std::vector<DiameterRange> find_diameters(const Parameters &parameters, const bo
     if (extremes[1] > 0.)
       return {{0, -extremes[0], extremes[1]}};
   }
-  const std::vector<ParticleType> &types = parameters.physics.types;
-  // A process counts its particles itself.
-  const bool all_alike = std::none_of(types.begin(), types.end(),
-                                      [](const ParticleType &type) { return type.number > 0; });
   std::vector<DiameterRange> diameters;
-  for (std::size_t t = 0; t < types.size(); ++t) {
-    if (!all_alike && types[t].number == 0)
-      continue;
-    const auto sizes = types[t].sizes.make();
+  for (const std::size_t t : parameters.physics.types_in_use()) {
+    const auto sizes = parameters.physics.types[t].sizes.make();
     diameters.push_back({t, sizes->smallest(), sizes->largest()});
   }
   return diameters;

@@ -55,7 +55,15 @@ void judge_time_step(const Parameters &parameters, const std::vector<DiameterRan
                                  std::to_string(t) + "':",
                              "the particles have diameters of " + format(smallest) + " m and more.",
                              "All lengths are in metres: write 1e-3 for a millimetre.");
-    if (dt > largest_rayleigh_share * rayleigh)
+    // The sizes of the type, from which it follows, are not those of particles that are given.
+    if (!parameters.control.given_time_step &&
+        dt > 1.001 * parameters.control.rayleigh_share * rayleigh)
+      forecast.problems.add(time_step_entry,
+                            "'auto' goes by the sizes of the particle type, and smaller particles, "
+                            "of " +
+                                format(1e6 * smallest) + " um, are inserted.",
+                            "Give the type their sizes, or give a number.");
+    else if (dt > largest_rayleigh_share * rayleigh)
       forecast.problems.warn(
           time_step_entry,
           "the time step exceeds 25 % of the Rayleigh time of particle type " + std::to_string(t) +

@@ -155,13 +155,17 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
   Parameters parameters(count(entries));
   parameters.lethe_notes = notes;
   parameters.set(entries, problems);
-
   const ParameterCheck check(entries, file, problems);
   const ProcessSection *const process = parameters.process();
   for (const ParameterSection *const section : parameters.sections())
     // A process makes its own insertion.
     if (process == nullptr || section != &parameters.insertion)
       section->check(check);
+  // Sizes and materials make sense only now.
+  ControlParameters &control = parameters.control;
+  if (!control.given_time_step && problems.empty())
+    control.time_step = parameters.physics.longest_time_step(control.rayleigh_share,
+                                                             1. / ParticleGuard::steps_per_contact);
   if (process != nullptr) {
     process->check(check);
     process->check_with(parameters, check);

@@ -19,31 +19,6 @@ std::string type_section(unsigned int t)
   return "particle type " + std::to_string(t);
 }
 
-const char *const common = "common";
-
-/// A number, or the word 'common'.
-class OwnOrCommon : public dealii::Patterns::PatternBase
-{
-public:
-  explicit OwnOrCommon(const dealii::Patterns::Double &number) : number(number) {}
-
-  bool match(const std::string &text) const override
-  {
-    return text == common || number.match(text);
-  }
-  std::string description(const OutputStyle style = Machine) const override
-  {
-    return "[common or " + number.description(style) + "]";
-  }
-  std::unique_ptr<PatternBase> clone() const override
-  {
-    return std::make_unique<OwnOrCommon>(*this);
-  }
-
-private:
-  const dealii::Patterns::Double number;
-};
-
 std::string wall_section(std::size_t k)
 {
   return "wall material " + std::to_string(k);
@@ -106,16 +81,14 @@ void declare_wall_material(dealii::ParameterHandler &prm, WallMaterial &material
                  "2', 'floating wall 0', 'solid object 1', or those of a process, such as "
                  "'spreader', 'measuring plate' or 'disc'. A name without a number means all "
                  "that have one.");
-  for (const auto &[name, p] : wall_properties()) {
-    const std::string entry = name + " wall";
-    prm.declare_entry(entry, common, OwnOrCommon(dealii::Patterns::Double(p.smallest, p.largest)),
-                      p.documentation + " 'common': that of all other walls.");
-    prm.add_action(entry, [&material, name = name](const std::string &value) {
-      material.own.erase(name);
-      if (value != common)
-        material.own[name] = dealii::Utilities::string_to_double(value);
-    });
-  }
+  for (const auto &[name, p] : wall_properties())
+    declare::number_or_word(prm, name + " wall", "common", "common", p.smallest, p.largest,
+                            p.documentation + " 'common': that of all other walls.",
+                            [&material, name = name](const std::optional<double> &value) {
+                              material.own.erase(name);
+                              if (value)
+                                material.own[name] = *value;
+                            });
 }
 
 void check_material(const ParameterCheck &check, const ParameterCheck::Path &path,
@@ -155,6 +128,31 @@ double PhysicalProperties::rayleigh_time(const double radius, const double densi
   const double nu = material.poisson_ratio;
   const double shear_modulus = material.young_modulus / (2. * (1. + nu));
   return M_PI * radius * std::sqrt(density / shear_modulus) / (0.1631 * nu + 0.8766);
+}
+
+std::vector<std::size_t> PhysicalProperties::types_in_use() const
+{
+  const bool all_alike = std::none_of(types.begin(), types.end(),
+                                      [](const ParticleType &type) { return type.number > 0; });
+  std::vector<std::size_t> used;
+  for (std::size_t t = 0; t < types.size(); ++t)
+    if (all_alike || types[t].number > 0)
+      used.push_back(t);
+  return used;
+}
+
+double PhysicalProperties::longest_time_step(const double share_of_rayleigh,
+                                             const double share_of_contact) const
+{
+  double longest = std::numeric_limits<double>::infinity();
+  for (const std::size_t t : types_in_use()) {
+    const ParticleType &type = types[t];
+    const double radius = 0.5 * type.sizes.make()->smallest();
+    longest =
+        std::min({longest, share_of_rayleigh * rayleigh_time(radius, type.density, type.material),
+                  share_of_contact * shortest_contact_time(type, radius)});
+  }
+  return longest;
 }
 
 double PhysicalProperties::shortest_contact_time(const ParticleType &type) const

@@ -20,7 +20,7 @@ HERE = Path(__file__).resolve().parent
 # Texts that a reader may fail on because of their length, and their sentences.
 LONG = {
     "many_blanks": ("subsection simulation control\nset time step = 1" + 150000 * " " + "2\nend\n",
-                    "which does not fit. Give a number of at least 0."),
+                    "which does not fit. Give a number of at least 0, or 'auto'."),
     "long_value": ("subsection simulation control\nset time step = " + 1000000 * "7 " + "\nend\n",
                    "... (1999999 characters)', which does not fit."),
     "long_words": ("subsection insertion info\nsubsection insertion acceptance function\n"

@@ -6,6 +6,7 @@ Usage: check_output.py path/to/many-runs folder
 
 from __future__ import annotations
 
+import math
 import shutil
 import sys
 from pathlib import Path
@@ -113,6 +114,9 @@ DOUBTFUL = {
 LONG = {"a solid that comes in", "events upon each other", "pictures without end", "too few events"}
 
 STOP = "model parameters/excessive overlap = stop"
+AUTO = ENTRY + " = auto"
+# The Rayleigh time is pi R sqrt(rho/G) / (0.1631 nu + 0.8766).
+RAYLEIGH = math.pi * 0.5e-3 * math.sqrt(2500. / (1e8 / 2.6)) / (0.1631 * 0.3 + 0.8766)
 # Name: settings, exit code 2, and a part of the sentence.
 REFUSED = {
     "no particles and no solids": ([TYPE + "number = 0"],
@@ -127,6 +131,11 @@ REFUSED = {
                                     VELOCITY + "if(t > 5e-6, 500, 0); 0; 0",
                                     "simulation control/iteration end = 5"],
                                    "a solid moves by 0.001 m in a time step at t ="),
+    "an automatic step and smaller particles": ([*LIST, AUTO, "insertion info/list diameters = 1e-5, 1e-3"],
+                                                "and smaller particles, of 10 um, are inserted."),
+    "no share of the Rayleigh time": ([AUTO, ENTRY + " share = 0"], "entry 'time step share' is 0."),
+    "an automatic step of nonsense": ([AUTO, TYPE + "young modulus particles = 0"],
+                                      "entry 'young modulus particles' is 0 Pa."),
     "a path through a file": (["simulation control/output path = case.prm/results"], "case.prm is a file"),
     "too many particles": (["insertion info/insertion method = plane", "insertion info/insertion frequency = 1",
                             "insertion info/insertion plane point = 0.01, 0.01, 0.01",
@@ -141,6 +150,14 @@ FACTS = {
                           "Memory: about 0.0014 MB for 1 particle,",
                           "  particles:  1 at most, 1 on average", "  steps:      2 of 2e-06 s",
                           "  core-hours: about 3.5e-11 ("]),
+    "an automatic step": ([AUTO], [f"Particle type 0: diameter 1000 um; the time step of {0.2 * RAYLEIGH:.6g} s is "
+                                   "20 % of the Rayleigh time"]),
+    "a tenth of the Rayleigh time": ([AUTO, ENTRY + " share = 0.1"],
+                                     ["Particle type 0: diameter 1000 um; the time step of "
+                                      f"{0.1 * RAYLEIGH:.6g} s is 10 % of the Rayleigh time"]),
+    "an automatic step and a stiff wall": ([AUTO, ENTRY + " share = 0.5",
+                                            "lagrangian physical properties/young modulus wall = 1e13"],
+                                           ["Particle type 0: diameter 1000 um; the time step of 3."]),
     "two sizes, one picture": ([*LIST, "insertion info/list diameters = 5e-4, 1e-3",
                                 "simulation control/output frequency = 1500000",
                                 "simulation control/iteration end = 1200001"],

@@ -32,7 +32,7 @@ void test_syntax()
          "case.prm:1: subsection 'Mesh' is unknown. Did you mean 'mesh'?");
   expect("wrong type", "subsection simulation control\n  set time step = fast\nend\n",
          "case.prm:2: subsection 'simulation control' / entry 'time step' is 'fast', which does "
-         "not fit. Give a number of at least 0.");
+         "not fit. Give a number of at least 0, or 'auto'.");
   expect(
       "negative count", "subsection simulation control\n  set output frequency = -2\nend\n",
       "entry 'output frequency' is '-2', which does not fit. Give a whole number of at least 0.");
@@ -42,7 +42,7 @@ void test_syntax()
   const std::string negative =
       complaints("subsection simulation control\n  set time step = -1e-3\nend\n");
   check("negative number, which is finite",
-        negative.find("Give a number of at least 0.") != std::string::npos &&
+        negative.find("Give a number of at least 0, or 'auto'.") != std::string::npos &&
             negative.find("finite") == std::string::npos,
         "got '" + negative + "'");
   expect("too few numbers", "subsection lagrangian physical properties\n set g = 0, -9.81\nend\n",

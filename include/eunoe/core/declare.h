@@ -6,7 +6,9 @@
 
 #include <eunoe/core/vec3.h>
 
+#include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,14 @@ void between(dealii::ParameterHandler &prm, const std::string &name, double &val
 template <typename Number>
 void between(dealii::ParameterHandler &prm, const std::string &name, Number &value, int smallest,
              int largest, const std::string &documentation);
+
+/// A number within limits, or a word.
+/// @param at_first the default, as text
+/// @param take gets the number, nothing for the word
+void number_or_word(dealii::ParameterHandler &prm, const std::string &name, const std::string &word,
+                    const std::string &at_first, double smallest, double largest,
+                    const std::string &documentation,
+                    const std::function<void(const std::optional<double> &)> &take);
 
 /// A number that is at least @p smallest.
 inline void at_least(dealii::ParameterHandler &prm, const std::string &name, double &value,

@@ -3,12 +3,16 @@
 
 #include <eunoe/core/parameter_section.h>
 
+#include <optional>
+
 namespace eunoe {
 
 /// `subsection simulation control`.
 struct ControlParameters : public ParameterSection
 {
-  double time_step = 1e-6;
+  std::optional<double> given_time_step = 1e-6; ///< none: `auto`
+  double rayleigh_share = 0.2;                  ///< "time step share", of an automatic one
+  double time_step = 1e-6;                      ///< that of the run (s)
   std::string end_control = "time";
   double time_end = 1.;
   unsigned long long iteration_end = 0;

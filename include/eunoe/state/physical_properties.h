@@ -54,6 +54,13 @@ struct PhysicalProperties : public ParameterSection
   /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).
   static double rayleigh_time(double radius, double density, const Material &material);
 
+  /// The types of which particles are inserted. A process counts its particles itself: then all.
+  std::vector<std::size_t> types_in_use() const;
+
+  /// The time step that is these shares of the shortest Rayleigh time and of the stiffest contact's
+  /// time, whichever is shorter (s).
+  double longest_time_step(double share_of_rayleigh, double share_of_contact) const;
+
   /// Half period of the stiffest contact that a type's smallest particle can have at an overlap of
   /// one hundredth of its radius, with its like or with any material of the case (s).
   double shortest_contact_time(const ParticleType &type) const;

@@ -1,0 +1,153 @@
+"""Whether what makes runs cheap changes the layers: runs a spreading case with larger time steps, softer
+grains and sleeping particles for several seeds, which draw sizes and places anew, and compares.
+
+Usage: contrib/tools cheap-layers path/to/eunoe-particles folder [--case CASE.prm] [--layers 6]
+       [--variants step20 step30 soft_pull ...] [--seeds 1 2 3 4 5 6] [--jobs 1] [--ranks 1]
+       [--set ENTRY=VALUE ...] [--table-only]
+
+The variants are compared with `step15`, the case with a time step of 15 % of the Rayleigh time. A run that
+has finished is not run again; one that was interrupted continues from its checkpoint. cheap_layers.csv in
+the folder has the layers of each finished run, cheap_layers.md the mean over layers of each variant, its
+difference from the reference with a 95 % interval (Welch's t), and the time of the loop.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import statistics
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from eunoe.launch import Failure, mpirun, overrides
+from eunoe.repository import CASES
+from eunoe.tables import Table, read_rows, write_csv
+
+from .series import CONTINUED, arguments, compute, publish, spread, summary_of
+
+RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
+TYPE = "lagrangian physical properties/particle type 0"
+WALL = "lagrangian physical properties"
+YOUNG, SURFACE_ENERGY = 26.25e6, 35e-5  # of property set PS1 (Pa, J/m2)
+SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
+REFERENCE = "step15"
+# Quantiles of Student's t for two sides of 95 %, by degrees of freedom; 2 from 30 on is near enough.
+STUDENT = (math.nan, 12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160,
+           2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052,
+           2.048, 2.045)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """@param title in words
+    @param settings entries of the input and their values"""
+
+    title: str
+    settings: dict[str, object] = field(default_factory=dict)
+
+
+def step(percent: float) -> dict[str, object]:
+    return {"simulation control/time step": f"{0.01 * percent * RAYLEIGH_TIME:.6g}"}
+
+
+def softer(factor: float, exponent: float, percent: float = 15.) -> dict[str, object]:
+    """Young's modulus times `factor`, surface energy times factor^exponent, and the time step that keeps its
+    share of the Rayleigh time, which goes with the inverse root of the modulus."""
+    young, energy = f"{factor * YOUNG:.6g}", f"{factor**exponent * SURFACE_ENERGY:.6g}"
+    return {f"{TYPE}/young modulus particles": young, f"{WALL}/young modulus wall": young,
+            f"{TYPE}/surface energy particles": energy, f"{WALL}/surface energy wall": energy,
+            **step(percent / math.sqrt(factor))}
+
+
+VARIANTS = {
+    "step15": Variant("15 % of the Rayleigh time", step(15)),
+    "step20": Variant("20 %", step(20)),
+    "step25": Variant("25 %", step(25)),
+    "step30": Variant("30 %", step(30)),
+    "step40": Variant("40 %", step(40)),
+    "soft_pull": Variant("E / 10, the same pull-off force", softer(0.1, 0.)),
+    "soft_energy": Variant("E / 10, surface energy / 10^0.4", softer(0.1, 0.4)),
+    "sleep": Variant("with sleep", {**step(15), SLEEP: "true"}),
+}
+
+
+@dataclass(frozen=True)
+class Run:
+    variant: str
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.variant}_seed{self.seed}"
+
+    def command(self, options: argparse.Namespace) -> list[str]:
+        settings = {**VARIANTS[self.variant].settings, "powder spreading/number of layers": options.layers,
+                    "powder spreading/layer pictures": "false",
+                    "simulation control/output path": options.folder / self.name, **CONTINUED}
+        return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(self.seed),
+                *overrides(settings), *overrides(options.set)]
+
+    def result(self, folder: Path) -> dict | None:
+        """Densities of the layers and seconds of a finished run."""
+        summary = summary_of(folder / self.name)
+        try:
+            rows = [row for row in read_rows(folder / self.name / "layers.csv") if row["layer"] >= 1]
+        except (OSError, ValueError):
+            return None
+        return None if summary is None else {"LRD": [row["LRD"] for row in rows],
+                                             "CRD": [row["CRD"] for row in rows if not math.isnan(row["CRD"])],
+                                             "seconds": summary["loop_seconds"]}
+
+
+def interval(values: list[float], reference: list[float]) -> tuple[float, float]:
+    """Difference of the means, and half the width of its 95 % interval (Welch 1947); NaN for fewer than
+    two values each."""
+    difference = statistics.mean(values) - statistics.mean(reference)
+    if min(len(values), len(reference)) < 2:
+        return difference, math.nan
+    parts = [statistics.variance(group) / len(group) for group in (values, reference)]
+    if sum(parts) == 0.:
+        return difference, 0.
+    freedom = sum(parts) ** 2 / sum(part**2 / (len(group) - 1)
+                                    for part, group in zip(parts, (values, reference)))
+    quantile = STUDENT[int(freedom)] if freedom < len(STUDENT) else 2.
+    return difference, quantile * math.sqrt(sum(parts))
+
+
+def table_of(found: dict[str, list[dict]]) -> Table:
+    """A row for each variant with finished runs."""
+    reference = found[REFERENCE]
+    rows = [["variant", "runs", "LRD, mean of layers", "difference", "CRD, last layer", "difference", "loop (s)"]]
+    for name, runs in found.items():
+        cells = [VARIANTS[name].title, str(len(runs))]
+        for value in (lambda run: statistics.mean(run["LRD"]), lambda run: run["CRD"][-1]):
+            values, others = [value(run) for run in runs], [value(run) for run in reference]
+            cells.append(f"{statistics.mean(values):.4f} ± {spread(values):.4f}")
+            difference, half = interval(values, others)
+            cells.append("" if name == REFERENCE else f"{difference:+.4f} ± {half:.4f}")
+        rows.append([*cells, f"{statistics.mean(run['seconds'] for run in runs):.0f}"])
+    return rows
+
+
+def main(words: list[str]) -> int:
+    parser = arguments(__doc__, range(1, 7))
+    parser.add_argument("--case", type=Path, default=CASES / "spreading" / "quickstart.prm")
+    parser.add_argument("--layers", type=int, default=6)
+    parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=list(VARIANTS))
+    parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[])
+    options = parser.parse_args(words)
+    names = list(dict.fromkeys((REFERENCE, *options.variants)))
+    runs = [Run(name, seed) for seed in options.seeds for name in names]
+    good = compute(runs, options)
+    done = [(run, result) for run in runs if (result := run.result(options.folder))]
+    found = {name: [result for run, result in done if run.variant == name] for name in names}
+    if not found[REFERENCE]:
+        raise Failure(f"A comparison needs a finished run of {REFERENCE}.")
+    write_csv(options.folder / "cheap_layers.csv",
+              [["variant", "seed", "layer", "LRD"],
+               *([run.variant, run.seed, layer, lrd] for run, result in done
+                 for layer, lrd in enumerate(result["LRD"], 1))])
+    publish(table_of({name: results for name, results in found.items() if results}),
+            options.folder / "cheap_layers.md")
+    return 0 if good else 1
