@@ -30,13 +30,16 @@ class Result:
 class Example:
     """@param parts input files, one after the other, relative to `folder`
     @param measure gets the example's folder
-    @param template what replaces the words in double braces of a template"""
+    @param template what replaces the words in double braces of a template
+    @param settings entries of parts that are set to other values: shorter runs, fewer pictures, or what
+    Lethe's page describes where its file has another value"""
 
     folder: str
     parts: tuple[str, ...]
     measure: Callable[[Path], list[Result]]
     time_of_lethe: str = ""
     template: dict[str, str] = field(default_factory=dict)
+    settings: dict[str, dict[str, object]] = field(default_factory=dict)
 
 
 def points_at(folder: Path, name: str, *fields: str) -> list[tuple[float, dict[str, np.ndarray]]]:
@@ -135,6 +138,59 @@ def drum(folder: Path) -> list[Result]:
     return [Result("slope of the bed", "", f"{np.mean(angles):.1f}")]
 
 
+def mixing_index(points: np.ndarray, marked: np.ndarray, neighbours: int = 15) -> float:
+    """Twice the share of a particle's nearest neighbours that are of the other kind, mean over particles: 0
+    for separate kinds, 1 for mixed ones (Godlieb, Deen and Kuipers 2007)."""
+    of_other_kind, block = 0, 500
+    squares = (points**2).sum(axis=1)
+    for begin in range(0, len(points), block):
+        rows = slice(begin, begin + block)
+        distances = squares - 2. * points[rows] @ points.T
+        nearest = np.argpartition(distances, neighbours, axis=1)[:, :neighbours + 1]
+        of_other_kind += np.count_nonzero(marked[nearest] != marked[rows, None])
+    return 2. * of_other_kind / (neighbours * len(points))
+
+
+def stirred_drum(folder: Path) -> list[Result]:
+    """Mixing of grains that lay farther from the axis, x, than the mean with the others, in the drum of 56 mm at
+    2 rad/s; Lethe's curve was read off its picture."""
+    series = points_at(folder / "output_dem", "out", "ID")
+
+    def state_at(moment: float) -> dict[str, np.ndarray]:
+        return min(series, key=lambda entry: abs(entry[0] - moment))[1]
+
+    start = state_at(2.)
+    radius = np.hypot(start["points"][:, 1], start["points"][:, 2])
+    outer = dict(zip(start["ID"].astype(int), radius > radius.mean()))
+    found = []
+    for moment, published in ((4., 0.28), (6., 0.45), (8., 0.51), (10., 0.57), (12., 0.63)):
+        data = state_at(moment)
+        marked = np.array([outer[number] for number in data["ID"].astype(int)])
+        found.append(Result(f"mixing index at {moment:g} s", f"{published} (Lethe)",
+                            f"{mixing_index(data['points'], marked):.2f}"))
+    return found
+
+
+def mixer(folder: Path) -> list[Result]:
+    """Mixing of the two types under the impeller."""
+    return [Result(f"mixing index at {time:g} s", "", f"{mixing_index(data['points'], data['type']):.2f}")
+            for time, data in points_at(folder / "output", "mixer", "type")
+            if any(abs(time - moment) < 1e-6 for moment in (0.5, 1., 2., 3., 5.))]
+
+
+def silo(folder: Path) -> list[Result]:
+    """Mass that has passed the slot of 40 mm by 50 mm at z = 0 from one to two seconds after it opened, at 4 s,
+    beside the formula of Beverloo for slots as in Nedderman (1992), with 58 % of solid in the silo."""
+    diameter, density = 0.005833, 600.
+    grain = density * math.pi / 6. * diameter**3
+    series = [(time, grain * np.count_nonzero(data["points"][:, 2] < 0.))
+              for time, data in points_at(folder / "output", "out") if 5. <= time <= 6.]
+    times, masses = np.array(series).T
+    empty = 1.4 * diameter
+    formula = 1.03 * 0.58 * density * math.sqrt(9.81) * (0.05 - empty) * (0.04 - empty) ** 1.5
+    return [Result("mass flow rate", f"{formula:.2f} kg/s (formula)", f"{np.polyfit(times, masses, 1)[0]:.3f} kg/s")]
+
+
 def packing(folder: Path) -> list[Result]:
     """Centre of mass of the balls at rest."""
     points = points_at(folder / "output", "out")[-1][1]["points"]
@@ -175,4 +231,14 @@ EXAMPLES = {
     "bunny drill": Example("3d-bunny-drill", ("bunny-drill-loading.prm", "bunny-drill.prm"), bunny),
     "small drum": Example("3d-small-scale-rotating-drum", ("packing-rotating-drum.prm", "small-rotating-drum-dem.prm"),
                           drum, "60 min, 8 cores"),
+    "small drum, mixing": Example(
+        "3d-small-scale-rotating-drum", ("packing-rotating-drum.prm", "small-rotating-drum-dem.prm"), stirred_drum, "",
+        settings={"small-rotating-drum-dem.prm": {
+            "DEM boundary conditions/boundary condition 0/rotational speed": 2,
+            "simulation control/time end": 12, "simulation control/output frequency": 10000}}),
+    "silo": Example("3d-silo", ("silo-Golshan.prm",), silo, "14 h, 8 cores, to 30 s",
+                    settings={"silo-Golshan.prm": {"simulation control/time end": 6.5,
+                                                   "simulation control/output frequency": 2500}}),
+    "mixer": Example("3d-granular-mixer", ("granular-mixer.prm",), mixer, "2 h, 8 cores",
+                     settings={"granular-mixer.prm": {"simulation control/output frequency": 10000}}),
 }

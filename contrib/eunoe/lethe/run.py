@@ -51,7 +51,7 @@ def run(name: str, options: argparse.Namespace) -> Path:
         if done.exists():
             continue
         command = [*mpirun(options.ranks), str(Path(options.program).resolve()), input_of(example, part, place).name,
-                   *overrides(options.settings)]
+                   *overrides(example.settings.get(part, {})), *overrides(options.settings)]
         start = time.monotonic()
         with open(place / (part + ".log"), "w", encoding="utf-8") as log:
             code = subprocess.run(command, cwd=place, stdout=log, stderr=subprocess.STDOUT, check=False).returncode
