@@ -42,8 +42,8 @@ inline std::string checkpoint_image(const std::string &data, const std::string &
   append(head.size());
   file += head + sections;
   Checksum checksum;
-  checksum.process_bytes(file.data(), file.size());
-  append(checksum.checksum());
+  checksum.add(file.data(), file.size());
+  append(checksum.value);
   return file;
 }
 

@@ -2,7 +2,6 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
-#include <eunoe/core/messages.h>
 
 #include "format.h"
 
@@ -17,7 +16,7 @@ namespace eunoe {
 
 using namespace checkpoint_format;
 
-/// The file on the first rank, with the places of the sections.
+/// The file, with the places of the sections.
 struct Checkpoint::File
 {
   struct Section
@@ -25,7 +24,11 @@ struct Checkpoint::File
     std::uint64_t begin, n_rows, n_values; ///< begin: place of the lengths (bytes)
   };
 
-  explicit File(const std::string &path) : path(path), stream(std::fopen(path.c_str(), "rb")) {}
+  File(const std::string &path, MPI_Comm comm)
+      : path(path), comm(comm), stream(std::fopen(path.c_str(), "rb")),
+        open_error(stream == nullptr ? errno : 0)
+  {
+  }
   ~File()
   {
     if (stream != nullptr)
@@ -43,21 +46,33 @@ struct Checkpoint::File
       refuse("cannot be read: " + std::string(std::strerror(errno)) + ".");
   }
 
-  /// @return the head
-  std::string open()
+  void read_at(std::uint64_t begin, void *data, std::uint64_t n)
+  {
+    std::fseek(stream, static_cast<long>(begin), SEEK_SET);
+    read(data, n);
+  }
+
+  void require_open()
   {
     if (stream == nullptr) {
-      const bool is_missing = errno == ENOENT;
-      const std::string text = "cannot be read: " + std::string(std::strerror(errno)) + ".";
-      if (is_missing)
+      const std::string text = "cannot be read: " + std::string(std::strerror(open_error)) + ".";
+      if (open_error == ENOENT && is_first_rank(comm))
         refuse(text);
+      if (open_error == ENOENT)
+        throw UserError("The checkpoint " + path +
+                        " is not seen by every node. Put it into a folder that all share.");
       throw UserError("The checkpoint " + path + " " + text + " Mend its permissions.");
     }
     std::error_code failure;
     size = std::filesystem::file_size(path, failure);
     if (failure || size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
       refuse("is cut short: it has " + std::to_string(size) + " bytes.");
-    const bool is_whole = has_its_checksum();
+  }
+
+  /// @param is_whole whether the checksum fits
+  /// @return the head
+  std::string head(const bool is_whole)
+  {
     std::string title(format_name.size(), ' ');
     std::fseek(stream, 0, SEEK_SET);
     read(title.data(), title.size());
@@ -101,56 +116,111 @@ struct Checkpoint::File
       refuse("is damaged: its sections do not fill it.");
   }
 
-  /// Reads everything once.
-  bool has_its_checksum()
+  /// The checksum of this rank's share of the file.
+  Checksum checksum_of_share()
   {
+    const std::uint64_t n = size - sizeof(std::uint64_t);
+    const int rank = rank_in(comm), n_ranks = size_of(comm);
+    std::uint64_t left = first_of(n, rank + 1, n_ranks) - first_of(n, rank, n_ranks);
+    std::fseek(stream, static_cast<long>(first_of(n, rank, n_ranks)), SEEK_SET);
     Checksum checksum;
     std::vector<char> part(1u << 20);
-    std::uint64_t left = size - sizeof(std::uint64_t);
     while (left > 0) {
-      const std::uint64_t n = std::min<std::uint64_t>(left, part.size());
-      read(part.data(), n);
-      checksum.process_bytes(part.data(), n);
-      left -= n;
+      const std::uint64_t here = std::min<std::uint64_t>(left, part.size());
+      read(part.data(), here);
+      checksum.add(part.data(), here);
+      left -= here;
     }
-    std::uint64_t sum;
-    read(&sum, sizeof sum);
-    return sum == checksum.checksum();
+    return checksum;
   }
 
   const std::string path;
+  MPI_Comm comm;
   std::FILE *stream;
+  const int open_error;
   std::uint64_t size = 0;
   std::map<std::string, Section> sections;
 };
 
-Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm) : path(path), comm(comm)
+namespace {
+
+/// What is wrong with a checkpoint, if anything.
+struct Defect
 {
-  std::string text, error;
-  int is_damaged = 0;
-  if (is_first_rank(comm))
+  std::string text;
+  bool is_damage = false;
+
+  /// Runs an action, unless something is wrong already.
+  template <typename Action>
+  void attempt(const std::string &path, const Action &action)
+  {
+    if (!text.empty())
+      return;
     try {
-      file = std::make_unique<File>(path);
-      text = file->open();
-      const auto begin = static_cast<std::uint64_t>(std::ftell(file->stream));
-      file->find_sections(nlohmann::ordered_json::parse(text).at("sections"), begin);
+      action();
     } catch (const DamagedCheckpoint &problem) {
-      error = problem.what();
-      is_damaged = 1;
+      text = problem.what();
+      is_damage = true;
     } catch (const UserError &problem) {
-      error = problem.what();
+      text = problem.what();
     } catch (const std::exception &) {
       // Of JSON, or of a value in it.
-      error = "The checkpoint " + path + " is damaged: its head is not understood.";
-      is_damaged = 1;
+      text = "The checkpoint " + path + " is damaged: its head is not understood.";
+      is_damage = true;
     }
-  MPI_Bcast(&is_damaged, 1, MPI_INT, 0, comm);
-  error = broadcast(error, comm);
-  if (is_damaged != 0)
-    throw DamagedCheckpoint(error);
-  if (!error.empty())
-    throw UserError(error);
-  head = nlohmann::ordered_json::parse(broadcast(text, comm));
+  }
+
+  /// Throws on every rank what the first rank that has a defect says; collective.
+  void agree(MPI_Comm comm) const
+  {
+    int first = text.empty() ? size_of(comm) : rank_in(comm);
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+    if (first == size_of(comm))
+      return;
+    const std::string sentence = broadcast(text, comm, first);
+    int damage = is_damage ? 1 : 0;
+    MPI_Bcast(&damage, 1, MPI_INT, first, comm);
+    if (damage != 0)
+      throw DamagedCheckpoint(sentence);
+    throw UserError(sentence);
+  }
+};
+
+} // namespace
+
+Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm)
+    : path(path), comm(comm), file(std::make_unique<File>(path, comm))
+{
+  Defect defect;
+  defect.attempt(path, [&] { file->require_open(); });
+  defect.agree(comm);
+
+  Checksum share;
+  defect.attempt(path, [&] { share = file->checksum_of_share(); });
+  defect.agree(comm);
+  std::vector<std::uint64_t> shares(2 * static_cast<std::size_t>(size_of(comm)));
+  const std::uint64_t mine[2] = {share.value, share.n_bytes};
+  MPI_Gather(mine, 2, MPI_UINT64_T, shares.data(), 2, MPI_UINT64_T, 0, comm);
+
+  std::string text;
+  if (is_first_rank(comm))
+    defect.attempt(path, [&] {
+      Checksum whole;
+      for (std::size_t r = 0; r < shares.size(); r += 2)
+        whole.append({shares[r], shares[r + 1]});
+      std::uint64_t sum;
+      file->read_at(file->size - sizeof sum, &sum, sizeof sum);
+      text = file->head(sum == whole.value);
+    });
+  defect.agree(comm);
+  text = broadcast(text, comm);
+  defect.attempt(path, [&] {
+    head = nlohmann::ordered_json::parse(text);
+    const std::uint64_t begin =
+        format_name.size() + format_version.size() + 1 + sizeof(std::uint64_t) + text.size();
+    file->find_sections(head.at("sections"), begin);
+  });
+  defect.agree(comm);
 }
 
 Checkpoint::~Checkpoint() = default;
@@ -173,60 +243,33 @@ void Checkpoint::require(const bool ok, const std::string &what) const
 Rows Checkpoint::rows(const std::string &name) const
 {
   const int n_ranks = size_of(comm), rank = rank_in(comm);
-  std::uint64_t n_rows = 0;
-  for (const auto &section : head.at("sections"))
-    if (section.at("name") == name)
-      n_rows = section.at("rows");
-  const auto share = [&](int r) {
-    return first_of(n_rows, r + 1, n_ranks) - first_of(n_rows, r, n_ranks);
-  };
+  const auto found = file->sections.find(name);
+  if (found == file->sections.end())
+    throw UserError("The checkpoint " + path + " has no section '" + name + "'.");
+  const File::Section &section = found->second;
+  const std::uint64_t first = first_of(section.n_rows, rank, n_ranks);
 
-  const auto take = [](const std::vector<std::uint32_t> &lengths, std::vector<double> values) {
-    Rows rows;
-    rows.starts.assign(lengths.size() + 1, 0);
-    std::partial_sum(lengths.begin(), lengths.end(), rows.starts.begin() + 1,
-                     [](std::size_t sum, std::uint32_t n) { return sum + n; });
-    rows.values = std::move(values);
-    return rows;
-  };
-  const auto number_of_values = [](const std::vector<std::uint32_t> &lengths) {
-    return std::accumulate(lengths.begin(), lengths.end(), std::uint64_t(0));
-  };
-
-  std::vector<std::vector<std::uint32_t>> lengths(n_ranks);
-  on_first_rank(comm, [&] {
-    const auto section = file->sections.find(name);
-    if (section == file->sections.end())
-      throw UserError("The checkpoint " + path + " has no section '" + name + "'.");
-    std::fseek(file->stream, static_cast<long>(section->second.begin), SEEK_SET);
-    std::uint64_t sum = 0;
-    for (int r = 0; r < n_ranks; ++r) {
-      lengths[r].resize(share(r));
-      file->read(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t));
-      sum += number_of_values(lengths[r]);
-    }
-    if (sum != section->second.n_values)
-      file->refuse("is damaged: the rows of '" + name + "' do not fill their section.");
+  std::vector<std::uint32_t> lengths(first_of(section.n_rows, rank + 1, n_ranks) - first);
+  on_every_rank(comm, [&] {
+    file->read_at(section.begin + first * sizeof(std::uint32_t), lengths.data(),
+                  lengths.size() * sizeof(std::uint32_t));
   });
-  if (rank > 0) {
-    lengths[rank].resize(share(rank));
-    receive(lengths[rank].data(), lengths[rank].size() * sizeof(std::uint32_t), 0, tag_lengths,
-            comm);
-    std::vector<double> values(number_of_values(lengths[rank]));
-    receive(values.data(), values.size() * sizeof(double), 0, tag_values, comm);
-    return take(lengths[rank], std::move(values));
-  }
   Rows mine;
-  for (int r = 0; r < n_ranks; ++r) {
-    std::vector<double> values(number_of_values(lengths[r]));
-    file->read(values.data(), values.size() * sizeof(double));
-    if (r == 0) {
-      mine = take(lengths[0], std::move(values));
-      continue;
-    }
-    send(lengths[r].data(), lengths[r].size() * sizeof(std::uint32_t), r, tag_lengths, comm);
-    send(values.data(), values.size() * sizeof(double), r, tag_values, comm);
-  }
+  mine.starts.assign(lengths.size() + 1, 0);
+  std::partial_sum(lengths.begin(), lengths.end(), mine.starts.begin() + 1,
+                   [](std::size_t sum, std::uint32_t n) { return sum + n; });
+  const std::uint64_t n_values = mine.starts.back();
+  std::uint64_t before = 0, all = 0;
+  MPI_Exscan(&n_values, &before, 1, MPI_UINT64_T, MPI_SUM, comm);
+  MPI_Allreduce(&n_values, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
+  on_every_rank(comm, [&] {
+    if (all != section.n_values)
+      file->refuse("is damaged: the rows of '" + name + "' do not fill their section.");
+    mine.values.resize(n_values);
+    const std::uint64_t begin = section.begin + section.n_rows * sizeof(std::uint32_t);
+    file->read_at(begin + (rank == 0 ? 0 : before) * sizeof(double), mine.values.data(),
+                  n_values * sizeof(double));
+  });
   return mine;
 }
 

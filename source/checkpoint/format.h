@@ -3,20 +3,38 @@
 
 // What the writer and the reader of checkpoints share.
 
-#include <boost/crc.hpp>
-
+#include <algorithm>
 #include <cstdint>
 #include <mpi.h>
 #include <string>
+#include <zlib.h>
 
 namespace eunoe::checkpoint_format {
 
-inline const std::string format_name = "Eunoe checkpoint ", format_version = "5";
+inline const std::string format_name = "Eunoe checkpoint ", format_version = "6";
 
-/// CRC-64 of ECMA-182.
-using Checksum = boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0, 0, false, false>;
+/// CRC-32 of a part of a file. Those of parts give that of the whole, so that each rank can look at
+/// its own part.
+struct Checksum
+{
+  std::uint64_t value = 0, n_bytes = 0;
 
-constexpr int tag_lengths = 321, tag_values = 322;
+  void add(const void *data, std::uint64_t n)
+  {
+    constexpr std::uint64_t part = 1u << 30;
+    for (std::uint64_t begin = 0; begin < n; begin += part)
+      value = crc32(value, static_cast<const Bytef *>(data) + begin,
+                    static_cast<uInt>(std::min(part, n - begin)));
+    n_bytes += n;
+  }
+
+  /// Adds the part of a file that comes next.
+  void append(const Checksum &next)
+  {
+    value = crc32_combine(value, next.value, static_cast<z_off_t>(next.n_bytes));
+    n_bytes += next.n_bytes;
+  }
+};
 
 inline int rank_in(MPI_Comm comm)
 {

@@ -18,14 +18,14 @@ namespace eunoe {
 
 namespace fs = std::filesystem;
 
-std::string broadcast(std::string text, MPI_Comm comm)
+std::string broadcast(std::string text, MPI_Comm comm, const int from)
 {
   unsigned long long size = text.size();
-  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, 0, comm);
+  MPI_Bcast(&size, 1, MPI_UNSIGNED_LONG_LONG, from, comm);
   text.resize(size);
   constexpr unsigned long long part = 1u << 30;
   for (unsigned long long first = 0; first < size; first += part)
-    MPI_Bcast(&text[first], static_cast<int>(std::min(part, size - first)), MPI_CHAR, 0, comm);
+    MPI_Bcast(&text[first], static_cast<int>(std::min(part, size - first)), MPI_CHAR, from, comm);
   return text;
 }
 

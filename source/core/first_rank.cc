@@ -13,16 +13,28 @@ bool is_first_rank(MPI_Comm comm)
 
 void on_first_rank(MPI_Comm comm, const std::function<void()> &action)
 {
-  std::string error;
-  if (is_first_rank(comm))
-    try {
+  on_every_rank(comm, [&] {
+    if (is_first_rank(comm))
       action();
-    } catch (const UserError &problem) {
-      error = problem.what();
-    }
-  error = broadcast(error, comm);
-  if (!error.empty())
-    throw UserError(error);
+  });
+}
+
+void on_every_rank(MPI_Comm comm, const std::function<void()> &action)
+{
+  int rank, n_ranks;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &n_ranks);
+  std::string error;
+  int first = n_ranks;
+  try {
+    action();
+  } catch (const UserError &problem) {
+    error = problem.what();
+    first = rank;
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+  if (first < n_ranks)
+    throw UserError(broadcast(error, comm, first));
 }
 
 } // namespace eunoe

@@ -11,22 +11,12 @@ namespace eunoe {
 
 namespace {
 
-/// @return 0, or what went wrong
-int sync(const int handle)
-{
-  const int failure = fsync(handle) == 0 ? 0 : errno;
-  // Files without a disk, such as pipes, cannot be synced, nor can those of some file systems.
-  const bool is_unable =
-      failure == EINVAL || failure == EROFS || failure == ENOSYS || failure == ENOTSUP;
-  return is_unable ? 0 : failure;
-}
-
 int sync_path(const std::string &path)
 {
   const int handle = open(path.c_str(), O_RDONLY);
   if (handle < 0)
     return errno;
-  const int failure = sync(handle);
+  const int failure = sync_file(handle);
   close(handle);
   return failure;
 }
@@ -39,6 +29,15 @@ std::string cannot_be_written(const std::string &path, const std::string &error)
          ". Check the folder's permissions and the free space.";
 }
 
+int sync_file(const int handle)
+{
+  const int failure = fsync(handle) == 0 ? 0 : errno;
+  // Files without a disk, such as pipes, cannot be synced, nor can those of some file systems.
+  const bool is_unable =
+      failure == EINVAL || failure == EROFS || failure == ENOSYS || failure == ENOTSUP;
+  return is_unable ? 0 : failure;
+}
+
 void sync_file(const std::string &path)
 {
   const int failure = sync_path(path);
@@ -48,7 +47,7 @@ void sync_file(const std::string &path)
 
 void sync_file(std::FILE *const file, const std::string &path)
 {
-  const int failure = sync(fileno(file));
+  const int failure = sync_file(fileno(file));
   if (failure != 0)
     throw UserError(cannot_be_written(path, std::strerror(failure)));
 }
@@ -93,7 +92,7 @@ void NewFile::complete(const bool sync)
   if (file != nullptr) {
     note(std::fflush(file) == 0);
     if (sync && error.empty()) {
-      const int failure = eunoe::sync(fileno(file));
+      const int failure = sync_file(fileno(file));
       if (failure != 0)
         error = std::strerror(failure);
     }

@@ -4,29 +4,15 @@ from __future__ import annotations
 
 import json
 import struct
+import zlib
 from typing import Callable
 
-TITLE = b"Eunoe checkpoint 5\n"
-
-
-def checksum(data: bytes) -> int:
-    """CRC-64 of ECMA-182."""
-    table = []
-    for byte in range(256):
-        remainder = byte << 56
-        for _ in range(8):
-            remainder = (remainder << 1) ^ (0x42F0E1EBA9EA3693 if remainder >> 63 else 0)
-            remainder &= 0xFFFFFFFFFFFFFFFF
-        table.append(remainder)
-    remainder = 0
-    for byte in data:
-        remainder = (remainder << 8 & 0xFFFFFFFFFFFFFFFF) ^ table[remainder >> 56 ^ byte]
-    return remainder
+TITLE = b"Eunoe checkpoint 6\n"
 
 
 def assembled(head: bytes, sections: bytes) -> bytes:
     data = TITLE + struct.pack("<Q", len(head)) + head + sections
-    return data + struct.pack("<Q", checksum(data))
+    return data + struct.pack("<Q", zlib.crc32(data))
 
 
 def forged(data: bytes, change: Callable[[dict, list], None]) -> bytes:

@@ -13,8 +13,8 @@ namespace eunoe {
 
 // A checkpoint is one file: a line that names the format, the length of the head, the head (JSON:
 // all that is small), then sections of rows of doubles, and at the end a checksum of everything
-// (CRC-64). Numbers are little-endian. Rows are ordered by a key, so the file is the same on any
-// number of ranks.
+// (CRC-32). Numbers are little-endian. Rows are ordered by a key, so the file is the same on any
+// number of ranks. Every rank writes and reads its own part of it.
 
 /// Collects the state of a run and writes it at once.
 class CheckpointWriter
@@ -40,13 +40,8 @@ private:
   struct Section
   {
     std::string name;
-    std::uint64_t n_rows, n_values;
-    Rows part; ///< this rank's part of the rows in the order of the keys
+    Rows rows; ///< this rank's part of the rows in the order of the keys
   };
-
-  void send_sections() const;
-  template <typename Sink>
-  void write_section(const Section &section, Sink &sink) const;
 
   MPI_Comm comm;
   std::vector<Section> sections;
@@ -84,7 +79,7 @@ public:
 private:
   struct File;
   MPI_Comm comm;
-  std::unique_ptr<File> file; ///< on the first rank
+  std::unique_ptr<File> file;
 };
 
 } // namespace eunoe

@@ -7,8 +7,8 @@
 
 namespace eunoe {
 
-/// A text of the first rank, given to every rank; collective.
-std::string broadcast(std::string text, MPI_Comm comm);
+/// A text of a rank, the first one as a rule, given to every rank; collective.
+std::string broadcast(std::string text, MPI_Comm comm, int from = 0);
 
 /// The whole text of a file, read once and given to every rank; collective.
 /// Throws a UserError on every rank if it cannot be read.

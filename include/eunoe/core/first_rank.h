@@ -12,6 +12,10 @@ bool is_first_rank(MPI_Comm comm);
 /// every rank, so that none waits for a rank that has left; collective.
 void on_first_rank(MPI_Comm comm, const std::function<void()> &action);
 
+/// Runs an action without messages on every rank. A UserError of one is thrown on all, that of the
+/// first of them; collective.
+void on_every_rank(MPI_Comm comm, const std::function<void()> &action);
+
 } // namespace eunoe
 
 #endif

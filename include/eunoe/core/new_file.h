@@ -38,6 +38,9 @@ private:
 /// file that was removed meanwhile is ignored.
 void sync_file(const std::string &path);
 void sync_file(std::FILE *file, const std::string &path);
+/// The same for an open file.
+/// @return 0, or the number of the error
+int sync_file(int handle);
 
 /// The same for the names of the files in the folder of @p path.
 void sync_folder_of(const std::string &path);

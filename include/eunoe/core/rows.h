@@ -69,6 +69,17 @@ private:
   std::list<std::vector<double>> owned;
 };
 
+/// Rows with keys by which they are ordered, different from each other on all ranks.
+struct KeyedRows
+{
+  std::vector<std::uint32_t> keys;
+  Rows rows;
+};
+
+/// Brings rows into the order of their keys, over all ranks: the first rank gets the first ones,
+/// and all about as many. No rank sees the keys of all; collective.
+KeyedRows sort_rows(const std::vector<std::uint32_t> &keys, const Rows &rows, MPI_Comm comm);
+
 /// Where a row is kept among all ranks.
 struct Origin
 {

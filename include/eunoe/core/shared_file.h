@@ -1,0 +1,41 @@
+#ifndef eunoe_core_shared_file_h
+#define eunoe_core_shared_file_h
+
+#include <cstdint>
+#include <mpi.h>
+#include <string>
+
+namespace eunoe {
+
+/// A file that all ranks write, each its own parts, beside the old one of its name. It takes the
+/// place of that when it is complete, so that no half-written file is left.
+class SharedFile
+{
+public:
+  /// Collective. Errors are kept for `complete`.
+  SharedFile(const std::string &path, MPI_Comm comm);
+  /// Removes what was not completed.
+  ~SharedFile();
+  SharedFile(const SharedFile &) = delete;
+  SharedFile &operator=(const SharedFile &) = delete;
+
+  /// Writes @p n bytes from the byte @p begin of the file on.
+  void write(std::uint64_t begin, const void *data, std::uint64_t n);
+
+  /// Waits until the file and its name would survive a crash of the machine; collective. Throws a
+  /// UserError on every rank if a rank could not write its parts; then the old file is as it was.
+  void complete();
+
+private:
+  void note(bool ok);
+
+  MPI_Comm comm;
+  const std::string path, beside;
+  int handle = -1;
+  bool is_complete = false;
+  std::string error; ///< the first one here
+};
+
+} // namespace eunoe
+
+#endif
