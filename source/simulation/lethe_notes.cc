@@ -92,6 +92,10 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   if (input.count("type", "periodic") > 1)
     notes.emplace_back("Lethe: with two periodic directions, some contacts count twice on several "
                        "ranks.");
+  if (input.has({"mesh"}, "expand particle-wall contact search", "true"))
+    notes.emplace_back("Lethe: by 'expand particle-wall contact search' a flat wall counts once "
+                       "for every boundary cell around a particle, which makes it stiffer and "
+                       "dampens more; here it counts once.");
   if (goes_on)
     notes.emplace_back("Lethe: its restart files hold no contact history; here contacts keep it.");
   return notes;

@@ -261,5 +261,6 @@ EUNOE_MPI_TEST()
       "subsection model parameters\n set integration method = explicit_euler\n"
       " subsection load balancing\n  set load balance method = dynamic\n end\nend\n");
   print_problems("set dimension = 3\nsubsection simulation control\n set output frequency = 10\n"
-                 "end\nsubsection insertion info\n set insertion frequency = 7\nend\n");
+                 "end\nsubsection insertion info\n set insertion frequency = 7\nend\n"
+                 "subsection mesh\n set expand particle-wall contact search = true\nend\n");
 }
