@@ -1,8 +1,10 @@
 #include <eunoe/core/rows.h>
+#include <eunoe/core/sparse_exchange.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <numeric>
 
 namespace eunoe {
@@ -47,48 +49,52 @@ private:
   std::vector<MPI_Request> requests;
 };
 
-/// Rows that other ranks kept, by rank and in the order in which they were asked for.
+/// Rows that another rank kept, in the order in which they were asked for.
 struct Fetched
 {
-  std::vector<std::vector<int>> lengths;
-  std::vector<std::vector<double>> values;
+  std::vector<int> lengths;
+  std::vector<double> values;
 };
 
-/// Asks every rank for rows that it kept: first how many, then which, then their contents.
+/// Asks ranks for rows that they kept: first how many, then which, then their contents.
 /// @param wanted by rank
-Fetched fetch(const Rows &kept, const std::vector<std::vector<int>> &wanted, MPI_Comm comm)
+std::map<int, Fetched> fetch(const Rows &kept, const std::map<int, std::vector<int>> &wanted,
+                             MPI_Comm comm)
 {
-  const int n_ranks = static_cast<int>(wanted.size());
-  std::vector<int> n_wanted(n_ranks), n_asked(n_ranks);
-  for (int r = 0; r < n_ranks; ++r)
-    n_wanted[r] = static_cast<int>(wanted[r].size());
-  MPI_Alltoall(n_wanted.data(), 1, MPI_INT, n_asked.data(), 1, MPI_INT, comm);
+  std::map<int, int> n_wanted;
+  for (const auto &[rank, list] : wanted)
+    n_wanted[rank] = static_cast<int>(list.size());
 
   Messages messages(comm);
-  std::vector<std::vector<int>> asked(n_ranks), lengths_out(n_ranks);
-  std::vector<std::vector<double>> values_out(n_ranks);
-  Fetched in = {std::vector<std::vector<int>>(n_ranks), std::vector<std::vector<double>>(n_ranks)};
-  for (int r = 0; r < n_ranks; ++r) {
-    asked[r].resize(n_asked[r]);
-    messages.receive(asked[r], MPI_INT, r, tag_rows);
-    messages.send(wanted[r], MPI_INT, r, tag_rows);
+  std::map<int, std::vector<int>> asked;
+  for (const auto &[rank, n] : numbers_from(n_wanted, comm)) {
+    asked[rank].resize(n);
+    messages.receive(asked[rank], MPI_INT, rank, tag_rows);
   }
+  for (const auto &[rank, list] : wanted)
+    messages.send(list, MPI_INT, rank, tag_rows);
   messages.wait();
-  for (int r = 0; r < n_ranks; ++r) {
-    for (const int row : asked[r]) {
-      lengths_out[r].push_back(static_cast<int>(kept.length(row)));
-      values_out[r].insert(values_out[r].end(), kept[row], kept[row] + kept.length(row));
+
+  std::map<int, Fetched> out, in;
+  for (const auto &[rank, list] : asked) {
+    Fetched &answer = out[rank];
+    for (const int row : list) {
+      answer.lengths.push_back(static_cast<int>(kept.length(row)));
+      answer.values.insert(answer.values.end(), kept[row], kept[row] + kept.length(row));
     }
-    in.lengths[r].resize(n_wanted[r]);
-    messages.receive(in.lengths[r], MPI_INT, r, tag_lengths);
-    messages.send(lengths_out[r], MPI_INT, r, tag_lengths);
+    messages.send(answer.lengths, MPI_INT, rank, tag_lengths);
+  }
+  for (const auto &[rank, n] : n_wanted) {
+    in[rank].lengths.resize(n);
+    messages.receive(in[rank].lengths, MPI_INT, rank, tag_lengths);
   }
   messages.wait();
-  for (int r = 0; r < n_ranks; ++r) {
-    in.values[r].resize(
-        std::accumulate(in.lengths[r].begin(), in.lengths[r].end(), std::size_t(0)));
-    messages.receive(in.values[r], MPI_DOUBLE, r, tag_values);
-    messages.send(values_out[r], MPI_DOUBLE, r, tag_values);
+  for (const auto &[rank, answer] : out)
+    messages.send(answer.values, MPI_DOUBLE, rank, tag_values);
+  for (auto &[rank, answer] : in) {
+    answer.values.resize(
+        std::accumulate(answer.lengths.begin(), answer.lengths.end(), std::size_t(0)));
+    messages.receive(answer.values, MPI_DOUBLE, rank, tag_values);
   }
   messages.wait();
   return in;
@@ -98,29 +104,32 @@ Fetched fetch(const Rows &kept, const std::vector<std::vector<int>> &wanted, MPI
 
 RowViews fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm)
 {
-  int rank, n_ranks;
+  int rank;
   MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &n_ranks);
-  std::vector<std::vector<int>> wanted(n_ranks);
+  std::map<int, std::vector<int>> wanted;
   for (const Origin &origin : origins)
     if (origin.rank >= 0 && origin.rank != rank)
       wanted[origin.rank].push_back(origin.row);
-  Fetched in = fetch(kept, wanted, comm);
 
   RowViews rows;
   rows.reserve(origins.size());
-  std::vector<std::size_t> next_row(n_ranks, 0);
-  std::vector<const double *> next_value(n_ranks);
-  for (int r = 0; r < n_ranks; ++r)
-    next_value[r] = rows.own(std::move(in.values[r])).data();
+  struct Next
+  {
+    std::vector<int> lengths;
+    const double *values;
+    std::size_t row;
+  };
+  std::map<int, Next> next;
+  for (auto &[from, answer] : fetch(kept, wanted, comm))
+    next[from] = {answer.lengths, rows.own(std::move(answer.values)).data(), 0};
   for (const Origin &origin : origins) {
-    const int r = origin.rank;
-    if (r == rank)
+    if (origin.rank == rank)
       rows.add(kept[origin.row], kept.length(origin.row));
-    else if (r >= 0) {
-      const int n = in.lengths[r][next_row[r]++];
-      rows.add(next_value[r], n);
-      next_value[r] += n;
+    else if (origin.rank >= 0) {
+      Next &place = next[origin.rank];
+      const int n = place.lengths[place.row++];
+      rows.add(place.values, n);
+      place.values += n;
     } else
       rows.add(nullptr, 0);
   }

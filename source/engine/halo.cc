@@ -1,3 +1,4 @@
+#include <eunoe/core/sparse_exchange.h>
 #include <eunoe/engine/halo.h>
 
 #include <algorithm>
@@ -55,20 +56,17 @@ std::map<int, std::vector<std::int32_t>> Halo::rows_near(const ParticleArrays &p
 void Halo::send_new(const ParticleArrays &particles,
                     const std::map<int, std::vector<std::int32_t>> &rows)
 {
-  int n_ranks;
-  MPI_Comm_size(comm, &n_ranks);
-  std::vector<int> n_sent(n_ranks, 0), n_received(n_ranks, 0);
+  std::map<int, int> n_sent;
   for (const auto &[rank, list] : rows)
     n_sent[rank] = static_cast<int>(list.size());
-  MPI_Alltoall(n_sent.data(), 1, MPI_INT, n_received.data(), 1, MPI_INT, comm);
-  for (int rank = 0; rank < n_ranks; ++rank) {
-    if (n_sent[rank] == 0 && n_received[rank] == 0)
-      continue;
-    Neighbour neighbour;
+  const std::map<int, int> n_received = numbers_from(n_sent, comm);
+  std::map<int, Neighbour> by_rank;
+  for (const auto &[rank, list] : rows)
+    by_rank[rank].sent = list;
+  for (const auto &[rank, n] : n_received)
+    by_rank[rank].received.resize(n);
+  for (auto &[rank, neighbour] : by_rank) {
     neighbour.rank = rank;
-    if (n_sent[rank] > 0)
-      neighbour.sent = rows.at(rank);
-    neighbour.received.resize(n_received[rank]);
     for (const std::int32_t row : neighbour.sent) {
       append(neighbour.out, particles.position[row], true);
       append(neighbour.out, particles.velocity[row], true);
@@ -76,7 +74,7 @@ void Halo::send_new(const ParticleArrays &particles,
       neighbour.out.push_back(particles.id[row]);
       neighbour.out.push_back(particles.type[row]);
     }
-    neighbour.in.resize(build_size * n_received[rank]);
+    neighbour.in.resize(build_size * neighbour.received.size());
     neighbours.push_back(std::move(neighbour));
   }
   exchange(tag_build);
