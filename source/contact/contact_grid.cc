@@ -26,8 +26,9 @@ unsigned int unite(Run *runs, unsigned int n)
   return n == 0 ? 0 : last + 1;
 }
 
-/// The particles of a rank in the order of (cell, id), with the start of every cell of the box of
-/// cells that they occupy.
+/// The particles of a rank in the order of (cell, id). Where a cell begins is in a table if the box
+/// of cells that they occupy is about as large as their number, else it is looked up, so that
+/// memory goes by the particles of the rank and not by the domain.
 class CellOrder
 {
 public:
@@ -42,25 +43,19 @@ public:
         first[d] = std::min(first[d], c[d]);
         last[d] = std::max(last[d], c[d]);
       }
-    std::size_t n_cells = 1;
+    double n_cells = 1.;
     for (unsigned int d = 0; d < 3; ++d) {
       n[d] = std::max(0, last[d] - first[d] + 1);
       n_cells *= n[d];
     }
-    start.assign(n_cells + 1, 0);
     std::vector<std::int64_t> index(cells.size());
-    for (std::size_t row = 0; row < cells.size(); ++row) {
-      index[row] = local(cells[row]);
-      ++start[index[row] + 1];
-    }
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    rows.resize(cells.size());
-    std::vector<std::int32_t> next(start.begin(), start.end() - 1);
     for (std::size_t row = 0; row < cells.size(); ++row)
-      rows[next[index[row]]++] = static_cast<std::int32_t>(row);
-    for (std::size_t c = 0; c < n_cells; ++c)
-      std::sort(rows.begin() + start[c], rows.begin() + start[c + 1],
-                [&](std::int32_t a, std::int32_t b) { return p.id[a] < p.id[b]; });
+      index[row] = local(cells[row]);
+    rows.resize(cells.size());
+    if (n_cells <= most_cells_a_particle * static_cast<double>(cells.size()))
+      make_table(index, p.id, static_cast<std::size_t>(n_cells));
+    else
+      sort(index, p.id);
   }
 
   std::int64_t local(const std::array<int, 3> &c) const
@@ -74,7 +69,7 @@ public:
                            Run *runs) const
   {
     unsigned int count = 0;
-    const std::int32_t own = start[local(c)];
+    const std::int32_t own = start(local(c));
     for (int dx = -1; dx <= 1; ++dx)
       for (int dy = -1; dy <= 1; ++dy) {
         std::array<int, 3> column = {{c[0] + dx, c[1] + dy, 0}};
@@ -86,7 +81,7 @@ public:
           if (from > to)
             return;
           const std::int64_t base = local({{column[0], column[1], 0}});
-          const Run run = {std::max(own, start[base + from]), start[base + to + 1]};
+          const Run run = {std::max(own, start(base + from)), start(base + to + 1)};
           if (run.begin < run.end)
             runs[count++] = run;
         };
@@ -102,6 +97,45 @@ public:
   std::vector<std::int32_t> rows;
 
 private:
+  static constexpr double most_cells_a_particle = 8.;
+
+  void make_table(const std::vector<std::int64_t> &index, const std::vector<ParticleId> &ids,
+                  const std::size_t n_cells)
+  {
+    table.assign(n_cells + 1, 0);
+    for (const std::int64_t cell : index)
+      ++table[cell + 1];
+    std::partial_sum(table.begin(), table.end(), table.begin());
+    std::vector<std::int32_t> next(table.begin(), table.end() - 1);
+    for (std::size_t row = 0; row < index.size(); ++row)
+      rows[next[index[row]]++] = static_cast<std::int32_t>(row);
+    for (std::size_t c = 0; c < n_cells; ++c)
+      std::sort(rows.begin() + table[c], rows.begin() + table[c + 1],
+                [&](std::int32_t a, std::int32_t b) { return ids[a] < ids[b]; });
+  }
+
+  void sort(const std::vector<std::int64_t> &index, const std::vector<ParticleId> &ids)
+  {
+    std::iota(rows.begin(), rows.end(), 0);
+    std::sort(rows.begin(), rows.end(), [&](std::int32_t a, std::int32_t b) {
+      return index[a] != index[b] ? index[a] < index[b] : ids[a] < ids[b];
+    });
+    for (std::size_t place = 0; place < rows.size(); ++place)
+      if (occupied.empty() || occupied.back().cell != index[rows[place]])
+        occupied.push_back({index[rows[place]], static_cast<std::int32_t>(place)});
+  }
+
+  /// Place of the first particle in a cell or behind it.
+  std::int32_t start(const std::int64_t cell) const
+  {
+    if (!table.empty())
+      return table[cell];
+    const auto next =
+        std::lower_bound(occupied.begin(), occupied.end(), cell,
+                         [](const Occupied &one, std::int64_t at) { return one.cell < at; });
+    return next == occupied.end() ? static_cast<std::int32_t>(rows.size()) : next->begin;
+  }
+
   /// Moves a coordinate back into the grid; false beyond the box of cells.
   bool wrap(std::array<int, 3> &c, unsigned int d, const std::array<bool, 3> &periodic) const
   {
@@ -110,8 +144,15 @@ private:
     return c[d] >= first[d] && c[d] < first[d] + n[d];
   }
 
+  struct Occupied
+  {
+    std::int64_t cell;
+    std::int32_t begin;
+  };
+
   std::array<int, 3> n_global, first, n;
-  std::vector<std::int32_t> start;
+  std::vector<std::int32_t> table; ///< empty if starts are looked up
+  std::vector<Occupied> occupied;
 };
 
 /// What decides which particles are pairs, in the order of cells, one array per component.
@@ -191,17 +232,10 @@ ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox
 {
   const Vec3 extent = upper - lower;
   std::sort(axis.begin(), axis.end(), [&](int a, int b) { return extent[a] > extent[b]; });
-  // Wider cells find the same pairs; the limit keeps the cells from filling the memory.
-  constexpr double most = 1 << 27;
-  std::array<double, 3> number;
-  for (unsigned int d = 0; d < 3; ++d)
-    number[d] = std::min(std::max(1., std::floor(extent[axis[d]] / cell_size)), most);
-  while (number[0] * number[1] * number[2] > most) {
-    double &largest = *std::max_element(number.begin(), number.end());
-    largest = std::ceil(0.5 * largest);
-  }
+  // Wider cells find the same pairs. With so many along each axis the numbers of cells fit.
+  constexpr double most = 1 << 20;
   for (unsigned int d = 0; d < 3; ++d) {
-    n[d] = static_cast<int>(number[d]);
+    n[d] = static_cast<int>(std::min(std::max(1., std::floor(extent[axis[d]] / cell_size)), most));
     inverse_width[d] = n[d] / extent[axis[d]];
   }
 }
