@@ -24,6 +24,7 @@ struct Contact
   double radius = 1e-3, mass = 1e-6, inertia = 1e-13;
   double closing_speed = 0.;
   Vec3 slip, roll;
+  double twist = 0.;
   int kind = 0;
   std::array<double, PairBlock::max_history> history = {};
 };
@@ -59,6 +60,7 @@ public:
       set(b.nx, b.ny, b.nz, k, c.normal);
       set(b.slip_x, b.slip_y, b.slip_z, k, c.slip);
       set(b.roll_x, b.roll_y, b.roll_z, k, c.roll);
+      b.twist[k] = c.twist;
       b.overlap[k] = c.overlap;
       b.distance[k] = c.distance > 0. ? c.distance : 4. * c.radius - c.overlap;
       b.radius[k] = c.radius;
@@ -129,7 +131,9 @@ inline std::vector<Contact> different_contacts(double depth)
     c.inertia = 1e-13 * (1.5 + unit(generator));
     c.closing_speed = unit(generator);
     c.slip = in_plane(vector());
-    c.roll = in_plane(100. * vector());
+    const Vec3 spin = 100. * vector();
+    c.roll = in_plane(spin);
+    c.twist = dot(spin, c.normal);
   }
   return contacts;
 }

@@ -216,6 +216,7 @@ EUNOE_MULTIVERSION void describe(PairBlock &b, const ParticleArrays &p, const st
     b.roll_x[k] = wx - twist * nx;
     b.roll_y[k] = wy - twist * ny;
     b.roll_z[k] = wz - twist * nz;
+    b.twist[k] = twist;
   }
 }
 

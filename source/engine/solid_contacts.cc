@@ -274,7 +274,8 @@ void SolidContacts::add_to(Batch &b, const ParticleArrays &particles, const Soli
   const double closing = dot(v, n);
   const Vec3 slip = v - closing * n;
   const Vec3 w = spin.vec() - solid.state.angular_velocity;
-  const Vec3 roll = w - dot(w, n) * n;
+  const double twist = dot(w, n);
+  const Vec3 roll = w - twist * n;
 
   b.nx[k] = n.x;
   b.ny[k] = n.y;
@@ -291,6 +292,7 @@ void SolidContacts::add_to(Batch &b, const ParticleArrays &particles, const Soli
   b.roll_x[k] = roll.x;
   b.roll_y[k] = roll.y;
   b.roll_z[k] = roll.z;
+  b.twist[k] = twist;
   b.kind[k] = model.get_materials().kind(particles.type[p], solid.material);
   const double *const history = record == ContactMemory::none ? nullptr : memory[record];
   for (unsigned int h = 0; h < model.history_size(); ++h)
@@ -307,7 +309,7 @@ void SolidContacts::apply_laws(Batch &b, const double dt) const
   for (unsigned int k = b.n; k < PairBlock::size; ++k) {
     for (double *lanes :
          {b.nx, b.ny, b.nz, b.distance, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
-          b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z})
+          b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z, b.twist})
       lanes[k] = lanes[b.n - 1];
     b.kind[k] = b.kind[b.n - 1];
     for (unsigned int h = 0; h < model.history_size(); ++h)

@@ -37,6 +37,7 @@ EUNOE_TEST()
             c.normal = mirrored(c.normal, axis);
             c.slip = mirrored(c.slip, axis);
             c.roll = -mirrored(c.roll, axis);
+            c.twist = -c.twist;
             laws.model.mirror(c.history.data(), axis);
           }
           const std::vector<Response> originals = laws.apply(contacts, 1e-7);

@@ -52,8 +52,9 @@ void check_constant()
   std::vector<Vec3> torque, reference;
   for (std::size_t k = 0; k < contacts.size(); ++k) {
     torque.push_back(responses[k].torque);
+    const Vec3 spin = contacts[k].roll + contacts[k].twist * contacts[k].normal;
     reference.push_back(-friction * contacts[k].radius * std::abs(responses[k].contact_force) /
-                        norm(contacts[k].roll) * contacts[k].roll);
+                        norm(spin) * spin);
   }
   check_close("constant: torque against the relative spin, cohesion apart",
               relative_error(torque, reference), 0., 1e-14);

@@ -81,10 +81,10 @@ void drum()
   powder.rolling_friction = 0.1;
   const double R = powder.radius(), y = -0.01 + R - powder.overlap(powder.mass() * 9.81);
   const double spin = 30., rate = 2.5 * powder.rolling_friction * 9.81 / R, caught = spin / rate;
-  double worst = 0., twist = 0.;
+  double worst = 0., aside = 0.;
   Case test_case(box_input(
       1e-5, 2. * caught,
-      powder.input() + insertion_input({{{2e-3, y, 0.}, {}, {0., 70., 0.}}}) +
+      powder.input() + insertion_input({{{2e-3, y, 0.}, {}, {}}}) +
           "subsection model parameters\n set rolling resistance torque method = constant\nend\n" +
           boundary_input(" set type = rotational\n set rotational speed = 30\n"
                          " set rotational vector = 0, 0, 1\n"
@@ -93,13 +93,13 @@ void drum()
     const TouchingSphere s = spheres(simulation)[0];
     if (simulation.time() < 0.97 * caught)
       worst = std::max(worst, std::abs(s.spin.z - rate * simulation.time()));
-    twist = std::max(twist, std::abs(s.spin.y - 70.));
+    aside = std::max(aside, std::abs(s.spin.x) + std::abs(s.spin.y));
   });
   const TouchingSphere s = spheres(*test_case)[0];
   check_close("drum: spin while it is taken along", worst / spin, 0., 1e-10);
   // At the end the torque changes its sign in every step.
   check_close("drum: spin in the end", s.spin.z, spin, rate * 1e-5);
-  check_close("drum: spin about the normal", twist / 70., 0., 1e-12);
+  check_close("drum: spin about other axes", aside / spin, 0., 1e-12);
   check_close("drum: it stays in its place", std::abs(s.position.x - 2e-3), 0., 1e-15);
 }
 

@@ -50,6 +50,7 @@ struct alignas(64) PairBlock : ContactForces
   alignas(64) Lanes closing_speed; ///< normal velocity of i against j, positive in approach (m/s)
   alignas(64) Lanes slip_x, slip_y, slip_z; ///< tangential velocity of i's surface against j's
   alignas(64) Lanes roll_x, roll_y, roll_z; ///< spin of i less spin of j, without twist (rad/s)
+  alignas(64) Lanes twist;                  ///< spin of i less spin of j about the normal (rad/s)
   ///@}
 
   /// What the contacts remember, `[component][contact]`; each law owns a range of components.

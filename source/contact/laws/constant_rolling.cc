@@ -5,8 +5,8 @@
 namespace eunoe {
 namespace {
 
-/// Rolling resistance of constant magnitude mu_r R_e |F_n| against the relative spin
-/// (Zhou, Wright, Yang, Xu, Yu 1999).
+/// Rolling resistance of constant magnitude mu_r R_e |F_n| against the whole relative spin, twist
+/// included (Zhou, Wright, Yang, Xu, Yu 1999).
 struct ConstantRolling
 {
   EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
@@ -14,12 +14,14 @@ struct ConstantRolling
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double torque = friction[k] * b.radius[k] * std::abs(b.contact_force[k]);
-      const double speed2 =
-          b.roll_x[k] * b.roll_x[k] + b.roll_y[k] * b.roll_y[k] + b.roll_z[k] * b.roll_z[k];
+      const double wx = b.roll_x[k] + b.twist[k] * b.nx[k];
+      const double wy = b.roll_y[k] + b.twist[k] * b.ny[k];
+      const double wz = b.roll_z[k] + b.twist[k] * b.nz[k];
+      const double speed2 = wx * wx + wy * wy + wz * wz;
       const double factor = speed2 > 0. ? -torque / std::sqrt(speed2 > 0. ? speed2 : 1.) : 0.;
-      b.torque_x[k] += factor * b.roll_x[k];
-      b.torque_y[k] += factor * b.roll_y[k];
-      b.torque_z[k] += factor * b.roll_z[k];
+      b.torque_x[k] += factor * wx;
+      b.torque_y[k] += factor * wy;
+      b.torque_z[k] += factor * wz;
     }
   }
 };
