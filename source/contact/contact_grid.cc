@@ -1,4 +1,5 @@
 #include <eunoe/contact/contact_grid.h>
+#include <eunoe/contact/living_contacts.h>
 #include <eunoe/core/simd.h>
 
 #include <algorithm>
@@ -94,10 +95,31 @@ public:
     return unite(runs, count);
   }
 
+  /// Whether cells can be marked.
+  bool has_table() const { return !table.empty(); }
+
+  /// Marks the cells around @p c, which may lie outside of the box of cells.
+  void mark_around(const std::array<int, 3> &c, const std::array<bool, 3> &periodic)
+  {
+    marked.resize(table.size(), 0);
+    for (int dx = -1; dx <= 1; ++dx)
+      for (int dy = -1; dy <= 1; ++dy)
+        for (int dz = -1; dz <= 1; ++dz) {
+          std::array<int, 3> near = {{c[0] + dx, c[1] + dy, c[2] + dz}};
+          if (wrap(near, 0, periodic) && wrap(near, 1, periodic) && wrap(near, 2, periodic))
+            marked[local(near)] = 1;
+        }
+  }
+
+  bool is_marked(const std::array<int, 3> &c) const
+  {
+    return !marked.empty() && marked[local(c)] != 0;
+  }
+
   std::vector<std::int32_t> rows;
 
 private:
-  static constexpr double most_cells_a_particle = 8.;
+  static constexpr double most_cells_a_particle = 16.;
 
   void make_table(const std::vector<std::int64_t> &index, const std::vector<ParticleId> &ids,
                   const std::size_t n_cells)
@@ -151,7 +173,8 @@ private:
   };
 
   std::array<int, 3> n_global, first, n;
-  std::vector<std::int32_t> table; ///< empty if starts are looked up
+  std::vector<std::int32_t> table;  ///< empty if starts are looked up
+  std::vector<std::uint8_t> marked; ///< by cell, if some are
   std::vector<Occupied> occupied;
 };
 
@@ -224,6 +247,66 @@ private:
   std::vector<ParticleId> id;
 };
 
+/// Finds the pairs of one particle after the other, in the order of cells.
+class PairFinder
+{
+public:
+  PairFinder(const ParticleArrays &p, const CellOrder &order,
+             const std::vector<std::array<int, 3>> &cells, const PeriodicBox &box,
+             const std::array<bool, 3> &periodic, const double reach)
+      : order(order), cells(cells), period(box.length), half(box.half()), periodic(periodic),
+        reach(reach), spheres(p, order.rows)
+  {
+  }
+
+  /// Appends the pairs of which the particle at a place comes first.
+  void append(const std::size_t place, PairList &pairs)
+  {
+    const std::array<int, 3> &own_cell = cells[order.rows[place]];
+    if (run_cell == nullptr || *run_cell != own_cell) {
+      n_runs = order.runs_around(own_cell, periodic, runs.data());
+      run_cell = &own_cell;
+      std::size_t most = 1;
+      for (unsigned int r = 0; r < n_runs; ++r)
+        most += runs[r].end - runs[r].begin;
+      i.resize(std::max(i.size(), most));
+      j.resize(std::max(j.size(), most));
+    }
+    std::int32_t found = 0;
+    for (unsigned int r = 0; r < n_runs; ++r) {
+      const Run rest = {std::max(runs[r].begin, static_cast<std::int32_t>(place) + 1), runs[r].end};
+      found += spheres.find_near(place, rest, reach, period, half, &i[found], &j[found]);
+    }
+    pairs.append(i.data(), j.data(), found);
+  }
+
+private:
+  const CellOrder &order;
+  const std::vector<std::array<int, 3>> &cells;
+  const Vec3 period, half;
+  const std::array<bool, 3> periodic;
+  const double reach;
+  const Spheres spheres;
+  std::array<Run, 27> runs;
+  unsigned int n_runs = 0;
+  const std::array<int, 3> *run_cell = nullptr;
+  std::vector<std::int32_t> i, j;
+};
+
+/// Lists all pairs and notes their groups.
+void list_all(PairFinder &finder, const std::vector<std::int32_t> &rows, PairList &pairs,
+              ContactGrid::Found *const found)
+{
+  if (found != nullptr)
+    found->groups.resize(rows.size());
+  for (std::size_t place = 0; place < rows.size(); ++place) {
+    const std::size_t begin = pairs.size();
+    finder.append(place, pairs);
+    if (found != nullptr)
+      found->groups[rows[place]] = {begin, pairs.size()};
+  }
+}
+
 } // namespace
 
 ContactGrid::ContactGrid(const Vec3 &lower, const Vec3 &upper, const PeriodicBox &box,
@@ -256,41 +339,75 @@ std::uint64_t ContactGrid::key(const Vec3 &x) const
   return (static_cast<std::uint64_t>(c[0]) * n[1] + c[1]) * n[2] + c[2];
 }
 
-void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairList &pairs) const
+std::vector<ContactGrid::Cell> ContactGrid::cells_of(const ParticleArrays &p) const
 {
-  if (p.size() == 0)
-    return;
   std::vector<Cell> cells(p.size());
   for (std::size_t row = 0; row < p.size(); ++row)
     cells[row] = cell(p.position[row].vec());
-  const CellOrder order(cells, p, n);
-  const Spheres spheres(p, order.rows);
-  const Vec3 half = box.half();
-  const std::array<bool, 3> periodic = {
-      {box.is_periodic(axis[0]), box.is_periodic(axis[1]), box.is_periodic(axis[2])}};
+  return cells;
+}
 
-  std::array<Run, 27> runs;
-  unsigned int n_runs = 0;
-  const Cell *run_cell = nullptr;
-  std::vector<std::int32_t> i, j;
-  for (std::size_t place = 0; place < order.rows.size(); ++place) {
-    const Cell &own_cell = cells[order.rows[place]];
-    if (run_cell == nullptr || *run_cell != own_cell) {
-      n_runs = order.runs_around(own_cell, periodic, runs.data());
-      run_cell = &own_cell;
-      std::size_t most = 1;
-      for (unsigned int r = 0; r < n_runs; ++r)
-        most += runs[r].end - runs[r].begin;
-      i.resize(std::max(i.size(), most));
-      j.resize(std::max(j.size(), most));
-    }
-    std::int32_t found = 0;
-    for (unsigned int r = 0; r < n_runs; ++r) {
-      const Run rest = {std::max(runs[r].begin, static_cast<std::int32_t>(place) + 1), runs[r].end};
-      found += spheres.find_near(place, rest, reach, box.length, half, &i[found], &j[found]);
-    }
-    pairs.append(i.data(), j.data(), found);
+std::array<bool, 3> ContactGrid::periodic_axes() const
+{
+  return {{box.is_periodic(axis[0]), box.is_periodic(axis[1]), box.is_periodic(axis[2])}};
+}
+
+void ContactGrid::note(std::vector<Cell> &&cells, Found *const found) const
+{
+  if (found != nullptr) {
+    found->lower = lower;
+    found->cells = std::move(cells);
   }
+}
+
+void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairList &pairs,
+                             Found *const found) const
+{
+  std::vector<Cell> cells = cells_of(p);
+  const CellOrder order(cells, p, n);
+  PairFinder finder(p, order, cells, box, periodic_axes(), reach);
+  list_all(finder, order.rows, pairs, found);
+  note(std::move(cells), found);
+}
+
+void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
+                                   const std::vector<std::uint8_t> &moved, PairList &pairs,
+                                   Found *const found) const
+{
+  const LivingContacts contacts(pairs, p.size());
+  const PairList old = pairs.take_pairs();
+  std::vector<Cell> cells = cells_of(p);
+  CellOrder order(cells, p, n);
+  const std::array<bool, 3> periodic = periodic_axes();
+  PairFinder finder(p, order, cells, box, periodic, reach);
+  const auto n_moved =
+      std::count_if(moved.begin(), moved.end(), [](auto flag) { return flag != 0; });
+  if (found == nullptr || norm_square(lower - found->lower) > 0. || !order.has_table() ||
+      2 * static_cast<std::size_t>(n_moved) > p.size())
+  {
+    list_all(finder, order.rows, pairs, found);
+    contacts.attach(pairs, 0);
+    note(std::move(cells), found);
+    return;
+  }
+  for (std::size_t row = 0; row < p.size(); ++row)
+    if (moved[row] != 0) {
+      order.mark_around(cells[row], periodic);
+      if (cells[row] != found->cells[row])
+        order.mark_around(found->cells[row], periodic);
+    }
+  for (std::size_t place = 0; place < order.rows.size(); ++place) {
+    const std::int32_t row = order.rows[place];
+    Found::Group &group = found->groups[row];
+    const std::size_t begin = pairs.size();
+    if (order.is_marked(cells[row])) {
+      finder.append(place, pairs);
+      contacts.attach(pairs, begin);
+    } else
+      pairs.append(old, group.begin, group.end);
+    group = {begin, pairs.size()};
+  }
+  note(std::move(cells), found);
 }
 
 } // namespace eunoe

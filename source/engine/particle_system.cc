@@ -60,11 +60,21 @@ void ParticleSystem::leave_out_sleepers()
   pairs.some_sleep = !particles.awake.empty();
   pairs.awake.clear();
   pairs.near.forget();
+  particles.pressed_rows.clear();
   if (!pairs.some_sleep)
     return;
+  particles.clear_forces_on_sleepers();
+  std::vector<std::uint8_t> is_pressed(particles.size(), 0);
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if ((particles.awake[pairs.i[k]] | particles.awake[pairs.j[k]]) != 0)
+    if ((particles.awake[pairs.i[k]] | particles.awake[pairs.j[k]]) != 0) {
       pairs.awake.push_back(static_cast<std::int32_t>(k));
+      is_pressed[pairs.i[k]] = is_pressed[pairs.j[k]] = 1;
+    }
+  for (const SolidContacts::Candidate &candidate : solid_contacts.get_candidates())
+    is_pressed[candidate.particle] = 1;
+  for (std::size_t row = 0; row < particles.n_owned; ++row)
+    if (is_pressed[row] != 0 && particles.awake[row] == 0)
+      particles.pressed_rows.push_back(static_cast<std::int32_t>(row));
 }
 
 void ParticleSystem::add_loads(const std::vector<std::size_t> &list, const double time)

@@ -1,6 +1,5 @@
 // Searches: how particles come to the ranks that own them, and the lists of what can touch.
 
-#include <eunoe/contact/living_contacts.h>
 #include <eunoe/engine/load_balancing.h>
 #include <eunoe/engine/particle_system.h>
 
@@ -97,9 +96,13 @@ void ParticleSystem::make_room_for_contacts()
   pairs.memory.reserve(n + n / 5);
 }
 
-void ParticleSystem::list_pairs()
+ContactGrid::Found *ParticleSystem::found_if_any_sleeps()
 {
-  grid.find_pairs(particles, skin + model.range(), pairs);
+  return physics.asleep ? &found : nullptr;
+}
+
+void ParticleSystem::use_pairs()
+{
   pairs.trim();
   halo.leave_out_unpaired(particles, pairs);
 }
@@ -112,7 +115,8 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   halo.build(particles, store, grid, skin + 2. * largest_drift + model.range());
   drift = 0.;
   pairs.clear(model.history_size());
-  list_pairs();
+  grid.find_pairs(particles, skin + model.range(), pairs, found_if_any_sleeps());
+  use_pairs();
   make_room_for_contacts();
   solid_contacts.search(particles, solids, skin + physics.wall_model.range());
   return origins;
@@ -159,19 +163,20 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   if (some_leave != 0)
     return false;
 
+  std::vector<std::uint8_t> has_moved(particles.size(), 1);
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     Quad &x = particles.position[row];
     const Vec3 wrapped = domain.periods().wrap(x.vec());
+    has_moved[row] = norm_square(wrapped - particles.reference[row]) == 0. ? 0 : 1;
     x = {wrapped.x, wrapped.y, wrapped.z, x.w};
     particles.reference[row] = wrapped;
   }
   particles.wake_all();
   halo.update_all(particles);
+  halo.update(has_moved);
   grid.move_to(domain.centre());
-  const LivingContacts contacts(pairs, particles.size());
-  pairs.clear_pairs();
-  list_pairs();
-  contacts.attach(pairs);
+  grid.find_pairs_again(particles, skin + model.range(), has_moved, pairs, found_if_any_sleeps());
+  use_pairs();
   solid_contacts.search_again(particles, solids, skin + physics.wall_model.range());
   ++searches;
   ++searches_in_place;

@@ -22,6 +22,7 @@ void ParticleArrays::wake_all()
 {
   awake.clear();
   awake_rows.clear();
+  pressed_rows.clear();
   sleepers_moved2 = 0.;
 }
 
@@ -30,6 +31,12 @@ void ParticleArrays::clear_forces_on_sleepers()
   for (std::size_t row = 0; row < n_owned; ++row)
     if (awake[row] == 0)
       force[row] = torque[row] = Quad();
+}
+
+void ParticleArrays::clear_forces_on_pressed()
+{
+  for (const std::int32_t row : pressed_rows)
+    force[row] = torque[row] = Quad();
 }
 
 } // namespace eunoe

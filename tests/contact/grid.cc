@@ -89,6 +89,60 @@ void check(const std::string &name, const PeriodicBox &box, const double size)
   test::check(name + ": some pairs", near.size() > 100);
 }
 
+/// A cube of a cloud of which every tenth particle of one half moves, again and again.
+void check_again(const std::string &name, const PeriodicBox &box)
+{
+  const double size = 0.04;
+  const ContactGrid grid({0., 0., 0.}, {size, size, size}, box, cell_size);
+  std::vector<Vec3> places;
+  for (unsigned int k = 0; k < 3000; ++k)
+    places.push_back(size * Vec3{uniform(2, Draw::size, k, 0), uniform(2, Draw::size, k, 1),
+                                 uniform(2, Draw::size, k, 2)});
+  ParticleArrays p = ordered(places, grid);
+  PairList list;
+  list.clear(0);
+  ContactGrid::Found found;
+  grid.find_pairs(p, reach, list, &found);
+  std::vector<std::int32_t> record_of(p.size() * p.size(), ContactMemory::none);
+  const auto record = [&](const PairList &pairs, std::size_t k) -> std::int32_t & {
+    return record_of[p.size() * pairs.i[k] + pairs.j[k]];
+  };
+  for (std::size_t k = 0; k < list.size(); k += 3)
+    list.record[k] = record(list, k) = static_cast<std::int32_t>(k);
+
+  bool same = true, remembers = true;
+  for (unsigned int round = 0; round < 20; ++round) {
+    std::vector<std::uint8_t> moved(p.size(), 0);
+    for (std::size_t row = 0; row < p.size(); ++row)
+      if (p.id[row] % 10 == 0 && p.position[row].x < 0.5 * size) {
+        moved[row] = 1;
+        const Vec3 way = 0.3 * radius *
+                         Vec3{uniform(3 + round, Draw::size, row, 0) - 0.5,
+                              uniform(3 + round, Draw::size, row, 1) - 0.5,
+                              uniform(3 + round, Draw::size, row, 2) - 0.5};
+        const Vec3 x = box.wrap(p.position[row].vec() + way);
+        p.position[row] = {x.x, x.y, x.z, radius};
+      }
+    // A contact that ends is forgotten.
+    std::vector<std::uint8_t> listed(record_of.size(), 0);
+    PairList anew;
+    anew.clear(0);
+    grid.find_pairs(p, reach, anew);
+    for (std::size_t k = 0; k < anew.size(); ++k)
+      listed[p.size() * anew.i[k] + anew.j[k]] = 1;
+    for (std::size_t k = 0; k < record_of.size(); ++k)
+      if (listed[k] == 0)
+        record_of[k] = ContactMemory::none;
+
+    grid.find_pairs_again(p, reach, moved, list, &found);
+    same = same && list.i == anew.i && list.j == anew.j;
+    for (std::size_t k = 0; k < list.size(); ++k)
+      remembers = remembers && list.record[k] == record(list, k);
+  }
+  test::check(name + ": the list is that of a search without the past", same);
+  test::check(name + ": contacts keep their records", remembers);
+}
+
 } // namespace
 
 EUNOE_TEST()
@@ -98,4 +152,8 @@ EUNOE_TEST()
   box.length = {0., 0., 50.};
   check("periodic", box, 50.);
   check("small", PeriodicBox{}, 0.03);
+  check_again("again, walls", PeriodicBox{});
+  PeriodicBox short_box;
+  short_box.length = {0.04, 0.04, 0.};
+  check_again("again, periodic", short_box);
 }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace eunoe {
 
@@ -26,15 +27,43 @@ public:
   /// Place of a position's cell in the order of all cells; near positions have near keys.
   std::uint64_t key(const Vec3 &x) const;
 
+  using Cell = std::array<int, 3>;
+
+  /// What a search leaves for the next one, if the rows stay the same.
+  struct Found
+  {
+    Vec3 lower;              ///< of the grid
+    std::vector<Cell> cells; ///< by row
+    /// Places in the list, [begin, end), of the pairs of which a row comes first in the order of
+    /// cells.
+    struct Group
+    {
+      std::size_t begin, end;
+    };
+    std::vector<Group> groups; ///< by row
+  };
+
   /// Lists all pairs with at least one owned particle and a separation of at most @p reach (m).
   /// The positions are those of the search; owned and ghost particles must each be ordered by
   /// (key, id).
-  void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs) const;
+  /// @param found where to leave what find_pairs_again needs, or null
+  void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs,
+                  Found *found = nullptr) const;
+
+  /// The same for rows of the last search: pairs around which nothing has moved since are taken
+  /// over from the list.
+  /// @param moved a flag for each row
+  /// @param pairs the list of the last search; afterwards the new one, with what contacts remember
+  /// @param found what the last search left, or null
+  void find_pairs_again(const ParticleArrays &particles, double reach,
+                        const std::vector<std::uint8_t> &moved, PairList &pairs,
+                        Found *found) const;
 
 private:
-  using Cell = std::array<int, 3>;
-
   Cell cell(const Vec3 &x) const;
+  std::vector<Cell> cells_of(const ParticleArrays &particles) const;
+  std::array<bool, 3> periodic_axes() const;
+  void note(std::vector<Cell> &&cells, Found *found) const;
 
   Vec3 lower_from_centre, lower;
   Vec3 inverse_width;

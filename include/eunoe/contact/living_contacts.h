@@ -26,10 +26,10 @@ public:
         contacts[next[pairs.i[k]]++] = {pairs.j[k], pairs.record[k]};
   }
 
-  /// Gives the records to the same pairs of a new list.
-  void attach(PairList &pairs) const
+  /// Gives the records to the same pairs of a new list, from @p begin on.
+  void attach(PairList &pairs, const std::size_t begin) const
   {
-    for (std::size_t k = 0; k < pairs.size(); ++k)
+    for (std::size_t k = begin; k < pairs.size(); ++k)
       for (std::int32_t c = starts[pairs.i[k]]; c < starts[pairs.i[k] + 1]; ++c)
         if (contacts[c].second == pairs.j[k])
           pairs.record[k] = contacts[c].record;

@@ -47,6 +47,17 @@ struct PairList
     near.forget();
   }
 
+  /// Moves the pairs out; the memory stays.
+  PairList take_pairs()
+  {
+    PairList taken;
+    taken.i.swap(i);
+    taken.j.swap(j);
+    taken.record.swap(record);
+    clear_pairs();
+    return taken;
+  }
+
   /// Gives back room beyond a tenth more than there is, which vectors take when they grow.
   void trim()
   {
@@ -65,6 +76,17 @@ struct PairList
     i.insert(i.end(), first, first + n);
     j.insert(j.end(), second, second + n);
     record.insert(record.end(), n, ContactMemory::none);
+  }
+
+  /// Appends pairs of another list of the same particles with their records: [begin, end).
+  void append(const PairList &other, const std::size_t begin, const std::size_t end)
+  {
+    const auto copy = [&](std::vector<std::int32_t> &to, const std::vector<std::int32_t> &from) {
+      to.insert(to.end(), from.begin() + begin, from.begin() + end);
+    };
+    copy(i, other.i);
+    copy(j, other.j);
+    copy(record, other.record);
   }
 };
 

@@ -183,7 +183,10 @@ private:
   /// @return where the contacts of each owned particle are kept
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
   /// Lists the pairs of the particles' present places.
-  void list_pairs();
+  /// What searches leave for the next one; null if nobody ever sleeps.
+  ContactGrid::Found *found_if_any_sleeps();
+  /// After pairs were found: gives back what is not needed.
+  void use_pairs();
 
   Domain &domain;
   const ParticlePhysics physics;
@@ -198,6 +201,7 @@ private:
   ParticleStore store;
   Halo halo;
   ContactGrid grid;
+  ContactGrid::Found found;
   PairForces pair_forces;
   SolidContacts solid_contacts;
   PairList pairs;

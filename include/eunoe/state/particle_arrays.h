@@ -37,8 +37,9 @@ struct ParticleArrays
 
   /// @name Awake particles (see SparseContacts)
   ///@{
-  std::vector<std::uint8_t> awake;      ///< a flag each, ghosts too; empty while all are awake
-  std::vector<std::int32_t> awake_rows; ///< of owned particles, ascending; empty while all are
+  std::vector<std::uint8_t> awake;        ///< a flag each, ghosts too; empty while all are awake
+  std::vector<std::int32_t> awake_rows;   ///< of owned particles, ascending; empty while all are
+  std::vector<std::int32_t> pressed_rows; ///< of owned sleepers that feel forces
   /// Square of the largest distance of an owned sleeper from its reference position (m2).
   double sleepers_moved2 = 0.;
   bool is_awake(std::size_t row) const { return awake.empty() || awake[row] != 0; }
@@ -82,6 +83,8 @@ struct ParticleArrays
 
   /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
+  /// Only on those that feel any.
+  void clear_forces_on_pressed();
 
   /// Calls `action(row)` for every owned particle that is awake.
   template <typename Action>

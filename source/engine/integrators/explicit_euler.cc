@@ -20,8 +20,7 @@ public:
       poison += 0. * moved2;
       p.force[k] = p.torque[k] = Quad();
     });
-    if (!p.awake.empty())
-      p.clear_forces_on_sleepers();
+    p.clear_forces_on_pressed();
     return {largest + poison};
   }
 

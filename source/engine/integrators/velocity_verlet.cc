@@ -56,8 +56,7 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
     const simd::Four way2 = way * way;
     farthest2 = way2 > farthest2 ? way2 : farthest2;
   });
-  if (!p.awake.empty())
-    p.clear_forces_on_sleepers();
+  p.clear_forces_on_pressed();
   return {largest + poison, farthest2[0] + farthest2[1] + farthest2[2]};
 }
 
