@@ -5,8 +5,6 @@
 #include <eunoe/core/problems.h>
 #include <eunoe/core/quoted_text.h>
 
-#include <boost/algorithm/string.hpp>
-
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -29,29 +27,41 @@ std::string broadcast(std::string text, MPI_Comm comm, const int from)
   return text;
 }
 
+namespace {
+
+[[noreturn]] void refuse(const std::string &path, const std::string &why)
+{
+  throw UserError(shortened(path) + " cannot be read: " + why +
+                  ". Check the name and the permissions.");
+}
+
+} // namespace
+
+std::ifstream open_for_reading(const std::string &path)
+{
+  if (fs::is_directory(path))
+    refuse(path, "it is a folder");
+  if (fs::is_character_file(path) || fs::is_block_file(path))
+    refuse(path, "it is a device"); // of which some never end
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream)
+    refuse(path, std::strerror(errno));
+  return stream;
+}
+
 std::string read_file(const std::string &path, MPI_Comm comm)
 {
-  std::string text, error;
-  if (is_first_rank(comm)) {
-    std::ifstream stream(path, std::ios::binary);
+  std::string text;
+  on_first_rank(comm, [&] {
+    std::ifstream stream = open_for_reading(path);
+    if (stream.peek() == std::ifstream::traits_type::eof())
+      return;
     std::ostringstream all;
-    if (fs::is_directory(path))
-      error = "it is a folder";
-    else if (fs::is_character_file(path) || fs::is_block_file(path))
-      error = "it is a device"; // of which some never end
-    else if (!stream)
-      error = std::strerror(errno);
-    else if (stream.peek() != std::ifstream::traits_type::eof()) {
-      all << stream.rdbuf();
-      text = all.str();
-      if (!stream)
-        error = "reading failed";
-    }
-  }
-  error = broadcast(error, comm);
-  if (!error.empty())
-    throw UserError(shortened(path) + " cannot be read: " + error +
-                    ". Check the name and the permissions.");
+    all << stream.rdbuf();
+    text = all.str();
+    if (!stream)
+      refuse(path, "reading failed");
+  });
   return broadcast(text, comm);
 }
 
@@ -115,57 +125,6 @@ void create_folder(const std::string &path, MPI_Comm comm)
       throw UserError("The folder " + shortened(path) + " cannot be written to: " + error +
                       ". Choose another folder, or mend the permissions.");
   });
-}
-
-int Table::column(const std::string &name) const
-{
-  const auto it = std::find(columns.begin(), columns.end(), name);
-  return it == columns.end() ? -1 : static_cast<int>(it - columns.begin());
-}
-
-Table parse_table(const std::string &text, const std::string &file)
-{
-  Table table;
-  std::istringstream stream(text);
-  std::string line;
-  unsigned int number = 0;
-  char separator = ';';
-  if (text.compare(0, byte_order_mark.size(), byte_order_mark) == 0)
-    stream.ignore(static_cast<std::streamsize>(byte_order_mark.size()));
-  while (std::getline(stream, line)) {
-    ++number;
-    boost::trim(line);
-    if (line.empty() || line[0] == '#')
-      continue;
-    if (table.columns.empty() && line.find(';') == std::string::npos)
-      separator = ',';
-    std::vector<std::string> cells;
-    boost::split(cells, line, [&](char c) { return c == separator; });
-    for (std::string &cell : cells)
-      boost::trim(cell);
-    if (cells.back().empty())
-      cells.pop_back();
-    if (table.columns.empty()) {
-      table.columns = cells;
-      continue;
-    }
-    const std::string where = file + ":" + std::to_string(number) + ": ";
-    if (cells.size() != table.columns.size())
-      throw UserError(where + "there are " + std::to_string(cells.size()) +
-                      " values under a header of " + std::to_string(table.columns.size()) +
-                      " columns. Give one value a column.");
-    std::vector<double> row;
-    for (const std::string &cell : cells) {
-      char *end;
-      row.push_back(std::strtod(cell.c_str(), &end));
-      if (cell.empty() || *end != '\0')
-        throw UserError(where + "'" + cell.substr(0, 40) + "' is not a number.");
-    }
-    table.rows.push_back(row);
-  }
-  if (table.columns.empty())
-    throw UserError(file + ": it has no header line. Name the columns in the first line.");
-  return table;
 }
 
 } // namespace eunoe

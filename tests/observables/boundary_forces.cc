@@ -3,6 +3,7 @@
 // of its weight. The tables are the same on any number of ranks. Reference: statics.
 
 #include <eunoe/core/files.h>
+#include <eunoe/core/table.h>
 
 #include "../on_one_rank.h"
 

@@ -3,6 +3,7 @@
 // walls have lines. Reference: the prescribed coefficient; Hertz's duration of contact.
 
 #include <eunoe/core/files.h>
+#include <eunoe/core/table.h>
 
 #include "../spheres.h"
 

@@ -3,6 +3,8 @@
 // resistance goes to the solid.
 // Reference: statics; the momentum and the angular momentum of the sphere.
 
+#include <eunoe/core/table.h>
+
 #include "surfaces.h"
 
 using namespace test;

@@ -1,14 +1,17 @@
 #ifndef eunoe_core_files_h
 #define eunoe_core_files_h
 
+#include <fstream>
 #include <mpi.h>
 #include <string>
-#include <vector>
 
 namespace eunoe {
 
 /// A text of a rank, the first one as a rule, given to every rank; collective.
 std::string broadcast(std::string text, MPI_Comm comm, int from = 0);
+
+/// Opens a file for reading. Throws a UserError if it cannot be read.
+std::ifstream open_for_reading(const std::string &path);
 
 /// The whole text of a file, read once and given to every rank; collective.
 /// Throws a UserError on every rank if it cannot be read.
@@ -32,20 +35,6 @@ void remove_file(const std::string &path);
 /// Creates a folder and those above it, on one rank of @p comm; collective.
 /// Throws a UserError on every rank if it cannot be written to.
 void create_folder(const std::string &path, MPI_Comm comm);
-
-/// A table in the form "a; b; c;" with a header line: columns by the names of the header.
-struct Table
-{
-  std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;
-
-  /// Place of a column, -1 if there is none of that name.
-  int column(const std::string &name) const;
-};
-
-/// Reads a table with columns separated by ';' (as Lethe writes them) or ','.
-/// Throws a UserError that names the line.
-Table parse_table(const std::string &text, const std::string &file);
 
 } // namespace eunoe
 

@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/table.h>
 #include <eunoe/processes/heap/measurement.h>
 
 #include <algorithm>

@@ -1,8 +1,10 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/log.h>
 #include <eunoe/core/machine.h>
 #include <eunoe/core/quoted_text.h>
+#include <eunoe/core/table.h>
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
@@ -101,7 +103,7 @@ private:
 
   void read(const std::string &file, MPI_Comm comm)
   {
-    const Table table = parse_table(read_file(file, comm), file);
+    const Table table = read_table_in_parts(file, comm);
     std::vector<int> place;
     for (const std::string name : columns) {
       place.push_back(table.column(name));
@@ -109,32 +111,46 @@ private:
         throw UserError(file + ":1: the header has no column '" + name +
                         "'. It is 'p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters'.");
     }
-    const auto [begin, end] = share_of(table.rows.size(), comm);
-    Contents contents = {table.rows.size(), {}};
-    for (std::size_t k = 0; k < table.rows.size(); ++k) {
-      double value[10];
-      for (unsigned int c = 0; c < 10; ++c) {
-        value[c] = place[c] < 0 ? 0. : table.rows[k][place[c]];
-        if (!std::isfinite(value[c]))
-          throw UserError(file + ": particle " + std::to_string(k) + " has " + format(value[c]) +
-                          " as its '" + columns[c] + "'. Give a number.");
-      }
-      if (!(value[9] > 0.))
-        throw UserError(file + ": particle " + std::to_string(k) + " has a diameter of " +
-                        format(value[9]) + " m. Give a positive diameter.");
-      largest = std::max(largest, value[9]);
-      if (k < begin || k >= end)
-        continue;
-      NewParticle particle;
-      particle.id = static_cast<ParticleId>(k);
-      particle.radius = 0.5 * value[9];
-      particle.mass = sphere_mass(particle.radius, density);
-      particle.position = {value[0], value[1], value[2]};
-      particle.velocity = {value[3], value[4], value[5]};
-      particle.spin = {value[6], value[7], value[8]};
-      contents.share.push_back(particle);
-    }
+    const std::uint64_t n = table.rows.size();
+    std::uint64_t first = 0, n_all;
+    MPI_Exscan(&n, &first, 1, MPI_UINT64_T, MPI_SUM, comm);
+    if (is_first_rank(comm))
+      first = 0; // which MPI leaves undefined
+    MPI_Allreduce(&n, &n_all, 1, MPI_UINT64_T, MPI_SUM, comm);
+    Contents contents = {n_all, {}};
+    on_every_rank(comm, [&] {
+      for (std::size_t k = 0; k < n; ++k)
+        contents.share.push_back(particle(file, first + k, table.rows[k], place));
+    });
+    for (const NewParticle &particle : contents.share)
+      largest = std::max(largest, 2. * particle.radius);
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm);
     files.push_back(std::move(contents));
+  }
+
+  /// @param number of the particle in its file, from 0
+  /// @param place of each column in the row
+  NewParticle particle(const std::string &file, const std::size_t number,
+                       const std::vector<double> &row, const std::vector<int> &place) const
+  {
+    double value[10];
+    for (unsigned int c = 0; c < 10; ++c) {
+      value[c] = place[c] < 0 ? 0. : row[place[c]];
+      if (!std::isfinite(value[c]))
+        throw UserError(file + ": particle " + std::to_string(number) + " has " + format(value[c]) +
+                        " as its '" + columns[c] + "'. Give a number.");
+    }
+    if (!(value[9] > 0.))
+      throw UserError(file + ": particle " + std::to_string(number) + " has a diameter of " +
+                      format(value[9]) + " m. Give a positive diameter.");
+    NewParticle particle;
+    particle.id = static_cast<ParticleId>(number);
+    particle.radius = 0.5 * value[9];
+    particle.mass = sphere_mass(particle.radius, density);
+    particle.position = {value[0], value[1], value[2]};
+    particle.velocity = {value[3], value[4], value[5]};
+    particle.spin = {value[6], value[7], value[8]};
+    return particle;
   }
 
   const bool repeats;

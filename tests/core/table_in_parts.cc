@@ -1,0 +1,86 @@
+// A table of which every rank reads a part: together they are the table that one rank reads,
+// whatever its lines look like, and a line that is wrong is named by its number on every rank.
+
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/problems.h>
+#include <eunoe/core/table.h>
+
+#include <deal.II/base/mpi.h>
+
+#include "../tests.h"
+
+#include <algorithm>
+
+using namespace test;
+
+namespace {
+
+const std::string path = "table.csv";
+
+void write(const std::string &text)
+{
+  on_first_rank(MPI_COMM_WORLD, [&] { write_file(path, text); });
+}
+
+/// Rows with numbers of different lengths, comments and empty lines in between.
+std::string lines(const unsigned int n, const std::string &end)
+{
+  std::string text;
+  for (unsigned int k = 0; k < n; ++k) {
+    text += std::to_string(k) + "; " + (k % 3 == 0 ? "1e-5" : "0.123456789") + end;
+    if (k % 7 == 0)
+      text += "# a remark that is longer than a row of the table" + end;
+    if (k % 5 == 0)
+      text += end;
+  }
+  return text;
+}
+
+void check_parts(const std::string &name, const std::string &text)
+{
+  write(text);
+  const Table whole = parse_table(text, path), part = read_table_in_parts(path, MPI_COMM_WORLD);
+  std::vector<std::vector<double>> all;
+  std::size_t largest = 0;
+  for (const auto &rows : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, part.rows)) {
+    all.insert(all.end(), rows.begin(), rows.end());
+    largest = std::max(largest, rows.size());
+  }
+  test::check(name + ": the same rows", all == whole.rows && part.columns == whole.columns);
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  if (whole.rows.size() > 100)
+    test::check(name + ": in about equal parts", largest < 1.2 * whole.rows.size() / n_ranks);
+}
+
+void print_refusal(const std::string &text)
+{
+  write(text);
+  try {
+    read_table_in_parts(path, MPI_COMM_WORLD);
+    test::print("taken");
+  } catch (const UserError &error) {
+    test::print(error.what());
+  }
+}
+
+} // namespace
+
+EUNOE_MPI_TEST()
+{
+  check_parts("many rows", "n; x\n" + lines(1000, "\n"));
+  check_parts("lines end as in DOS", "# made by hand\r\n\r\nn; x\r\n" + lines(1000, "\r\n"));
+  check_parts("no end of the last line", "n, x\n1, 2\n3, 4");
+  check_parts("fewer rows than ranks", "n; x;\n1; 2;\n");
+  check_parts("no rows", "n; x\n");
+  std::string wrong = "n; x\n" + lines(1000, "\n");
+  print_refusal(wrong + "1; 2; 3\n");
+  print_refusal(wrong + "1; two\n" + lines(500, "\n"));
+  print_refusal("# nothing\n");
+  on_first_rank(MPI_COMM_WORLD, [] { remove_file(path); });
+  try {
+    read_table_in_parts(path, MPI_COMM_WORLD);
+  } catch (const UserError &error) {
+    test::print(error.what());
+  }
+}
