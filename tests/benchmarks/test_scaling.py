@@ -7,6 +7,7 @@ Usage: test_scaling.py
 import subprocess
 import sys
 import unittest
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from unittest.mock import patch
@@ -248,6 +249,16 @@ class Cost(unittest.TestCase):
                                               bandwidth=2.))
         np.testing.assert_allclose(inside, 1. + 50. * GHOST_BYTES)
         np.testing.assert_allclose(between, 1. + 50. * GHOST_BYTES / 2.)
+
+    def test_a_node_shares_its_memory(self):
+        part = self.part(2)
+        costs = Costs(speeds=((1., 1e30),), ghost=0.5, search=0., traffic=8., memory=2., cache=0.,
+                      latency=0., copy=1e30, bandwidth=1e30)
+        # Each rank has 300 particles and 100 ghosts.
+        apart, together = (predict(part, 6, replace(costs, ranks_per_node=n)) for n in (1, 2))
+        self.assertAlmostEqual(apart.seconds, 8. * 350. / 2.)
+        self.assertAlmostEqual(together.seconds, 8. * 700. / 2.)
+        self.assertEqual(predict(part, 6, replace(costs, cache=1e9)).parts["memory"], 0.)
 
     def test_speed_between_the_measured_sizes(self):
         costs = Costs(speeds=((1e4, 10e6), (1e6, 6e6)))

@@ -22,6 +22,8 @@ class Costs:
     in steps of the same particles; `interval`: steps between searches; `collectives`: collective
     operations in a search; `step_allreduces`: those in every step. `bandwidth`: of a node to
     others, in each direction, shared by its ranks; `copy`: bandwidth between two ranks of a node.
+    `memory`: bandwidth of a node's memory, shared by its ranks; `traffic`: bytes of it that a step
+    of a particle takes if it is not in a cache, of which a rank has `cache` bytes.
     """
 
     speeds: tuple[tuple[float, float], ...] = ((2e4, 17.4e6), (2e5, 8.6e6))
@@ -35,6 +37,9 @@ class Costs:
     bandwidth: float = 12e9
     copy: float = 4e9
     ranks_per_node: int = 64
+    memory: float = 200e9
+    traffic: float = 1e3
+    cache: float = 4e6
     bytes_rank: float = 170e6
     bytes_cell: float = 2.1e3
     bytes_particle: float = 1.1e3
@@ -78,6 +83,15 @@ def message_seconds(partition: Partition, costs: Costs) -> np.ndarray:
             / costs.bandwidth)
 
 
+def memory_seconds(partition: Partition, costs: Costs) -> np.ndarray:
+    """Seconds that a node's memory takes for a step, shape (n_ranks): all particles of its ranks that do
+    not fit into their caches."""
+    number = np.maximum(1., partition.owned + costs.ghost * partition.ghosts)
+    uncached = number - np.minimum(number, costs.cache / costs.bytes_particle)
+    node = np.arange(len(number)) // costs.ranks_per_node
+    return costs.traffic / costs.memory * np.bincount(node, uncached)[node]
+
+
 def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
     """The efficiency is relative to one core that has all particles, even if they would not fit."""
     owned, n_ranks = partition.owned, len(partition.owned)
@@ -94,6 +108,9 @@ def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
         "messages": message_seconds(partition, costs),
         "collectives": np.full(n_ranks, waiting + table / costs.interval),
     }
+    # Cores wait for the memory where together they ask for more than it gives.
+    computing = parts["particles"] + parts["ghosts"]
+    parts["memory"] = np.maximum(0., memory_seconds(partition, costs) - computing)
     total = sum(parts.values())
     slowest = int(np.argmax(total))
     everything = owned.sum()

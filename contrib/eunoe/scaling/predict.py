@@ -3,7 +3,7 @@
 Usage: contrib/tools predict-scaling output/my_run/spreading_00042.vtu [--ranks 64,128,...]
        contrib/tools predict-scaling --length-factor 0.5714 --depth 2e-3 --layers 20
            [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
-           [--ranks-per-node 64] [--speeds 2e4:17.4e6,2e5:8.6e6] [--ghost 0.22] [--paired 0.6] [--search 8]
+           [--ranks-per-node 64] [--memory 200e9] [--traffic 1e3] [--cache 4e6] [--speeds 2e4:17.4e6,2e5:8.6e6] [--ghost 0.22] [--paired 0.6] [--search 8]
            [--interval 160]
            [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--skin 0.13] [--compare] [--json FILE]
 
@@ -48,7 +48,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--layers", type=int, default=20)
     arguments.add_argument("--ranks", default="1,2,4,8,16,32,64,128,256,512,1024,2048,4096")
     arguments.add_argument("--steps", type=float)
-    for name in ("latency", "bandwidth", "copy", "ghost", "paired", "search", "interval"):
+    for name in ("latency", "bandwidth", "copy", "memory", "traffic", "cache", "ghost", "paired", "search", "interval"):
         arguments.add_argument(f"--{name}", type=float, default=getattr(costs, name))
     arguments.add_argument("--ranks-per-node", type=int, default=costs.ranks_per_node)
     arguments.add_argument("--speeds", default=",".join(f"{n:g}:{s:g}" for n, s in costs.speeds))
@@ -79,7 +79,8 @@ def costs_of(options: argparse.Namespace) -> Costs:
                       "2e4:17.4e6,2e5:8.6e6.") from None
     return replace(Costs(), speeds=speeds, ghost=options.ghost, paired=options.paired,
                    search=options.search, interval=options.interval, latency=options.latency,
-                   bandwidth=options.bandwidth, copy=options.copy, ranks_per_node=options.ranks_per_node)
+                   bandwidth=options.bandwidth, copy=options.copy, ranks_per_node=options.ranks_per_node,
+                   memory=options.memory, traffic=options.traffic, cache=options.cache)
 
 
 def row(p: Prediction, part: Partition, steps: float | None) -> str:
