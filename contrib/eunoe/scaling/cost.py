@@ -98,15 +98,13 @@ def predict(partition: Partition, n_trees: int, costs: Costs) -> Prediction:
     per_particle = costs.seconds_per_particle(owned)
     rounds = ceil(log2(n_ranks)) if n_ranks > 1 else 0
     searches = costs.search / costs.interval
-    # The table of who sends how much to whom is exchanged among all ranks in every search.
-    table = 4. * n_ranks * min(n_ranks, costs.ranks_per_node) / costs.bandwidth * rounds / 2.
     waiting = costs.latency * rounds * (costs.step_allreduces + costs.collectives / costs.interval)
     parts = {
         "particles": owned * per_particle,
         "ghosts": costs.ghost * partition.ghosts * per_particle,
         "search": searches * (owned + costs.ghost * partition.ghosts) * per_particle,
         "messages": message_seconds(partition, costs),
-        "collectives": np.full(n_ranks, waiting + table / costs.interval),
+        "collectives": np.full(n_ranks, waiting),
     }
     # Cores wait for the memory where together they ask for more than it gives.
     computing = parts["particles"] + parts["ghosts"]
