@@ -128,19 +128,23 @@ def height_at(points: np.ndarray, x: float) -> float:
     return float(np.median(tops)) if tops else 0.
 
 
+def surface_slope(points: np.ndarray) -> float:
+    """Slope of a bed in the drum of 56 mm, whose axis is x, from the highest grain of each strip along z."""
+    middle = points[np.abs(points[:, 0]) < 0.04]
+    strips = np.floor(middle[:, 2] / 0.003).astype(int)
+    tops = [(middle[strips == k, 2].mean(), middle[strips == k, 1].max()) for k in range(-8, 8)
+            if np.any(strips == k)]
+    along, up = np.array(tops).T
+    return math.degrees(math.atan(np.polyfit(along, up, 1)[0]))
+
+
 def drum(folder: Path) -> list[Result]:
     """Slope of the bed in the turning drum of 56 mm, over the last second; the axis is x."""
     angles = []
     for time, data in points_at(folder / "output_dem", "out"):
         if time < 4.:
             continue
-        points = data["points"]
-        middle = points[np.abs(points[:, 0]) < 0.04]
-        strips = np.floor(middle[:, 2] / 0.003).astype(int)
-        tops = [(middle[strips == k, 2].mean(), middle[strips == k, 1].max()) for k in range(-8, 8)
-                if np.any(strips == k)]
-        along, up = np.array(tops).T
-        angles.append(math.degrees(math.atan(abs(np.polyfit(along, up, 1)[0]))))
+        angles.append(abs(surface_slope(data["points"])))
     return [Result("slope of the bed", "", f"{np.mean(angles):.1f}")]
 
 
@@ -174,7 +178,27 @@ def stirred_drum(folder: Path) -> list[Result]:
         marked = np.array([outer[number] for number in data["ID"].astype(int)])
         found.append(Result(f"mixing index at {moment:g} s", f"{published} (Lethe)",
                             f"{mixing_index(data['points'], marked):.2f}"))
-    return found
+    return found + drum_profile(folder)
+
+
+def drum_profile(folder: Path) -> list[Result]:
+    """Velocity along the surface over the depth below it, in the middle of the drum of 56 mm at 2 rad/s, mean
+    from 6 to 8 s. Below the flowing layer a bed that sticks to the wall would turn with the drum."""
+    series = [data for time, data in points_at(folder / "output_dem", "out", "velocity") if 6. <= time <= 8.]
+    points, velocities = (np.concatenate([data[name] for data in series]) for name in ("points", "velocity"))
+    slope = math.radians(np.mean([surface_slope(data["points"]) for data in series]))
+    along, up = np.array([0., math.sin(slope), math.cos(slope)]), np.array([0., math.cos(slope), -math.sin(slope)])
+    middle = (np.abs(points[:, 0]) < 0.04) & (np.abs(points @ along) < 0.004)
+    height, speed = (points @ up)[middle], (velocities @ along)[middle]
+    below = (height > -0.05) & (height < -0.025)
+    top = np.quantile(height, 0.99)
+    surface = np.mean(speed[height > top - 0.003])
+    heights = np.arange(-0.05, top, 0.003)
+    profile = [np.sign(surface) * np.mean(speed[np.abs(height - h) < 0.0015]) for h in heights]
+    still = float(np.interp(0., profile, heights))
+    return [Result("speed of the surface in its middle", "", f"{abs(surface):.2f} m/s"),
+            Result("depth of the flowing layer", "", f"{1e3 * (top - still):.0f} mm"),
+            Result("turning of the bed below", "", f"{abs(np.polyfit(height[below], speed[below], 1)[0]):.2f} rad/s")]
 
 
 def mixer(folder: Path) -> list[Result]:
