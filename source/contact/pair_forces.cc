@@ -97,13 +97,12 @@ private:
   std::int32_t own_i[B], own_j[B], own_record[B];
 };
 
-/// Sorts candidates into those within reach and those whose contact has ended, by their places.
-/// Both outputs need room for B more entries.
-EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidates,
-                               const Period &period, const double range, std::int32_t *active,
-                               unsigned int &n_active, std::int32_t *ended, unsigned int &n_ended)
+/// Squares of the distances less those of `factor` times the sum of the radii and @p range (m2).
+EUNOE_ALWAYS_INLINE void compare(const Quad *position, const Candidates &candidates,
+                                 const Period &period, const double range, const double factor,
+                                 double *excess)
 {
-  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj, excess;
+  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj;
   gather(position, candidates.i, xi, yi, zi, ri);
   gather(position, candidates.j, xj, yj, zj, rj);
 #pragma omp simd
@@ -111,9 +110,19 @@ EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidate
     const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
     const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
     const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
-    const double reach = ri[k] + rj[k] + range;
+    const double reach = factor * (ri[k] + rj[k] + range);
     excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
   }
+}
+
+/// Sorts candidates into those within reach and those whose contact has ended, by their places.
+/// Both outputs need room for B more entries.
+EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidates,
+                               const Period &period, const double range, std::int32_t *active,
+                               unsigned int &n_active, std::int32_t *ended, unsigned int &n_ended)
+{
+  alignas(64) Lanes excess;
+  compare(position, candidates, period, range, 1., excess);
   unsigned int a = n_active, e = n_ended;
   for (unsigned int k = 0; k < candidates.n; ++k) {
     const bool within = excess[k] <= 0.;
@@ -131,17 +140,8 @@ EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidate
 EUNOE_MULTIVERSION void sift(const Quad *position, const Candidates &candidates,
                              const Period &period, const double margin, NearPairs &near)
 {
-  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj, excess;
-  gather(position, candidates.i, xi, yi, zi, ri);
-  gather(position, candidates.j, xj, yj, zj, rj);
-#pragma omp simd
-  for (unsigned int k = 0; k < B; ++k) {
-    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
-    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
-    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
-    const double reach = (ri[k] + rj[k] + margin) * (1. + NearPairs::slack);
-    excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
-  }
+  alignas(64) Lanes excess;
+  compare(position, candidates, period, margin, 1. + NearPairs::slack, excess);
   std::size_t n = near.places.size();
   for (auto *list : {&near.places, &near.i, &near.j})
     list->resize(n + B);

@@ -173,7 +173,8 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   }
   particles.wake_all();
   halo.update_all(particles);
-  halo.update(has_moved);
+  if (physics.asleep)
+    halo.update(has_moved);
   grid.move_to(domain.centre());
   grid.find_pairs_again(particles, skin + model.range(), has_moved, pairs, found_if_any_sleeps());
   use_pairs();

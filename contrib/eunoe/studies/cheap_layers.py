@@ -19,11 +19,11 @@ import statistics
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eunoe.launch import Failure, mpirun, overrides
+from eunoe.launch import Failure
 from eunoe.repository import CASES
-from eunoe.tables import Table, read_rows, write_csv
+from eunoe.tables import Table, write_csv
 
-from .series import CONTINUED, arguments, compute, publish, spread, summary_of
+from .series import arguments, compute, layers_of, publish, spread, spreading_command
 
 RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
 TYPE = "lagrangian physical properties/particle type 0"
@@ -81,22 +81,10 @@ class Run:
         return f"{self.variant}_seed{self.seed}"
 
     def command(self, options: argparse.Namespace) -> list[str]:
-        settings = {**VARIANTS[self.variant].settings, "powder spreading/number of layers": options.layers,
-                    "powder spreading/layer pictures": "false",
-                    "simulation control/output path": options.folder / self.name, **CONTINUED}
-        return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(self.seed),
-                *overrides(settings), *overrides(options.set)]
+        return spreading_command(options, self, self.seed, VARIANTS[self.variant].settings)
 
     def result(self, folder: Path) -> dict | None:
-        """Densities of the layers and seconds of a finished run."""
-        summary = summary_of(folder / self.name)
-        try:
-            rows = [row for row in read_rows(folder / self.name / "layers.csv") if row["layer"] >= 1]
-        except (OSError, ValueError):
-            return None
-        return None if summary is None else {"LRD": [row["LRD"] for row in rows],
-                                             "CRD": [row["CRD"] for row in rows if not math.isnan(row["CRD"])],
-                                             "seconds": summary["loop_seconds"]}
+        return layers_of(folder / self.name)
 
 
 def interval(values: list[float], reference: list[float]) -> tuple[float, float]:

@@ -6,13 +6,13 @@ import argparse
 import json
 import math
 import statistics
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Protocol
 
-from eunoe.launch import logged, parser
-from eunoe.tables import Table, as_markdown
+from eunoe.launch import logged, mpirun, overrides, parser
+from eunoe.tables import Table, as_markdown, read_rows
 
 
 class Run(Protocol):
@@ -50,6 +50,28 @@ def summary_of(folder: Path) -> dict | None:
         return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
+
+
+def spreading_command(options: argparse.Namespace, run: Run, seed: int, settings: Mapping[str, Any]) -> list[str]:
+    """Starts a spreading case without pictures of the layers, or goes on with it."""
+    settings = {**settings, "powder spreading/number of layers": options.layers,
+                "powder spreading/layer pictures": "false",
+                "simulation control/output path": options.folder / run.name, **CONTINUED}
+    return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(seed),
+            *overrides(settings), *overrides(options.set)]
+
+
+def layers_of(folder: Path) -> dict | None:
+    """Densities of the layers from 1 on (CRD is NaN before its first), seconds of the loop and share of
+    sleepers; None if the run has not finished."""
+    summary = summary_of(folder)
+    try:
+        rows = [row for row in read_rows(folder / "layers.csv") if row["layer"] >= 1]
+    except (OSError, ValueError):
+        return None
+    return None if summary is None else {
+        **{key: [row[key] for row in rows] for key in ("LRD", "CRD")},
+        "seconds": summary["loop_seconds"], "asleep": summary.get("share_asleep", 0.)}
 
 
 def compute(runs: Sequence[Run], options: argparse.Namespace,

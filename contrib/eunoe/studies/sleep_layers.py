@@ -18,11 +18,11 @@ import statistics
 from dataclasses import dataclass
 from pathlib import Path
 
-from eunoe.launch import Failure, mpirun, overrides
+from eunoe.launch import Failure
 from eunoe.repository import CASES
-from eunoe.tables import Table, read_rows
+from eunoe.tables import Table
 
-from .series import CONTINUED, arguments, compute, in_errors, publish, spread, summary_of
+from .series import arguments, compute, in_errors, layers_of, publish, spread, spreading_command
 
 SLEEP = "model parameters/adaptive sparse contacts"
 
@@ -37,23 +37,11 @@ class Run:
         return f"{'sleep' if self.sleep else 'awake'}_seed{self.seed}"
 
     def command(self, options: argparse.Namespace) -> list[str]:
-        settings = {f"{SLEEP}/enable adaptive sparse contacts": "true" if self.sleep else "false",
-                    "powder spreading/number of layers": options.layers,
-                    "powder spreading/layer pictures": "false",
-                    "simulation control/output path": options.folder / self.name, **CONTINUED}
-        return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(self.seed),
-                *overrides(settings), *overrides(options.set)]
+        enable = {f"{SLEEP}/enable adaptive sparse contacts": "true" if self.sleep else "false"}
+        return spreading_command(options, self, self.seed, enable)
 
     def result(self, folder: Path) -> dict | None:
-        """Layers and cost of a finished run."""
-        summary = summary_of(folder / self.name)
-        try:
-            rows = [row for row in read_rows(folder / self.name / "layers.csv") if row["layer"] >= 1]
-        except (OSError, ValueError):
-            return None
-        return None if summary is None else {
-            **{key: [row[key] for row in rows] for key in ("LRD", "CRD")},
-            "seconds": summary["loop_seconds"], "asleep": summary.get("share_asleep", 0.)}
+        return layers_of(folder / self.name)
 
 
 def cells_of(awake: list[float], asleep: list[float]) -> list[str]:

@@ -182,7 +182,6 @@ private:
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
-  /// Lists the pairs of the particles' present places.
   /// What searches leave for the next one; null if nobody ever sleeps.
   ContactGrid::Found *found_if_any_sleeps();
   /// After pairs were found: gives back what is not needed.
