@@ -79,7 +79,7 @@ def results(series: Series) -> None:
     for k in (1, 2, 3):
         lrd = (volumes[k] - volumes[k - 1]) / full
         expect(abs(float(rows[k]["LRD"]) - lrd) < 1e-5 and 0.1 < lrd < 1., f"LRD of layer {k}: {lrd}")
-    expect(np.count_nonzero(steel) > 0.8 * np.count_nonzero(late) > 10, "the late layers are not of the new powder")
+    expect(np.count_nonzero(steel) > 0.7 * np.count_nonzero(late) > 10, f"{np.count_nonzero(steel)} of {np.count_nonzero(late)} late grains are of the new powder")
     surfaces = read_vtu(read_pvd(series.folder / "more" / "spreading_layers_solids.pvd")[-1].file, [])
     corners = np.isclose(surfaces["points"][:, 0], (69e-3 + 56e-3) * 0.01 + 0.1e-3, rtol=1e-6)
     height = float(surfaces["points"][corners, 1].max())
