@@ -52,7 +52,7 @@ public:
   /// last contact, as in the engine. The memory of the contacts advances by @p dt.
   std::vector<Response> apply(std::vector<Contact> &contacts, double dt)
   {
-    PairBlock &b = *block;
+    OwnPairBlock &b = *block;
     b.n = static_cast<unsigned int>(contacts.size());
     b.uniform_kind = model.get_materials().only_particle_kind();
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
@@ -67,7 +67,7 @@ public:
       b.mass[k] = c.mass;
       b.inertia[k] = c.inertia;
       b.closing_speed[k] = c.closing_speed;
-      b.kind[k] = c.kind;
+      b.own_kind[k] = c.kind;
       for (unsigned int h = 0; h < PairBlock::max_history; ++h)
         b.history[h][k] = c.history[h];
     }
@@ -111,7 +111,7 @@ private:
     z[k] = v.z;
   }
 
-  std::unique_ptr<PairBlock> block = std::make_unique<PairBlock>();
+  std::unique_ptr<OwnPairBlock> block = std::make_unique<OwnPairBlock>();
 };
 
 /// A full block of contacts that all differ, with overlaps and separations up to @p depth (m).

@@ -1,401 +1,279 @@
 #include <eunoe/contact/pair_forces.h>
 #include <eunoe/core/simd.h>
 
+#include "pair_kernels.h"
+
 #include <algorithm>
 
 namespace eunoe {
 namespace {
 
-constexpr unsigned int B = PairBlock::size;
-using Lanes = PairBlock::Lanes;
+constexpr std::size_t B = PairBlock::size;
 
-struct Period
+/// Pairs of a list that may be near, a block at a time: all of them, or those at some places.
+class Candidates
 {
-  Vec3 length, half;
-};
-
-/// Writes the components of quads[rows[0..B)] to x, y, z, w.
-EUNOE_ALWAYS_INLINE void gather(const Quad *quads, const std::int32_t *rows, double *x, double *y,
-                                double *z, double *w)
-{
-  for (unsigned int k = 0; k < B; k += 4) {
-    simd::Four a = simd::four(quads[rows[k]]);
-    simd::Four b = simd::four(quads[rows[k + 1]]);
-    simd::Four c = simd::four(quads[rows[k + 2]]);
-    simd::Four d = simd::four(quads[rows[k + 3]]);
-    simd::transpose(a, b, c, d);
-    simd::four(x + k) = a;
-    simd::four(y + k) = b;
-    simd::four(z + k) = c;
-    simd::four(w + k) = d;
+public:
+  Candidates(const PairList &pairs, const std::vector<std::int32_t> *places)
+      : pairs(pairs), places(places)
+  {
   }
-}
-
-/// The pairs of a list that count: all, those at some places, or those that are near.
-struct Chosen
-{
-  const PairList &pairs;
-  const std::vector<std::int32_t> *places = nullptr; ///< null: all
-  bool are_near = false;                             ///< places are those of `pairs.near`
 
   std::size_t size() const { return places != nullptr ? places->size() : pairs.size(); }
-};
 
-/// B pairs that may be within reach; those behind the first n repeat a valid one.
-struct Candidates
-{
-  const std::int32_t *i, *j, *record;
-  std::int32_t place[B]; ///< in the list of pairs
-  unsigned int n;
-
-  /// The pairs from @p first on.
-  void take(const Chosen &chosen, const std::size_t first)
+  /// The block from @p first on; behind the first `n` the last one is repeated.
+  void take(const std::size_t first)
   {
-    n = static_cast<unsigned int>(std::min<std::size_t>(B, chosen.size() - first));
-    if (n == B && chosen.places == nullptr)
-      take_all(chosen.pairs, first);
-    else if (n == B && chosen.are_near)
-      take_near(chosen.pairs, first);
-    else
-      take_some(chosen, first);
+    n = static_cast<unsigned int>(std::min<std::size_t>(B, size() - first));
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::size_t at = first + std::min(k, n - 1);
+      place[k] = places != nullptr ? (*places)[at] : static_cast<std::int32_t>(at);
+      i[k] = offset_of(pairs.i[place[k]]);
+      j[k] = offset_of(pairs.j[place[k]]);
+      record[k] = pairs.record[place[k]];
+    }
   }
+
+  unsigned int n = 0;
+  std::int32_t place[B], record[B];
+  Offset i[B], j[B];
 
 private:
-  void take_all(const PairList &pairs, const std::size_t first)
-  {
-    for (unsigned int k = 0; k < B; ++k)
-      place[k] = static_cast<std::int32_t>(first + k);
-    i = &pairs.i[first];
-    j = &pairs.j[first];
-    record = &pairs.record[first];
-  }
-
-  void take_near(const PairList &pairs, const std::size_t first)
-  {
-    std::copy_n(&pairs.near.places[first], B, place);
-    for (unsigned int k = 0; k < B; ++k)
-      own_record[k] = pairs.record[place[k]];
-    i = &pairs.near.i[first];
-    j = &pairs.near.j[first];
-    record = own_record;
-  }
-
-  void take_some(const Chosen &chosen, const std::size_t first)
-  {
-    for (unsigned int k = 0; k < B; ++k) {
-      const std::size_t at = std::min<std::size_t>(first + k, chosen.size() - 1);
-      place[k] = chosen.places != nullptr ? (*chosen.places)[at] : static_cast<std::int32_t>(at);
-      own_i[k] = chosen.pairs.i[place[k]];
-      own_j[k] = chosen.pairs.j[place[k]];
-      own_record[k] = chosen.pairs.record[place[k]];
-    }
-    i = own_i;
-    j = own_j;
-    record = own_record;
-  }
-
-  std::int32_t own_i[B], own_j[B], own_record[B];
+  const PairList &pairs;
+  const std::vector<std::int32_t> *const places;
 };
 
-/// Squares of the distances less those of `factor` times the sum of the radii and @p range (m2).
-EUNOE_ALWAYS_INLINE void compare(const Quad *position, const Candidates &candidates,
-                                 const Period &period, const double range, const double factor,
-                                 double *excess)
+/// Lets the processor bring into its cache what forces need of a particle. Asked again for
+/// particles that are in several pairs: processors drop what they are asked for while they wait for
+/// much.
+void prefetch(const ParticleArrays &p, const Offset particle)
 {
-  alignas(64) Lanes xi, yi, zi, ri, xj, yj, zj, rj;
-  gather(position, candidates.i, xi, yi, zi, ri);
-  gather(position, candidates.j, xj, yj, zj, rj);
-#pragma omp simd
-  for (unsigned int k = 0; k < B; ++k) {
-    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
-    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
-    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
-    const double reach = factor * (ri[k] + rj[k] + range);
-    excess[k] = dx * dx + dy * dy + dz * dz - reach * reach;
-  }
+  for (const std::vector<Quad> *quads : {&p.position, &p.velocity, &p.spin, &p.force, &p.torque})
+    __builtin_prefetch(reinterpret_cast<const char *>(quads->data()) + particle);
 }
 
-/// Sorts candidates into those within reach and those whose contact has ended, by their places.
-/// Both outputs need room for B more entries.
-EUNOE_MULTIVERSION void select(const Quad *position, const Candidates &candidates,
-                               const Period &period, const double range, std::int32_t *active,
-                               unsigned int &n_active, std::int32_t *ended, unsigned int &n_ended)
+/// Appends the candidates with bits, and those that have a contact, which may have to end.
+/// @param n number of near pairs so far
+/// @return and after it
+std::size_t append(const Candidates &candidates, const std::uint64_t bits, NearPairs &near,
+                   std::size_t n)
 {
-  alignas(64) Lanes excess;
-  compare(position, candidates, period, range, 1., excess);
-  unsigned int a = n_active, e = n_ended;
-  for (unsigned int k = 0; k < candidates.n; ++k) {
-    const bool within = excess[k] <= 0.;
-    active[a] = candidates.place[k];
-    a += within;
-    ended[e] = candidates.place[k];
-    e += static_cast<unsigned int>(!within) & static_cast<unsigned int>(candidates.record[k] >= 0);
-  }
-  n_active = a;
-  n_ended = e;
-}
-
-/// Appends the candidates with a separation of up to @p margin beyond reach, and those that have a
-/// contact, which may have to end.
-EUNOE_MULTIVERSION void sift(const Quad *position, const Candidates &candidates,
-                             const Period &period, const double margin, NearPairs &near)
-{
-  alignas(64) Lanes excess;
-  compare(position, candidates, period, margin, 1. + NearPairs::slack, excess);
-  std::size_t n = near.places.size();
-  for (auto *list : {&near.places, &near.i, &near.j})
-    list->resize(n + B);
+  near.make_room(n + B);
   for (unsigned int k = 0; k < candidates.n; ++k) {
     near.places[n] = candidates.place[k];
     near.i[n] = candidates.i[k];
     near.j[n] = candidates.j[k];
-    n += static_cast<unsigned int>(excess[k] <= 0.) |
+    n += static_cast<unsigned int>(bits >> k & 1) |
          static_cast<unsigned int>(candidates.record[k] >= 0);
   }
-  for (auto *list : {&near.places, &near.i, &near.j})
-    list->resize(n);
-}
-
-/// Makes the list of near pairs anew.
-void find_near(const Quad *position, const Chosen &chosen, const Period &period, const double range,
-               NearPairs &near)
-{
-  const double margin = near.begin() + range;
-  Candidates candidates;
-  for (std::size_t first = 0; first < chosen.size(); first += B) {
-    candidates.take(chosen, first);
-    sift(position, candidates, period, margin, near);
-  }
-}
-
-/// Fills in the geometry and kinematics of the pairs (i[k], j[k]).
-EUNOE_MULTIVERSION void describe(PairBlock &b, const ParticleArrays &p, const std::int32_t *i,
-                                 const std::int32_t *j, const Period &period, double *ri,
-                                 double *rj)
-{
-  alignas(64) Lanes xi, yi, zi, xj, yj, zj;
-  alignas(64) Lanes vxi, vyi, vzi, mi, vxj, vyj, vzj, mj;
-  alignas(64) Lanes wxi, wyi, wzi, inertia_i, wxj, wyj, wzj, inertia_j;
-  gather(p.position.data(), i, xi, yi, zi, ri);
-  gather(p.position.data(), j, xj, yj, zj, rj);
-  gather(p.velocity.data(), i, vxi, vyi, vzi, mi);
-  gather(p.velocity.data(), j, vxj, vyj, vzj, mj);
-  gather(p.spin.data(), i, wxi, wyi, wzi, inertia_i);
-  gather(p.spin.data(), j, wxj, wyj, wzj, inertia_j);
-#pragma omp simd
-  for (unsigned int k = 0; k < B; ++k) {
-    const double dx = shortest_image(xj[k] - xi[k], period.half.x, period.length.x);
-    const double dy = shortest_image(yj[k] - yi[k], period.half.y, period.length.y);
-    const double dz = shortest_image(zj[k] - zi[k], period.half.z, period.length.z);
-    const double distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-    // Divided, not multiplied by an inverse: a normal along an axis has length one exactly.
-    const double nx = dx / distance, ny = dy / distance, nz = dz / distance;
-    b.nx[k] = nx;
-    b.ny[k] = ny;
-    b.nz[k] = nz;
-    b.distance[k] = distance;
-    b.overlap[k] = ri[k] + rj[k] - distance;
-    b.radius[k] = ri[k] * rj[k] / (ri[k] + rj[k]);
-    b.mass[k] = mi[k] * mj[k] / (mi[k] + mj[k]);
-    b.inertia[k] = inertia_i[k] * inertia_j[k] / (inertia_i[k] + inertia_j[k]);
-
-    const double sx = ri[k] * wxi[k] + rj[k] * wxj[k];
-    const double sy = ri[k] * wyi[k] + rj[k] * wyj[k];
-    const double sz = ri[k] * wzi[k] + rj[k] * wzj[k];
-    const double vx = vxi[k] - vxj[k] + (sy * nz - sz * ny);
-    const double vy = vyi[k] - vyj[k] + (sz * nx - sx * nz);
-    const double vz = vzi[k] - vzj[k] + (sx * ny - sy * nx);
-    const double closing = vx * nx + vy * ny + vz * nz;
-    b.closing_speed[k] = closing;
-    b.slip_x[k] = vx - closing * nx;
-    b.slip_y[k] = vy - closing * ny;
-    b.slip_z[k] = vz - closing * nz;
-
-    const double wx = wxi[k] - wxj[k], wy = wyi[k] - wyj[k], wz = wzi[k] - wzj[k];
-    const double twist = wx * nx + wy * ny + wz * nz;
-    b.roll_x[k] = wx - twist * nx;
-    b.roll_y[k] = wy - twist * ny;
-    b.roll_z[k] = wz - twist * nz;
-    b.twist[k] = twist;
-  }
-}
-
-EUNOE_MULTIVERSION void recall(PairBlock &block, const ContactMemory &memory,
-                               const std::int32_t *record)
-{
-  memory.load(block, record);
-}
-
-EUNOE_MULTIVERSION void remember(const PairBlock &block, ContactMemory &memory,
-                                 const std::int32_t *record)
-{
-  memory.store(block, record);
-}
-
-/// Adds the block's forces and torques to both particles of every pair, pair by pair.
-EUNOE_MULTIVERSION void scatter(const PairBlock &b, ParticleArrays &p, const std::int32_t *i,
-                                const std::int32_t *j, const double *ri, const double *rj)
-{
-  alignas(64) Lanes fx, fy, fz, tix, tiy, tiz, tjx, tjy, tjz;
-#pragma omp simd
-  for (unsigned int k = 0; k < B; ++k) {
-    const double normal = b.contact_force[k] - b.cohesion[k];
-    fx[k] = normal * b.nx[k] + b.shear_x[k];
-    fy[k] = normal * b.ny[k] + b.shear_y[k];
-    fz[k] = normal * b.nz[k] + b.shear_z[k];
-    const double cx = b.ny[k] * b.shear_z[k] - b.nz[k] * b.shear_y[k];
-    const double cy = b.nz[k] * b.shear_x[k] - b.nx[k] * b.shear_z[k];
-    const double cz = b.nx[k] * b.shear_y[k] - b.ny[k] * b.shear_x[k];
-    tix[k] = b.torque_x[k] - ri[k] * cx;
-    tiy[k] = b.torque_y[k] - ri[k] * cy;
-    tiz[k] = b.torque_z[k] - ri[k] * cz;
-    tjx[k] = -b.torque_x[k] - rj[k] * cx;
-    tjy[k] = -b.torque_y[k] - rj[k] * cy;
-    tjz[k] = -b.torque_z[k] - rj[k] * cz;
-  }
-  alignas(64) static const Lanes zero = {};
-  const auto rows = [](const double *x, const double *y, const double *z, unsigned int k,
-                       simd::Four(&out)[4]) __attribute__((always_inline))
-  {
-    out[0] = simd::four(x + k);
-    out[1] = simd::four(y + k);
-    out[2] = simd::four(z + k);
-    out[3] = simd::four(zero + k);
-    simd::transpose(out[0], out[1], out[2], out[3]);
-  };
-  Quad *const force = p.force.data(), *const torque = p.torque.data();
-  for (unsigned int k = 0; k < b.n; k += 4) {
-    simd::Four f[4], ti[4], tj[4];
-    rows(fx, fy, fz, k, f);
-    rows(tix, tiy, tiz, k, ti);
-    rows(tjx, tjy, tjz, k, tj);
-    const unsigned int count = b.n - k < 4 ? b.n - k : 4;
-    for (unsigned int l = 0; l < count; ++l) {
-      simd::four(force[i[k + l]]) -= f[l];
-      simd::four(force[j[k + l]]) += f[l];
-      simd::four(torque[i[k + l]]) += ti[l];
-      simd::four(torque[j[k + l]]) += tj[l];
-    }
-  }
-}
-
-/// Walks along the list: `end(place)` is called for pairs that have a contact and are out of reach,
-/// `run(places, n)` with up to B pairs within reach at a time.
-template <typename End, typename Run>
-void walk(const Quad *position, const Chosen &chosen, const Period &period, const double range,
-          const End &end, const Run &run)
-{
-  std::int32_t active[2 * B], ended[2 * B];
-  const std::size_t n_pairs = chosen.size();
-  unsigned int n_active = 0;
-  Candidates candidates;
-  for (std::size_t first = 0; first < n_pairs; first += B) {
-    candidates.take(chosen, first);
-    unsigned int n_ended = 0;
-    select(position, candidates, period, range, active, n_active, ended, n_ended);
-    for (unsigned int e = 0; e < n_ended; ++e)
-      end(ended[e]);
-    if (n_active >= B) {
-      run(active, B);
-      n_active -= B;
-      std::copy_n(active + B, n_active, active);
-    }
-  }
-  if (n_active > 0)
-    run(active, n_active);
-}
-
-/// The particles of a block's pairs and their radii.
-struct PairRows
-{
-  std::int32_t i[B], j[B];
-  alignas(64) Lanes ri, rj;
-};
-
-/// Fills a block with all but what the contacts remember.
-void fill(PairBlock &block, PairRows &rows, const ParticleArrays &particles, const PairList &pairs,
-          const std::int32_t *places, const unsigned int n, const Materials &materials,
-          const Period &period)
-{
-  for (unsigned int k = 0; k < B; ++k) {
-    const std::int32_t pair = places[std::min(k, n - 1)];
-    rows.i[k] = pairs.i[pair];
-    rows.j[k] = pairs.j[pair];
-  }
-  block.n = n;
-  block.uniform_kind = materials.only_particle_kind();
-  if (block.uniform_kind < 0)
-    for (unsigned int k = 0; k < B; ++k)
-      block.kind[k] = materials.kind(particles.type[rows.i[k]], particles.type[rows.j[k]]);
-  describe(block, particles, rows.i, rows.j, period, rows.ri, rows.rj);
+  return n;
 }
 
 } // namespace
 
-PairForces::PairForces(const ContactModel &model, const PeriodicBox &box)
-    : model(model), box(box), block(std::make_unique<PairBlock>())
+/// Runs blocks of pairs one after the other. The forces of a block are added while the next one is
+/// described.
+class PairForces::Run
 {
+public:
+  Run(const PairForces &forces, ParticleArrays &particles, const double dt)
+      : model(forces.model), particles(particles), period(forces.box), dt(dt),
+        blocks(forces.blocks.get())
+  {
+  }
+
+  /// The block that is to be filled next.
+  ParticleBlock &block() { return blocks[n_blocks % 2]; }
+
+  /// Describes the block; its first @p n places count.
+  /// @return bits of the pairs within reach
+  std::uint64_t describe(const unsigned int n)
+  {
+    ParticleBlock &b = block();
+    b.n = n;
+    b.uniform_kind = model.get_materials().only_particle_kind();
+    const std::uint64_t bits = n_blocks == 0 ? eunoe::describe(b, particles, period, model.range())
+                                             : add_and_describe(blocks[(n_blocks - 1) % 2], b,
+                                                                particles, period, model.range());
+    for (unsigned int k = n; k < B; ++k)
+      b.is_out[k] = 1.;
+    return bits;
+  }
+
+  /// Runs the laws on the block.
+  void apply()
+  {
+    model.apply(block(), dt);
+    ++n_blocks;
+  }
+
+  void end()
+  {
+    if (n_blocks > 0)
+      eunoe::add(blocks[(n_blocks - 1) % 2], particles);
+  }
+
+private:
+  const ContactModel &model;
+  ParticleArrays &particles;
+  const Period period;
+  const double dt;
+  ParticleBlock *const blocks;
+  std::size_t n_blocks = 0;
+};
+
+PairForces::PairForces(const ContactModel &model, const PeriodicBox &box)
+    : model(model), box(box), blocks(std::make_unique<ParticleBlock[]>(2))
+{
+}
+
+PairForces::~PairForces() = default;
+
+void PairForces::list_near(const ParticleArrays &particles, PairList &pairs) const
+{
+  const Period period(box);
+  NearPairs &near = pairs.near;
+  const double margin = near.begin() + model.range();
+  Candidates candidates(pairs, pairs.some_sleep ? &pairs.awake : nullptr);
+  std::size_t n = 0;
+  for (std::size_t first = 0; first < candidates.size(); first += B) {
+    candidates.take(first);
+    const std::uint64_t bits = within(particles.position.data(), candidates.i, candidates.j, period,
+                                      margin, 1. + NearPairs::slack);
+    n = append(candidates, bits, near, n);
+  }
+  near.end(n);
+  pairs.lay_out_memory();
+  const Materials &materials = model.get_materials();
+  near.kind.clear();
+  if (materials.only_particle_kind() >= 0)
+    return;
+  for (std::size_t k = 0; k < near.n_blocks() * B; ++k) {
+    const std::int32_t pair = near.places[std::min(k, n - 1)];
+    near.kind.push_back(
+        materials.kind(particles.type[pairs.i[pair]], particles.type[pairs.j[pair]]));
+  }
+}
+
+void PairForces::add_of_all(ParticleArrays &particles, PairList &pairs, const double dt) const
+{
+  NearPairs &near = pairs.near;
+  Run run(*this, particles, dt);
+  for (std::size_t k = 0; k < near.n_blocks(); ++k) {
+    const std::size_t first = k * B;
+    ParticleBlock &b = run.block();
+    b.i = &near.i[first];
+    b.j = &near.j[first];
+    b.kind = near.kind.empty() ? nullptr : &near.kind[first];
+    b.history = pairs.memory.lanes.block(k);
+    pairs.note_reach(k, run.describe(static_cast<unsigned int>(std::min(B, near.size() - first))));
+    if (k + 1 < near.n_blocks()) {
+      pairs.memory.lanes.prefetch(k + 1);
+      for (std::size_t next = first + B; next < first + 2 * B; ++next)
+        for (const Offset particle : {near.i[next], near.j[next]})
+          prefetch(particles, particle);
+    }
+    run.apply();
+  }
+  run.end();
+}
+
+void PairForces::add_of_some(ParticleArrays &particles, PairList &pairs, const double dt) const
+{
+  const Period period(box);
+  NearPairs &near = pairs.near;
+  Run run(*this, particles, dt);
+  std::int32_t place[2 * B];
+  alignas(64) std::int32_t record[B];
+  const auto run_block = [&](const unsigned int n) {
+    ParticleBlock &b = run.block();
+    b.i = b.own_i;
+    b.j = b.own_j;
+    b.kind = b.own_kind;
+    b.history = b.own_history;
+    for (unsigned int k = 0; k < B; ++k) {
+      const std::int32_t at = place[std::min(k, n - 1)];
+      b.own_i[k] = near.i[at];
+      b.own_j[k] = near.j[at];
+      if (!near.kind.empty())
+        b.own_kind[k] = near.kind[at];
+      record[k] = PairMemory::number_in_pool(pairs.record[near.places[at]]);
+    }
+    recall(b, pairs.memory.pool, record);
+    run.describe(n);
+    run.apply();
+    remember(b, pairs.memory.pool, record);
+  };
+  unsigned int n = 0;
+  for (std::size_t k = 0; k < near.n_blocks(); ++k) {
+    const std::size_t first = k * B;
+    pairs.note_reach(k, within(particles.position.data(), &near.i[first], &near.j[first], period,
+                               model.range(), 1.));
+    for (std::uint64_t bits = near.in_reach[k]; bits != 0; bits &= bits - 1) {
+      const std::int32_t at = static_cast<std::int32_t>(first) + __builtin_ctzll(bits);
+      prefetch(particles, near.i[at]);
+      prefetch(particles, near.j[at]);
+      place[n++] = at;
+    }
+    if (n < B)
+      continue;
+    run_block(B);
+    n -= B;
+    std::copy_n(place + B, n, place);
+  }
+  if (n > 0)
+    run_block(n);
+  run.end();
 }
 
 void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt)
 {
-  const Period period{box.length, box.half()};
-  const auto end = [&pairs](const std::int32_t pair) {
-    pairs.memory.release(pairs.record[pair]);
-    pairs.record[pair] = ContactMemory::none;
-  };
-  const auto run = [&](const std::int32_t *places, const unsigned int n) {
-    PairRows rows;
-    alignas(64) std::int32_t record[B];
-    fill(*block, rows, particles, pairs, places, n, model.get_materials(), period);
-    for (unsigned int k = 0; k < B; ++k) {
-      const std::int32_t pair = places[std::min(k, n - 1)];
-      if (pairs.record[pair] == ContactMemory::none)
-        pairs.record[pair] = pairs.memory.create();
-      record[k] = pairs.record[pair];
-    }
-    recall(*block, pairs.memory, record);
-    model.apply(*block, dt);
-    scatter(*block, particles, rows.i, rows.j, rows.ri, rows.rj);
-    remember(*block, pairs.memory, record);
-  };
-  const Quad *const position = particles.position.data();
-  const Chosen awake{pairs, pairs.some_sleep ? &pairs.awake : nullptr};
-  if (pairs.near.is_used() && pairs.near.is_due())
-    find_near(position, awake, period, model.range(), pairs.near);
-  walk(position, pairs.near.is_used() ? Chosen{pairs, &pairs.near.places, true} : awake, period,
-       model.range(), end, run);
+  if (pairs.near.is_due())
+    list_near(particles, pairs);
+  if (pairs.near.is_dense())
+    add_of_all(particles, pairs, dt);
+  else
+    add_of_some(particles, pairs, dt);
 }
 
 void PairForces::evaluate(const ParticleArrays &particles, const PairList &pairs,
                           const std::vector<std::int32_t> *places,
                           const ContactForceSink &sink) const
 {
-  const Period period{box.length, box.half()};
-  const auto own = std::make_unique<PairBlock>();
-  PairBlock &b = *own;
-  const auto run = [&](const std::int32_t *active, const unsigned int n) {
-    PairRows rows;
-    fill(b, rows, particles, pairs, active, n, model.get_materials(), period);
+  const Period period(box);
+  const auto own = std::make_unique<ParticleBlock>();
+  ParticleBlock &b = *own;
+  Candidates candidates(pairs, places);
+  b.i = candidates.i;
+  b.j = candidates.j;
+  const Materials &materials = model.get_materials();
+  b.uniform_kind = materials.only_particle_kind();
+  for (std::size_t first = 0; first < candidates.size(); first += B) {
+    candidates.take(first);
+    b.n = candidates.n;
     for (unsigned int k = 0; k < B; ++k) {
-      const std::int32_t record = pairs.record[active[std::min(k, n - 1)]];
+      const std::int32_t pair = candidates.place[k], record = candidates.record[k];
+      b.own_kind[k] = materials.kind(particles.type[pairs.i[pair]], particles.type[pairs.j[pair]]);
+      double remembered[PairBlock::max_history] = {};
+      if (record != ContactMemory::none)
+        pairs.memory.read(record, remembered);
       for (unsigned int h = 0; h < model.history_size(); ++h)
-        b.history[h][k] = record == ContactMemory::none ? 0. : pairs.memory[record][h];
+        b.history[h][k] = remembered[h];
     }
+    describe(b, particles, period, model.range());
     model.apply(b, 0.);
-    for (unsigned int k = 0; k < n; ++k)
-      sink({rows.i[k],
-            rows.j[k],
-            -1,
-            {b.nx[k], b.ny[k], b.nz[k]},
-            b.distance[k],
-            b.overlap[k],
-            b.contact_force[k] - b.cohesion[k],
-            {b.shear_x[k], b.shear_y[k], b.shear_z[k]},
-            {b.torque_x[k], b.torque_y[k], b.torque_z[k]}});
-  };
-  walk(
-      particles.position.data(), {pairs, places}, period, model.range(), [](std::int32_t) {}, run);
+    for (unsigned int k = 0; k < b.n; ++k)
+      if (b.is_out[k] == 0.)
+        sink({pairs.i[candidates.place[k]],
+              pairs.j[candidates.place[k]],
+              -1,
+              {b.nx[k], b.ny[k], b.nz[k]},
+              b.distance[k],
+              b.overlap[k],
+              b.contact_force[k] - b.cohesion[k],
+              {b.shear_x[k], b.shear_y[k], b.shear_z[k]},
+              {b.torque_x[k], b.torque_y[k], b.torque_z[k]}});
+  }
 }
 
 } // namespace eunoe

@@ -77,7 +77,7 @@ void ContactRows::collect(const ParticleArrays &particles, const PairList &pairs
           double *const r = &values[next[p]];
           r[0] = 0.;
           r[1] = particles.id[p == pairs.i[k] ? pairs.j[k] : pairs.i[k]];
-          std::copy_n(pairs.memory[pairs.record[k]], n_history, r + 2);
+          pairs.memory.read(pairs.record[k], r + 2);
           next[p] += pair_length;
         }
   for (const auto &candidate : solids.get_candidates())
@@ -106,7 +106,7 @@ void ContactRows::attach(const RowViews &views, const ParticleArrays &particles,
     for (const double *r = views[row]; r != views.end(row); r += length(r))
       if (r[0] == 0. && r[1] == partner) {
         pairs.record[k] = pairs.memory.create();
-        std::copy_n(r + 2, n_history, pairs.memory[pairs.record[k]]);
+        pairs.memory.write(pairs.record[k], r + 2);
         break;
       }
   }

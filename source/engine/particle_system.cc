@@ -42,6 +42,7 @@ void ParticleSystem::forget_contacts()
 {
   std::fill(pairs.record.begin(), pairs.record.end(), ContactMemory::none);
   pairs.memory.clear(model.history_size());
+  pairs.near.forget();
   solid_contacts.forget();
 }
 

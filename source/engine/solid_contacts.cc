@@ -293,7 +293,7 @@ void SolidContacts::add_to(Batch &b, const ParticleArrays &particles, const Soli
   b.roll_y[k] = roll.y;
   b.roll_z[k] = roll.z;
   b.twist[k] = twist;
-  b.kind[k] = model.get_materials().kind(particles.type[p], solid.material);
+  b.own_kind[k] = model.get_materials().kind(particles.type[p], solid.material);
   const double *const history = record == ContactMemory::none ? nullptr : memory[record];
   for (unsigned int h = 0; h < model.history_size(); ++h)
     b.history[h][k] = history == nullptr ? 0. : history[h];
@@ -311,7 +311,7 @@ void SolidContacts::apply_laws(Batch &b, const double dt) const
          {b.nx, b.ny, b.nz, b.distance, b.overlap, b.radius, b.mass, b.inertia, b.closing_speed,
           b.slip_x, b.slip_y, b.slip_z, b.roll_x, b.roll_y, b.roll_z, b.twist})
       lanes[k] = lanes[b.n - 1];
-    b.kind[k] = b.kind[b.n - 1];
+    b.own_kind[k] = b.own_kind[b.n - 1];
     for (unsigned int h = 0; h < model.history_size(); ++h)
       b.history[h][k] = b.history[h][b.n - 1];
   }

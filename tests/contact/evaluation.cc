@@ -7,6 +7,8 @@
 
 #include "../tests.h"
 
+#include <limits>
+
 using namespace test;
 
 namespace {
@@ -89,6 +91,7 @@ EUNOE_MPI_TEST()
       p.position[k].z = 0.;
     else if (k % 10 == 5)
       p.position[k].z = 5e-4;
+  pairs.near.note_step(std::numeric_limits<double>::infinity(), radius);
 
   ParticleArrays evaluated = p;
   clear(evaluated);

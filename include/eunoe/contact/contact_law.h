@@ -47,18 +47,31 @@ using ContactLawSection = PluginSection<ContactLaw, const Materials &, double>;
 using ContactLawRegistry = Registry<std::unique_ptr<ContactLawSection>>;
 ContactLawRegistry &contact_laws(const std::string &family);
 
-/// Copies one coefficient of each contact's row into @p lanes.
+/// The row of a law's table that all contacts of a block have.
 template <typename Row>
-inline void look_up(const PairBlock &block, const std::vector<Row> &table, double Row::*coefficient,
-                    double *lanes)
+struct SameRow
 {
-  if (block.uniform_kind >= 0) {
-    const double value = table[block.uniform_kind].*coefficient;
-    for (unsigned int k = 0; k < PairBlock::size; ++k)
-      lanes[k] = value;
-  } else
-    for (unsigned int k = 0; k < PairBlock::size; ++k)
-      lanes[k] = table[block.kind[k]].*coefficient;
+  const Row row;
+  const Row &operator()(unsigned int) const { return row; }
+};
+
+/// The rows of contacts between several kinds of materials.
+template <typename Row>
+struct RowByKind
+{
+  const Row *const table;
+  const std::int32_t *const kind;
+  const Row &operator()(const unsigned int k) const { return table[kind[k]]; }
+};
+
+/// Calls `kernel(row)`, where `row(k)` has the coefficients of the block's contact k.
+template <typename Row, typename Kernel>
+inline void with_rows(const PairBlock &block, const std::vector<Row> &table, const Kernel &kernel)
+{
+  if (block.uniform_kind >= 0)
+    kernel(SameRow<Row>{table[block.uniform_kind]});
+  else
+    kernel(RowByKind<Row>{table.data(), block.kind});
 }
 
 } // namespace eunoe

@@ -45,13 +45,23 @@ public:
 
   void release(std::int32_t record) { free.push_back(record); }
 
+  std::size_t n_living() const { return static_cast<std::size_t>(n_records) - free.size(); }
+
+  /// Gives the room back of records that all have been released.
+  void give_back()
+  {
+    quads = {};
+    free = {};
+    n_records = 0;
+  }
+
   double *operator[](std::int32_t record) { return &quads[record * quads_per_record].x; }
   const double *operator[](std::int32_t record) const
   {
     return &quads[record * quads_per_record].x;
   }
 
-  /// Copies the records of a block's contacts to its lanes.
+  /// Copies records to the lanes of a block.
   EUNOE_ALWAYS_INLINE void load(PairBlock &block, const std::int32_t *records) const
   {
     for (unsigned int q = 0; q < quads_per_record; ++q)
@@ -65,7 +75,7 @@ public:
       }
   }
 
-  /// Copies the lanes of a block's contacts to their records.
+  /// Copies the lanes of a block to their records.
   EUNOE_ALWAYS_INLINE void store(const PairBlock &block, const std::int32_t *records)
   {
     for (unsigned int q = 0; q < quads_per_record; ++q)

@@ -1,6 +1,8 @@
 #ifndef eunoe_contact_near_pairs_h
 #define eunoe_contact_near_pairs_h
 
+#include <eunoe/contact/pair_block.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,8 +11,9 @@
 
 namespace eunoe {
 
-/// The places of those pairs of a list that can come within reach in the next steps. The others,
-/// most of them where powder flows, are not looked at until the particles have gone far enough.
+/// Those pairs of a list that can come within reach in the next steps, in whose order forces are
+/// computed. The others, most of them where powder flows, are not looked at until the particles
+/// have gone far enough.
 ///
 /// A list is good for as long as twice the largest steps of any particle add up to its margin. A
 /// pair that is left out is out of reach, so forces are the same as of the whole list.
@@ -22,42 +25,105 @@ public:
   static constexpr double slack = 1e-6;
 
   /// To be called whenever the pairs have changed.
-  void forget() { left = -1.; }
+  void forget()
+  {
+    left = -1.;
+    is_of_other_pairs = true;
+  }
 
   /// Every particle has gone by at most @p step since the last call (m), infinite if that is not
   /// known.
   /// @param skin separation up to which the list has pairs (m)
   void note_step(const double step, const double skin)
   {
-    // Looking at all of them once in n steps costs as much a step as looking at those that n steps
-    // add to the margin.
-    constexpr double share = 0.65, most_steps = 200.;
+    constexpr double most_steps = 200.;
     left -= 2. * step;
-    n_steps = std::isinf(step) ? 0. : std::min(most_steps, std::sqrt(share * skin / step));
-    wanted = 2. * n_steps * step;
+    const double n_steps = std::min(most_steps, std::floor(std::sqrt(share() * skin / step)));
+    wanted = n_steps >= 1. ? 2. * n_steps * step : 0.;
   }
 
-  /// Whether it is worth while.
-  bool is_used() const { return n_steps >= 2.; }
   bool is_due() const { return !(left >= 0.); }
+
+  /// Whether so many of the pairs are within reach that it costs less to compute all than to sort
+  /// them out.
+  bool is_dense() const { return dense; }
 
   /// Begins a list.
   /// @return the separation up to which a pair belongs to it (m)
   double begin()
   {
-    for (auto *list : {&places, &i, &j})
-      list->clear();
+    judge_density();
     left = wanted;
     return wanted;
   }
 
-  std::vector<std::int32_t> places; ///< ascending
-  std::vector<std::int32_t> i, j;   ///< rows of the particles
+  /// Room for @p n pairs in all.
+  void make_room(const std::size_t n)
+  {
+    if (places.size() >= n)
+      return;
+    places.resize(n + n / 2);
+    for (auto *list : {&i, &j})
+      list->resize(n + n / 2);
+  }
+
+  /// Ends a list of @p n pairs: fills the last block with copies of the last pair.
+  void end(const std::size_t n)
+  {
+    n_pairs = n;
+    const std::size_t n_blocks = (n + PairBlock::size - 1) / PairBlock::size;
+    make_room(n_blocks * PairBlock::size);
+    for (std::size_t k = n; k < n_blocks * PairBlock::size; ++k) {
+      i[k] = i[n - 1];
+      j[k] = j[n - 1];
+    }
+    in_reach.assign(n_blocks, 0);
+  }
+
+  std::size_t size() const { return n_pairs; }
+  /// Bits of the pairs of a block, which fill all but the last.
+  std::uint64_t mask(const std::size_t block) const
+  {
+    const std::size_t n = std::min<std::size_t>(PairBlock::size, n_pairs - block * PairBlock::size);
+    return ~std::uint64_t(0) >> (PairBlock::size - n);
+  }
+  std::size_t n_blocks() const { return in_reach.size(); }
+
+  /// @name There may be room for more behind the last pair, and its block
+  ///@{
+  std::vector<std::int32_t> places; ///< in the list of pairs, ascending
+  std::vector<std::uint32_t> i, j;  ///< offsets of the particles' rows (bytes); whole blocks
+  ///@}
+  std::vector<std::int32_t> kind; ///< of the materials; whole blocks, empty if all have one
+  /// Bits of those that were within reach when the last forces were computed, by block.
+  std::vector<std::uint64_t> in_reach;
+  /// Whether the pairs have changed since the last list.
+  bool is_of_other_pairs = true;
 
 private:
-  double left = -1.;   ///< of the margin (m)
-  double wanted = 0.;  ///< margin of the next list (m)
-  double n_steps = 0.; ///< for which that will do
+  /// Looking at all pairs once in n steps costs as much a step as what n steps add to the margin if
+  /// n^2 is this share of skin over step.
+  double share() const { return dense ? share_if_dense : share_if_not; }
+
+  /// From how many pairs of the last list were within reach.
+  void judge_density()
+  {
+    std::size_t n_within = 0;
+    for (const std::uint64_t bits : in_reach)
+      n_within += static_cast<std::size_t>(__builtin_popcountll(bits));
+    // Of a dense list the margin is narrower.
+    const double others = static_cast<double>(n_pairs - n_within) *
+                          (dense ? 1. : std::sqrt(share_if_dense / share_if_not));
+    // A change costs as much as some steps.
+    dense = others < (dense ? 0.6 : 0.35) * static_cast<double>(n_within);
+  }
+
+  static constexpr double share_if_dense = 0.2, share_if_not = 0.65;
+
+  bool dense = true;
+  std::size_t n_pairs = 0;
+  double left = -1.;  ///< of the margin (m)
+  double wanted = 0.; ///< margin of the next list (m)
 };
 
 } // namespace eunoe

@@ -14,6 +14,7 @@ struct alignas(64) ContactForces
 
   alignas(64) Lanes stiffness;      ///< normal secant stiffness k_n (N/m)
   alignas(64) Lanes contact_radius; ///< of the area in which the bodies touch, 0 if none (m)
+  alignas(64) Lanes damping_root;   ///< root of contact radius and mass, for dampers (m kg)^(1/2)
   alignas(64) Lanes contact_force;  ///< normal elastic + damping force, repulsion positive (N)
   alignas(64) Lanes cohesion;       ///< attraction positive, remote repulsion negative (N)
   alignas(64) Lanes shear_x, shear_y, shear_z;    ///< tangential force on j (N)
@@ -37,7 +38,7 @@ struct alignas(64) PairBlock : ContactForces
   /// Row in every law's table of coefficients, shared by the whole block if >= 0 ...
   int uniform_kind = -1;
   /// ... else one per contact.
-  std::int32_t kind[size];
+  const std::int32_t *kind = nullptr;
 
   /// @name Written by the geometry, read by the laws
   ///@{
@@ -54,7 +55,22 @@ struct alignas(64) PairBlock : ContactForces
   ///@}
 
   /// What the contacts remember, `[component][contact]`; each law owns a range of components.
-  alignas(64) double history[max_history][size];
+  Lanes *history = nullptr;
+};
+
+/// A block that has room of its own for what it points to.
+struct alignas(64) OwnPairBlock : PairBlock
+{
+  OwnPairBlock()
+  {
+    kind = own_kind;
+    history = own_history;
+  }
+  OwnPairBlock(const OwnPairBlock &) = delete;
+  OwnPairBlock &operator=(const OwnPairBlock &) = delete;
+
+  std::int32_t own_kind[size];
+  alignas(64) Lanes own_history[max_history];
 };
 
 } // namespace eunoe

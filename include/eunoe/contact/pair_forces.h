@@ -11,11 +11,14 @@
 
 namespace eunoe {
 
+struct ParticleBlock;
+
 /// The forces and torques of all particle-particle contacts.
 class PairForces
 {
 public:
   PairForces(const ContactModel &model, const PeriodicBox &box);
+  ~PairForces();
 
   /// Adds to the force and torque of every particle in @p particles (those of ghosts are partial
   /// sums without meaning) and advances the memory of the contacts by @p dt.
@@ -28,9 +31,17 @@ public:
                 const std::vector<std::int32_t> *places, const ContactForceSink &sink) const;
 
 private:
+  class Run;
+
+  void list_near(const ParticleArrays &particles, PairList &pairs) const;
+  /// All near pairs go through the laws, which work on their memory where it is.
+  void add_of_all(ParticleArrays &particles, PairList &pairs, double dt) const;
+  /// Only those within reach do, with copies of their memory: for lists in which these are few.
+  void add_of_some(ParticleArrays &particles, PairList &pairs, double dt) const;
+
   const ContactModel &model;
   const PeriodicBox box;
-  std::unique_ptr<PairBlock> block;
+  std::unique_ptr<ParticleBlock[]> blocks; ///< two in turn
 };
 
 } // namespace eunoe

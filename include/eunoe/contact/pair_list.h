@@ -1,8 +1,8 @@
 #ifndef eunoe_contact_pair_list_h
 #define eunoe_contact_pair_list_h
 
-#include <eunoe/contact/contact_memory.h>
 #include <eunoe/contact/near_pairs.h>
+#include <eunoe/contact/pair_memory.h>
 
 #include <cstdint>
 #include <vector>
@@ -21,7 +21,7 @@ struct PairList
   /// Record of the contact in `memory`, ContactMemory::none while the pair is out of reach.
   std::vector<std::int32_t> record;
   /// Oriented from i to j.
-  ContactMemory memory;
+  PairMemory memory;
   /// Whether some pairs are of two sleepers; `awake` are the places of all others, ascending.
   bool some_sleep = false;
   std::vector<std::int32_t> awake;
@@ -88,6 +88,18 @@ struct PairList
     copy(j, other.j);
     copy(record, other.record);
   }
+
+  /// Moves what the contacts remember to where it is needed for a new list of near pairs.
+  void lay_out_memory();
+
+  /// Lets contacts of near pairs begin, with a memory of zeros, and end.
+  /// @param block of near pairs
+  /// @param bits of those within reach
+  void note_reach(std::size_t block, std::uint64_t bits);
+
+private:
+  /// @param but_near whether the records of near pairs stay where they are
+  void move_memory_to_pool(bool but_near);
 };
 
 } // namespace eunoe

@@ -67,7 +67,7 @@ public:
 
 private:
   /// A block for the laws, with further data of its contacts.
-  struct Batch : public PairBlock
+  struct Batch : public OwnPairBlock
   {
     std::array<std::int32_t, size> particle, solid;
     std::array<std::int32_t, size> record; ///< in which the memory is kept, none for a sleeper's

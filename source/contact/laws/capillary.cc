@@ -36,12 +36,7 @@ public:
 
   void apply(PairBlock &block, unsigned int history, double) const override
   {
-    alignas(64) PairBlock::Lanes pull, length, length_share, stretch;
-    look_up(block, table, &Row::pull, pull);
-    look_up(block, table, &Row::length, length);
-    look_up(block, table, &Row::length_share, length_share);
-    look_up(block, table, &Row::stretch, stretch);
-    kernel(block, pull, length, length_share, stretch, block.history[history]);
+    with_rows(block, table, [&](const auto &row) { kernel(block, row, block.history[history]); });
   }
 
 private:
@@ -71,19 +66,18 @@ private:
     return table;
   }
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *pull, const double *length,
-                                        const double *length_share, const double *stretch,
-                                        double *bridged)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row, double *bridged)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double separation = b.overlap[k] < 0. ? -b.overlap[k] : 0.;
-      const double root = length[k] + length_share[k] * b.radius[k];
-      const double rupture = bridged[k] > 0. ? stretch[k] * root : 0.;
+      const double root = row(k).length + row(k).length_share * b.radius[k];
+      const double rupture = bridged[k] > 0. ? row(k).stretch * root : 0.;
       const bool has_bridge = separation <= rupture;
       // Derjaguin's radius is twice the effective one.
       const double s = separation * std::sqrt(2. * b.radius[k] / (root * root * root));
-      const double force = pull[k] * b.radius[k] / (1. + 1.05 * s + 2.5 * s * s);
+      const double force = row(k).pull * b.radius[k] / (1. + 1.05 * s + 2.5 * s * s);
       b.cohesion[k] += has_bridge ? force : 0.;
       bridged[k] = has_bridge ? 1. : 0.;
     }

@@ -29,9 +29,7 @@ public:
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
-    alignas(64) PairBlock::Lanes strength;
-    look_up(block, table, &Row::strength, strength);
-    kernel(block, strength, cut_off);
+    with_rows(block, table, [&](const auto &row) { kernel(block, row, cut_off); });
   }
 
 private:
@@ -44,7 +42,8 @@ private:
     double strength;
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *strength, const double cut_off)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row, const double cut_off)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
@@ -54,8 +53,8 @@ private:
       // The product of the two radii.
       const double product = b.radius[k] * radii;
       const double force =
-          strength[k] * product * product * (1. / (distance * distance) - 1. / (end * end));
-      b.cohesion[k] -= strength[k] != 0. && distance < end ? force : 0.;
+          row(k).strength * product * product * (1. / (distance * distance) - 1. / (end * end));
+      b.cohesion[k] -= row(k).strength != 0. && distance < end ? force : 0.;
     }
   }
 

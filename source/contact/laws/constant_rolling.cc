@@ -9,11 +9,12 @@ namespace {
 /// included (Zhou, Wright, Yang, Xu, Yu 1999).
 struct ConstantRolling
 {
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const double torque = friction[k] * b.radius[k] * std::abs(b.contact_force[k]);
+      const double torque = row(k).friction * b.radius[k] * std::abs(b.contact_force[k]);
       const double wx = b.roll_x[k] + b.twist[k] * b.nx[k];
       const double wy = b.roll_y[k] + b.twist[k] * b.ny[k];
       const double wz = b.roll_z[k] + b.twist[k] * b.nz[k];

@@ -26,12 +26,7 @@ public:
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
-    alignas(64) PairBlock::Lanes pull_off, van_der_waals, plateau, cut_off;
-    look_up(block, table, &Row::pull_off, pull_off);
-    look_up(block, table, &Row::van_der_waals, van_der_waals);
-    look_up(block, table, &Row::plateau, plateau);
-    look_up(block, table, &Row::cut_off, cut_off);
-    kernel(block, pull_off, van_der_waals, plateau, cut_off);
+    with_rows(block, table, [&](const auto &row) { kernel(block, row); });
   }
 
 private:
@@ -43,17 +38,16 @@ private:
     double cut_off;       ///< separation beyond which nothing acts, |d*| (m)
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *pull_off,
-                                        const double *van_der_waals, const double *plateau,
-                                        const double *cut_off)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double separation = -b.overlap[k];
-      const bool far = separation > plateau[k];
-      const double tail = van_der_waals[k] / (far ? separation * separation : 1.);
-      const double force = (far ? tail : pull_off[k]) * b.radius[k];
-      b.cohesion[k] += separation < cut_off[k] || !far ? force : 0.;
+      const bool far = separation > row(k).plateau;
+      const double tail = row(k).van_der_waals / (far ? separation * separation : 1.);
+      const double force = (far ? tail : row(k).pull_off) * b.radius[k];
+      b.cohesion[k] += separation < row(k).cut_off || !far ? force : 0.;
     }
   }
 

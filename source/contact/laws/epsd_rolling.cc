@@ -16,11 +16,12 @@ public:
   /// @param f share of the viscous torque left once the spring is fully mobilised
   /// @param inertia_factor on the effective inertia about the centres, 2/5 m R^2
   EpsdRolling(const Materials &materials, const double f, const double inertia_factor)
-      : table(materials.table([](const Material &a, const Material &b) {
+      : table(materials.table([&](const Material &a, const Material &b) {
           return Row{harmonic_mean(a.rolling_friction, b.rolling_friction),
-                     harmonic_mean(a.rolling_viscous_damping, b.rolling_viscous_damping)};
+                     3. * std::sqrt(inertia_factor) *
+                         harmonic_mean(a.rolling_viscous_damping, b.rolling_viscous_damping)};
         })),
-        f(f), inertia_factor(inertia_factor)
+        f(f)
   {
   }
 
@@ -34,29 +35,30 @@ public:
 
   void apply(PairBlock &block, unsigned int history, double dt) const override
   {
-    alignas(64) PairBlock::Lanes friction, damping;
-    look_up(block, table, &Row::friction, friction);
-    look_up(block, table, &Row::damping, damping);
-    kernel(block, friction, damping, f, inertia_factor, block.history[history],
-           block.history[history + 1], block.history[history + 2], dt);
+    with_rows(block, table, [&](const auto &row) {
+      kernel(block, row, f, block.history[history], block.history[history + 1],
+             block.history[history + 2], dt);
+    });
   }
 
 private:
   struct Row
   {
-    double friction, damping;
+    double friction;
+    double damping; ///< over the arm and the root of inertia and normal stiffness
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction, const double *damping,
-                                        const double f, const double inertia_factor, double *hx,
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row, const double f, double *hx,
                                         double *hy, double *hz, const double dt)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const bool touching = b.contact_radius[k] > 0.;
-      const double arm = friction[k] * b.radius[k];
+      const double arm = row(k).friction * b.radius[k];
+      // 9/4 of the normal stiffness, at the arm.
       const double stiffness = 2.25 * b.stiffness[k] * arm * arm;
-      const double damper = 2. * damping[k] * std::sqrt(inertia_factor * b.inertia[k] * stiffness);
+      const double damper = row(k).damping * arm * std::sqrt(b.inertia[k] * b.stiffness[k]);
       const double limit = arm * std::abs(b.contact_force[k]);
 
       const Vec3 turned = turn_with_plane(hx[k], hy[k], hz[k], b.nx[k], b.ny[k], b.nz[k]);
@@ -68,17 +70,21 @@ private:
       const bool mobilised = spring >= limit;
       const double scale = spring > limit ? limit / spring : 1.;
       const double dashpot = mobilised ? f * damper : damper;
-      hx[k] = touching ? mx * scale : 0.;
-      hy[k] = touching ? my * scale : 0.;
-      hz[k] = touching ? mz * scale : 0.;
-      b.torque_x[k] += touching ? hx[k] - dashpot * b.roll_x[k] : 0.;
-      b.torque_y[k] += touching ? hy[k] - dashpot * b.roll_y[k] : 0.;
-      b.torque_z[k] += touching ? hz[k] - dashpot * b.roll_z[k] : 0.;
+      const double kept_x = touching ? mx * scale : 0.;
+      const double kept_y = touching ? my * scale : 0.;
+      const double kept_z = touching ? mz * scale : 0.;
+      const double damper_left = touching ? dashpot : 0.;
+      hx[k] = kept_x;
+      hy[k] = kept_y;
+      hz[k] = kept_z;
+      b.torque_x[k] += kept_x - damper_left * b.roll_x[k];
+      b.torque_y[k] += kept_y - damper_left * b.roll_y[k];
+      b.torque_z[k] += kept_z - damper_left * b.roll_z[k];
     }
   }
 
   const std::vector<Row> table;
-  const double f, inertia_factor;
+  const double f;
 };
 
 class EpsdSection : public ContactLawSection

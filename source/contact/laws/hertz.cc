@@ -11,37 +11,38 @@ class Hertz : public ContactLaw
 public:
   Hertz(const Materials &materials, double)
       : table(materials.table([](const Material &a, const Material &b) {
-          return Row{effective_young_modulus(a, b),
-                     damping_factor(harmonic_mean(a.restitution, b.restitution))};
+          const double young = effective_young_modulus(a, b);
+          return Row{4. / 3. * young, std::sqrt(2. * young) * damping_factor(harmonic_mean(
+                                                                  a.restitution, b.restitution))};
         }))
   {
   }
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
-    alignas(64) PairBlock::Lanes young, damping;
-    look_up(block, table, &Row::young, young);
-    look_up(block, table, &Row::damping, damping);
-    kernel(block, young, damping);
+    with_rows(block, table, [&](const auto &row) { kernel(block, row); });
   }
 
 private:
   struct Row
   {
-    double young, damping;
+    double stiffness; ///< over the contact radius (N/m2)
+    double damping;   ///< over the root of contact radius and mass (N^(1/2)/m)
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *young, const double *damping)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double overlap = b.overlap[k] > 0. ? b.overlap[k] : 0.;
       const double contact_radius = std::sqrt(b.radius[k] * overlap);
-      const double stiffness = 4. / 3. * young[k] * contact_radius;
-      const double damper = damping[k] * std::sqrt(1.5 * stiffness * b.mass[k]);
+      const double stiffness = row(k).stiffness * contact_radius;
+      const double root = std::sqrt(contact_radius * b.mass[k]);
       b.contact_radius[k] = contact_radius;
+      b.damping_root[k] = root;
       b.stiffness[k] = stiffness;
-      b.contact_force[k] = stiffness * overlap + damper * b.closing_speed[k];
+      b.contact_force[k] = stiffness * overlap + row(k).damping * root * b.closing_speed[k];
     }
   }
 

@@ -50,7 +50,9 @@ public:
   Jkr(const Materials &materials, const double largest_radius)
       : table(materials.table([](const Material &a, const Material &b) {
           const double young = effective_young_modulus(a, b), work = effective_surface_energy(a, b);
-          return Row{young, damping_factor(harmonic_mean(a.restitution, b.restitution)),
+          return Row{young,
+                     std::sqrt(2. * young) *
+                         damping_factor(harmonic_mean(a.restitution, b.restitution)),
                      M_PI * work, std::cbrt(M_PI * work / (8. * young))};
         })),
         largest_radius(largest_radius)
@@ -68,24 +70,20 @@ public:
 
   void apply(PairBlock &block, unsigned int history, double) const override
   {
-    alignas(64) PairBlock::Lanes young, damping, adhesion, neck;
-    look_up(block, table, &Row::young, young);
-    look_up(block, table, &Row::damping, damping);
-    look_up(block, table, &Row::adhesion, adhesion);
-    look_up(block, table, &Row::neck, neck);
-    kernel(block, young, damping, adhesion, neck, block.history[history]);
+    with_rows(block, table, [&](const auto &row) { kernel(block, row, block.history[history]); });
   }
 
 private:
   struct Row
   {
-    double young, damping;
+    double young;
+    double damping;  ///< over the root of contact radius and mass (N^(1/2)/m)
     double adhesion; ///< pi times the work of adhesion (N/m)
     double neck;     ///< least contact radius over the effective one to 2/3 (m^(1/3))
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *young, const double *damping,
-                                        const double *adhesion, const double *neck, double *begun)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row, double *begun)
   {
     // Far into a contact with hardly any adhesion, the neck is taken as this share of the radius
     // of Hertz's contact: what that changes is less than rounding.
@@ -94,7 +92,7 @@ private:
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double overlap = b.overlap[k], radius = b.radius[k];
       const double root = cube_root(radius);
-      const double torn = neck[k] * root * root;
+      const double torn = row(k).neck * root * root;
       const double torn2 = torn * torn;
       const double depth2 = overlap * radius;
       // The smallest normal number stands for "above zero".
@@ -108,14 +106,16 @@ private:
       const double z = neck_root(std::sqrt(above > 0. ? above : 0.));
       const double a = std::sqrt(unit2) * (1. + z) * (1. + z);
 
-      const double stiffness = 4. / 3. * young[k] * a;
+      const double stiffness = 4. / 3. * row(k).young * a;
       const double elastic =
-          stiffness * a * a / radius - std::sqrt(8. * adhesion[k] * young[k] * a * a * a);
-      const double damper = damping[k] * std::sqrt(1.5 * stiffness * b.mass[k]);
+          stiffness * a * a / radius - std::sqrt(8. * row(k).adhesion * row(k).young * a * a * a);
+      const double damping_root = std::sqrt(a * b.mass[k]);
+      const double damper = row(k).damping * damping_root;
       // Friction and rolling resistance feel the load together with twice the pull-off force
       // (Thornton 1991), which is taken off again as cohesion.
-      const double twice_pull_off = 3. * adhesion[k] * radius;
+      const double twice_pull_off = 3. * row(k).adhesion * radius;
       b.contact_radius[k] = touching ? a : 0.;
+      b.damping_root[k] = touching ? damping_root : 0.;
       b.stiffness[k] = touching ? stiffness : 0.;
       b.contact_force[k] = touching ? elastic + twice_pull_off + damper * b.closing_speed[k] : 0.;
       b.cohesion[k] += touching ? twice_pull_off : 0.;

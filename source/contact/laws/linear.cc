@@ -26,12 +26,12 @@ public:
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
-    alignas(64) PairBlock::Lanes young, damping, stiffness;
-    look_up(block, table, &Row::young, young);
-    look_up(block, table, &Row::damping, damping);
-    for (unsigned int k = 0; k < PairBlock::size; ++k)
-      stiffness[k] = linear_stiffness(young[k], block.radius[k], block.mass[k]);
-    kernel(block, stiffness, damping);
+    alignas(64) PairBlock::Lanes stiffness;
+    with_rows(block, table, [&](const auto &row) {
+      for (unsigned int k = 0; k < PairBlock::size; ++k)
+        stiffness[k] = linear_stiffness(row(k).young, block.radius[k], block.mass[k]);
+      kernel(block, stiffness, row);
+    });
   }
 
 private:
@@ -40,15 +40,17 @@ private:
     double young, damping;
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *stiffness,
-                                        const double *damping)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *stiffness, const RowOf row)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const double overlap = b.overlap[k] > 0. ? b.overlap[k] : 0.;
-      const double damper = damping[k] * std::sqrt(stiffness[k] * b.mass[k]);
+      const double damper = row(k).damping * std::sqrt(stiffness[k] * b.mass[k]);
       const double force = stiffness[k] * overlap + damper * b.closing_speed[k];
-      b.contact_radius[k] = std::sqrt(b.radius[k] * overlap);
+      const double contact_radius = std::sqrt(b.radius[k] * overlap);
+      b.contact_radius[k] = contact_radius;
+      b.damping_root[k] = std::sqrt(contact_radius * b.mass[k]);
       b.stiffness[k] = overlap > 0. ? stiffness[k] : 0.;
       b.contact_force[k] = overlap > 0. ? force : 0.;
     }

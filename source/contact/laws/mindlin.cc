@@ -25,8 +25,10 @@ public:
   /// @param damping on the factor of Tsuji's damping
   Mindlin(const Materials &materials, const double damping)
       : table(materials.table([damping](const Material &a, const Material &b) {
-          return Row{effective_shear_modulus(a, b),
-                     damping * damping_factor(harmonic_mean(a.restitution, b.restitution)),
+          const double shear = 8. * effective_shear_modulus(a, b);
+          return Row{shear,
+                     (spring == Spring::linear ? 1. : std::sqrt(shear)) * damping *
+                         damping_factor(harmonic_mean(a.restitution, b.restitution)),
                      harmonic_mean(a.friction, b.friction)};
         }))
   {
@@ -38,30 +40,32 @@ public:
 
   void apply(PairBlock &block, unsigned int history, double dt) const override
   {
-    alignas(64) PairBlock::Lanes shear, damping, friction;
-    look_up(block, table, &Row::shear, shear);
-    look_up(block, table, &Row::damping, damping);
-    look_up(block, table, &Row::friction, friction);
-    kernel(block, shear, damping, friction, block.history[history], block.history[history + 1],
-           block.history[history + 2], dt);
+    with_rows(block, table, [&](const auto &row) {
+      kernel(block, row, block.history[history], block.history[history + 1],
+             block.history[history + 2], dt);
+    });
   }
 
 private:
   struct Row
   {
-    double shear, damping, friction;
+    double shear;   ///< stiffness over the contact radius (N/m2)
+    double damping; ///< over the root of contact radius and mass, linear: of stiffness and mass
+    double friction;
   };
 
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *shear, const double *damping,
-                                        const double *friction, double *hx, double *hy, double *hz,
-                                        const double dt)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row, double *hx, double *hy,
+                                        double *hz, const double dt)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
       const bool touching = b.contact_radius[k] > 0.;
       const double stiffness =
-          spring == Spring::linear ? 0.4 * b.stiffness[k] : 8. * shear[k] * b.contact_radius[k];
-      const double damper = damping[k] * std::sqrt(stiffness * b.mass[k]);
+          spring == Spring::linear ? 0.4 * b.stiffness[k] : row(k).shear * b.contact_radius[k];
+      const double damper =
+          row(k).damping *
+          (spring == Spring::linear ? std::sqrt(stiffness * b.mass[k]) : b.damping_root[k]);
 
       const Vec3 turned = turn_with_plane(hx[k], hy[k], hz[k], b.nx[k], b.ny[k], b.nz[k]);
       const double dx = turned.x + b.slip_x[k] * dt;
@@ -75,9 +79,11 @@ private:
       const double trial_y = stiffness * dy + damp_y;
       const double trial_z = stiffness * dz + damp_z;
       const double trial = std::sqrt(trial_x * trial_x + trial_y * trial_y + trial_z * trial_z);
-      const double limit = friction[k] * std::abs(b.contact_force[k]);
+      const double limit = row(k).friction * std::abs(b.contact_force[k]);
       const bool slides = trial > limit;
-      const double scale = slides ? limit / trial : 1.;
+      // One division for two: by the trial force, and by the stiffness.
+      const double both = 1. / (trial * stiffness);
+      const double scale = slides ? limit * stiffness * both : 1.;
       const double fx = trial_x * scale;
       const double fy = trial_y * scale;
       const double fz = trial_z * scale;
@@ -86,7 +92,7 @@ private:
       b.shear_z[k] += touching ? fz : 0.;
 
       const bool recompute = limit_overlap && slides;
-      const double compliance = 1. / (touching ? stiffness : 1.);
+      const double compliance = trial * both;
       const double kept_x = recompute ? (fx - damp_x) * compliance : dx;
       const double kept_y = recompute ? (fy - damp_y) * compliance : dy;
       const double kept_z = recompute ? (fz - damp_z) * compliance : dz;

@@ -5,7 +5,7 @@
 
 namespace eunoe {
 
-/// A rolling resistance without memory, that of `Model::kernel(block, coefficients)`, where each
+/// A rolling resistance without memory, that of `Model::kernel(block, row)`, where each
 /// pair has the harmonic mean of its coefficients of rolling friction.
 template <class Model>
 class RollingFriction : public ContactLaw
@@ -20,9 +20,7 @@ public:
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
-    alignas(64) PairBlock::Lanes friction;
-    look_up(block, table, &Row::friction, friction);
-    Model::kernel(block, friction);
+    with_rows(block, table, [&](const auto &row) { Model::kernel(block, row); });
   }
 
 private:

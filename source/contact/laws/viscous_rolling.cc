@@ -10,11 +10,13 @@ namespace {
 /// Yang, Xu, Yu 1999, model of the second kind).
 struct ViscousRolling
 {
-  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const double *friction)
+  template <typename RowOf>
+  EUNOE_MULTIVERSION static void kernel(PairBlock &b, const RowOf row)
   {
 #pragma omp simd
     for (unsigned int k = 0; k < PairBlock::size; ++k) {
-      const double factor = -friction[k] * b.radius[k] * b.radius[k] * std::abs(b.contact_force[k]);
+      const double factor =
+          -row(k).friction * b.radius[k] * b.radius[k] * std::abs(b.contact_force[k]);
       b.torque_x[k] += factor * b.roll_x[k];
       b.torque_y[k] += factor * b.roll_y[k];
       b.torque_z[k] += factor * b.roll_z[k];

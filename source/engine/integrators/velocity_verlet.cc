@@ -10,12 +10,20 @@ EUNOE_ALWAYS_INLINE simd::Four three(const double s)
   return simd::Four{s, s, s, 0.};
 }
 
-/// Adds dt / m of the force once, or twice with a rounding between.
-/// @param velocity with the inertia as w
-template <bool twice>
-EUNOE_ALWAYS_INLINE simd::Four kicked(simd::Four velocity, const simd::Four &force, const double dt)
+/// dt over mass and moment of inertia, in one division.
+/// @param v,w with them as last components
+EUNOE_ALWAYS_INLINE simd::Two over_inertia(const double dt, const simd::Four &v,
+                                           const simd::Four &w)
 {
-  const simd::Four change = three(dt / velocity[3]) * force;
+  return simd::Two{dt, dt} / simd::Two{v[3], w[3]};
+}
+
+/// Adds a force times dt / m once, or twice with a rounding between.
+template <bool twice>
+EUNOE_ALWAYS_INLINE simd::Four kicked(simd::Four velocity, const simd::Four &force,
+                                      const double dt_over_m)
+{
+  const simd::Four change = three(dt_over_m) * force;
   velocity += change;
   if (twice)
     velocity += change;
@@ -26,8 +34,9 @@ EUNOE_MULTIVERSION void half_kick(ParticleArrays &p, const double half_dt)
 {
   p.for_each_awake([&](const std::size_t k) {
     simd::Four &v = simd::four(p.velocity[k]), &w = simd::four(p.spin[k]);
-    v = kicked<false>(v, simd::four(p.force[k]), half_dt);
-    w = kicked<false>(w, simd::four(p.torque[k]), half_dt);
+    const simd::Two factors = over_inertia(half_dt, v, w);
+    v = kicked<false>(v, simd::four(p.force[k]), factors[0]);
+    w = kicked<false>(w, simd::four(p.torque[k]), factors[1]);
   });
 }
 
@@ -41,8 +50,10 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
   const simd::Four time = three(dt);
   p.for_each_awake([&](const std::size_t k) {
     simd::Four &force = simd::four(p.force[k]), &torque = simd::four(p.torque[k]);
-    const simd::Four v = kicked<twice>(simd::four(p.velocity[k]), force, half_dt);
-    const simd::Four w = kicked<twice>(simd::four(p.spin[k]), torque, half_dt);
+    const simd::Two factors =
+        over_inertia(half_dt, simd::four(p.velocity[k]), simd::four(p.spin[k]));
+    const simd::Four v = kicked<twice>(simd::four(p.velocity[k]), force, factors[0]);
+    const simd::Four w = kicked<twice>(simd::four(p.spin[k]), torque, factors[1]);
     const simd::Four way = time * v, x = simd::four(p.position[k]) + way;
     const Vec3 &from = p.reference[k];
     simd::four(p.velocity[k]) = v;
