@@ -38,7 +38,7 @@ void test_syntax()
       "entry 'output frequency' is '-2', which does not fit. Give a whole number of at least 0.");
   expect("no such choice", "subsection model parameters\n  set integration method = magic\nend\n",
          "entry 'integration method' is 'magic', which does not fit. Give one of "
-         "'explicit_euler', 'velocity_verlet'.");
+         "'explicit_euler', 'symplectic_euler', 'velocity_verlet'.");
   const std::string negative =
       complaints("subsection simulation control\n  set time step = -1e-3\nend\n");
   check("negative number, which is finite",

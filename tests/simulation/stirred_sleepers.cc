@@ -172,7 +172,7 @@ void test_support()
 
 EUNOE_MPI_TEST()
 {
-  for (const std::string integration : {"velocity_verlet", "explicit_euler"})
+  for (const std::string integration : {"velocity_verlet", "explicit_euler", "symplectic_euler"})
     test_drift(integration);
   test_restart();
   test_start();

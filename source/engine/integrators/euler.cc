@@ -3,8 +3,10 @@
 namespace eunoe {
 namespace {
 
-/// x += v dt with the old velocity, then v += a dt with the old acceleration; first order.
-class ExplicitEuler : public Integrator
+/// v += a dt with the old acceleration; before that x += v dt with the old velocity, or after it
+/// with the new one (symplectic). First order both.
+template <bool symplectic>
+class Euler : public Integrator
 {
 public:
   Travel begin_step(ParticleArrays &p, double dt) override
@@ -12,9 +14,12 @@ public:
     // A maximum ignores NaN; this sum does not.
     double largest = 0., poison = 0.;
     p.for_each_awake([&](const std::size_t k) {
-      p.position[k].add(dt * p.velocity[k].vec());
+      if (!symplectic)
+        p.position[k].add(dt * p.velocity[k].vec());
       p.velocity[k].add(dt / p.mass(k) * p.force[k].vec());
       p.spin[k].add(dt / p.moment_of_inertia(k) * p.torque[k].vec());
+      if (symplectic)
+        p.position[k].add(dt * p.velocity[k].vec());
       const double moved2 = norm_square(p.position[k].vec() - p.reference[k]);
       largest = std::max(largest, moved2);
       poison += 0. * moved2;
@@ -27,8 +32,10 @@ public:
   void complete(ParticleArrays &, double) override {}
 };
 
-const IntegratorRegistry::Registration registration(
-    integrators(), "explicit_euler", IntegratorSection::without_entries<ExplicitEuler>);
+const IntegratorRegistry::Registration explicit_euler(
+    integrators(), "explicit_euler", IntegratorSection::without_entries<Euler<false>>);
+const IntegratorRegistry::Registration symplectic_euler(
+    integrators(), "symplectic_euler", IntegratorSection::without_entries<Euler<true>>);
 
 } // namespace
 } // namespace eunoe
