@@ -19,6 +19,7 @@ import statistics
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from eunoe.intervals import difference_of
 from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
@@ -31,10 +32,6 @@ WALL = "lagrangian physical properties"
 YOUNG, SURFACE_ENERGY = 26.25e6, 35e-5  # of property set PS1 (Pa, J/m2)
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
-# Quantiles of Student's t for two sides of 95 %, by degrees of freedom; 2 from 30 on is near enough.
-STUDENT = (math.nan, 12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160,
-           2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052,
-           2.048, 2.045)
 
 
 @dataclass(frozen=True)
@@ -87,21 +84,6 @@ class Run:
         return layers_of(folder / self.name)
 
 
-def interval(values: list[float], reference: list[float]) -> tuple[float, float]:
-    """Difference of the means, and half the width of its 95 % interval (Welch 1947); NaN for fewer than
-    two values each."""
-    difference = statistics.mean(values) - statistics.mean(reference)
-    if min(len(values), len(reference)) < 2:
-        return difference, math.nan
-    parts = [statistics.variance(group) / len(group) for group in (values, reference)]
-    if sum(parts) == 0.:
-        return difference, 0.
-    freedom = sum(parts) ** 2 / sum(part**2 / (len(group) - 1)
-                                    for part, group in zip(parts, (values, reference)))
-    quantile = STUDENT[int(freedom)] if freedom < len(STUDENT) else 2.
-    return difference, quantile * math.sqrt(sum(parts))
-
-
 def table_of(found: dict[str, list[dict]]) -> Table:
     """A row for each variant with finished runs."""
     reference = found[REFERENCE]
@@ -111,8 +93,9 @@ def table_of(found: dict[str, list[dict]]) -> Table:
         for value in (lambda run: statistics.mean(run["LRD"]), lambda run: run["CRD"][-1]):
             values, others = [value(run) for run in runs], [value(run) for run in reference]
             cells.append(f"{statistics.mean(values):.4f} ± {spread(values):.4f}")
-            difference, half = interval(values, others)
-            cells.append("" if name == REFERENCE else f"{difference:+.4f} ± {half:.4f}")
+            change = difference_of(values, others)
+            cells.append("" if name == REFERENCE else
+                         f"{change.value:+.4f} ± {change.half:.4f}")
         rows.append([*cells, f"{statistics.mean(run['seconds'] for run in runs):.0f}"])
     return rows
 
