@@ -179,7 +179,7 @@ class Report(InFolder):
     def test_whole_run(self) -> None:
         sample_run.write_run(self.folder)
         page = self.page()
-        self.assertEqual(page.count("<figure>"), 5)
+        self.assertEqual(page.count("<figure>"), 6)
         for text in ("52.5", "in layers 1 to 2", "highest in layer 2", "full-size apparatus",
                      "abc1234", "Went to the collector", "0\u00a0% are static",
                      "set process = powder spreading"):
@@ -261,7 +261,7 @@ class Report(InFolder):
         sample_run.write_run(self.folder)
         self.assertEqual(self.make("--figures", "png")[0], 0)
         files = sorted((self.folder / "figures").iterdir())
-        self.assertEqual([file.name for file in files], [f"figure-{k}.png" for k in range(1, 6)])
+        self.assertEqual([file.name for file in files], [f"figure-{k}.png" for k in range(1, 7)])
         self.assertTrue(all(file.read_bytes().startswith(b"\x89PNG") for file in files))
 
     def test_folders_without_a_run(self) -> None:

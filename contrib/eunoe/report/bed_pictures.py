@@ -16,9 +16,7 @@ from . import style
 from .apparatus import Apparatus
 from .canvas import MM, Window, add_colour_bar, draw_circles, front_slice, make_panels
 from .evidence import Fields
-from .layer_results import moved_over_plate
-
-STATIC_BELOW = 1e-6  # distance over the plate (m) under which a particle counts as static
+from .layer_results import STATIC_BELOW, moved_over_plate
 
 
 def plate_window(apparatus: Apparatus, last_layer: int, largest_diameter: float) -> Window:

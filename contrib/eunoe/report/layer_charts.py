@@ -14,7 +14,7 @@ from .quantities import FORCE, MASS, TIME, unit_for
 from .run_folder import Layers
 
 
-def _draw_measured(axes: Axes, layer: np.ndarray, repeats: np.ndarray) -> None:
+def draw_measured(axes: Axes, layer: np.ndarray, repeats: np.ndarray) -> None:
     """Repeats, mean and standard deviation band of a measured density (fractions)."""
     mean, std = 100. * repeats.mean(axis=1), 100. * repeats.std(axis=1, ddof=1)
     axes.plot(layer, mean, color=style.INK, linewidth=1.1, zorder=3,
@@ -40,8 +40,8 @@ def density_figure(layers: Layers, noise: DensityNoise | None, measured: Measure
     figure = Figure(figsize=(style.WIDTH, 3.1))
     left, right = figure.subplots(1, 2, sharey=True)
     figure.subplots_adjust(left=0.08, right=0.985, top=0.92, bottom=0.255, wspace=0.08)
-    _draw_measured(left, measured.layer, measured.repeats)
-    _draw_measured(right, *measured.cumulative())
+    draw_measured(left, measured.layer, measured.repeats)
+    draw_measured(right, *measured.cumulative())
     _draw_simulated(left, layers.layer, layers.lrd, noise.lrd if noise else None)
     _draw_simulated(right, layers.layer, layers.crd, noise.crd if noise else None)
     left.set_ylabel("Relative density (%)")

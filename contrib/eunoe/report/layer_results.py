@@ -9,6 +9,8 @@ import numpy as np
 from .apparatus import Apparatus
 from .run_folder import Layers
 
+STATIC_BELOW = 1e-6  # distance over the plate (m) under which a particle counts as static
+
 
 @dataclass(frozen=True)
 class DensityNoise:

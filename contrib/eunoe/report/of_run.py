@@ -1,30 +1,52 @@
-"""Turns the output folder of a run into one page, report.html, that any browser shows.
+"""Turns the output folder of a run into one page, report.html, that any browser shows; or several spreading
+runs into one page that compares them, comparison.html.
 
-Usage: contrib/tools report output/quickstart [--out FILE] [--figures pdf|png|svg]
+Usage: contrib/tools report output/quickstart [--out FILE] [--figures FORMAT|FOLDER] [--movie [PASS]]
+       contrib/tools report A B C [--label PS1 --label PS1 --label PS3] [--out FILE] [--figures FORMAT|FOLDER]
+
+Runs of one label, such as those that differ in the seed alone, are pooled: the page shows their means and
+bands. Without --label a folder's name is its label, without an ending like _seed3. --movie adds a movie of a
+pass of which the run has pictures. --figures writes all figures as files as well: in a format (pdf, png, svg)
+into the folder `figures` beside the page, or into a folder of your choice, as pdf.
 
 Needs numpy, matplotlib and VTK, as Debian's packages python3-numpy, python3-matplotlib and python3-vtk9 have
-them.
+them; a movie needs Pillow (python3-pil).
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from .command import write_page
+from .command import page_parser, write
+from .comparison_report import comparison_report
 from .general_report import general_report
 from .heap_report import heap_report
 from .page import Page
-from .run_folder import read_run
-from .spreading_report import spreading_report
+from .run_folder import ReportError, read_run
+from .spreading_report import add_movie, spreading_report
 
 
-def make_page(folder: Path) -> Page:
+def make_page(folder: Path, movie: int | None = None) -> Page:
+    """:param movie: number of the pass for a movie; -1: the last one that has pictures; None: no movie"""
     run = read_run(folder)
     if run.layers is not None:
-        return spreading_report(run, run.layers)
+        page = spreading_report(run, run.layers)
+        if movie is not None:
+            add_movie(page, run, run.layers, None if movie < 0 else movie)
+        return page
+    if movie is not None:
+        raise ReportError(f"{folder} is no spreading run: a movie shows a pass of one.")
     return heap_report(run) if run.is_heap else general_report(run)
 
 
 def main(words: list[str]) -> int:
-    return write_page(words, __doc__, make_page, "report.html")
-
+    arguments = page_parser(__doc__, "report.html, or comparison.html for several runs", several=True)
+    arguments.add_argument("--label", action="append", default=[], dest="labels", metavar="TEXT",
+                           help="of a run, once for each")
+    arguments.add_argument("--movie", type=int, nargs="?", const=-1, metavar="PASS", help="of one run")
+    options = arguments.parse_args(words)
+    if len(options.folders) == 1 and not options.labels:
+        return write(options, lambda: make_page(options.folders[0], options.movie), "report.html")
+    if options.movie is not None:
+        arguments.error("--movie shows a pass of one run: name one folder, without --label.")
+    return write(options, lambda: comparison_report(options.folders, options.labels), "comparison.html")

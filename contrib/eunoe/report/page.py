@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from html import escape
 from pathlib import Path
 from typing import Iterable, Sequence
@@ -20,7 +21,7 @@ p { margin: .6rem 0; }
 .subtitle { color: #666; margin: 0 0 1.2rem; }
 .notice { border-left: 3px solid #d55e00; padding: .1rem 0 .1rem .9rem; }
 figure { margin: 1.2rem 0 1.6rem; break-inside: avoid; }
-figure svg { display: block; width: 100%%; height: auto; }
+figure svg, figure img { display: block; width: 100%%; height: auto; }
 figcaption { font-size: .86rem; line-height: 1.45; color: #444; margin-top: .4rem; }
 table { border-collapse: collapse; width: 100%%; font-size: .88rem; margin: .8rem 0;
   font-variant-numeric: tabular-nums; break-inside: avoid; }
@@ -46,6 +47,7 @@ class Page:
         self.title = title
         self.parts = [f"<h1>{escape(title)}</h1>", f'<p class="subtitle">{escape(subtitle)}</p>']
         self.figures: list[Figure] = []
+        self.movies: list[bytes] = []
 
     def heading(self, text: str) -> None:
         self.parts.append(f"<h2>{escape(text)}</h2>")
@@ -65,11 +67,20 @@ class Page:
         self.parts.append(f"<figure>{svg}<figcaption>Figure {number}. {escape(caption)}"
                           "</figcaption></figure>")
 
+    def movie(self, gif: bytes, caption: str) -> None:
+        self.movies.append(gif)
+        data = base64.b64encode(gif).decode()
+        self.parts.append(f'<figure><img alt="{escape(caption.split(".")[0], quote=True)}" '
+                          f'src="data:image/gif;base64,{data}"><figcaption>Movie {len(self.movies)}. '
+                          f"{escape(caption)}</figcaption></figure>")
+
     def write_figures(self, folder: Path, file_format: str) -> None:
-        """Writes each figure as a file of its own: figure-1.pdf, ..."""
+        """Writes each figure as a file of its own: figure-1.pdf, ..., movie-1.gif, ..."""
         folder.mkdir(parents=True, exist_ok=True)
         for number, figure in enumerate(self.figures, start=1):
             figure.savefig(folder / f"figure-{number}.{file_format}", dpi=style.RESOLUTION)
+        for number, gif in enumerate(self.movies, start=1):
+            (folder / f"movie-{number}.gif").write_bytes(gif)
 
     def table(self, head: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
         self.parts.append(table(head, rows))

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eunoe.prm_file import Parameters, parse_prm
-from eunoe.vtk_files import read_pvd
+from eunoe.vtk_files import Snapshot, read_pvd
 
 
 class ReportError(Exception):
@@ -116,10 +116,14 @@ class Run:
                 pictures[int(self.layers.layer[same][0])] = snapshot.file
         return pictures
 
-    def last_picture(self, ending: str = "") -> tuple[float, Path] | None:
-        """Time (s) and file of the last picture of the particles, or of the '_solids'."""
+    def pictures(self, ending: str = "") -> list[Snapshot]:
+        """The pictures of the particles, or of the '_solids', whose files are there."""
         index = self._picture_index(ending)
-        found = [entry for entry in (read_pvd(index) if index else []) if entry.file.is_file()]
+        return [entry for entry in (read_pvd(index) if index else []) if entry.file.is_file()]
+
+    def last_picture(self, ending: str = "") -> tuple[float, Path] | None:
+        """Time (s) and file of the last one."""
+        found = self.pictures(ending)
         return (found[-1].time, found[-1].file) if found else None
 
 

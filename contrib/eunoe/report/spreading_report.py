@@ -4,18 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from eunoe.vtk_files import VtkError
+
 from . import bed_pictures
-from .apparatus import Apparatus
-from .bed_pictures import STATIC_BELOW
+from .apparatus import Apparatus, ApparatusError
+from .bed_maps import read_maps
 from .case_section import add_case_section
+from .comparison_charts import maps_figure
 from .evidence import Evidence, Fields, gather
 from .layer_charts import budget_figure, density_figure
-from .layer_results import DensityNoise, counting_noise, moved_over_plate
+from .layer_results import STATIC_BELOW, DensityNoise, counting_noise, moved_over_plate
 from .measured import Measured, read_measured
+from .movie import movie_of, pass_of, strip_figure
 from .page import Page, table
 from .quantities import SPACE, count, length, number, percent
-from .run_folder import Layers, Run
+from .run_folder import Layers, ReportError, Run
 from .run_section import add_run_section
+from .spread_run import Group, SpreadRun
 from .summary_text import summary_text
 
 OUTLETS = {"1": "Went to the collector", "2": "Fell into the gaps"}
@@ -121,8 +126,8 @@ def _add_displacement(page: Page, last: Fields, apparatus: Apparatus, layer: int
     figure, share = bed_pictures.displacement_figure(last, apparatus, layer)
     threshold = length(STATIC_BELOW)
     page.figure(figure, f"Displacement in x-y of the powder on the plate in pass {layer}, relative "
-                f"to the plate. Grey: static, moved by less than {threshold}; white: not on the plate at both weighings. Of "
-                f"{count(len(moved))} particles {percent((moved < STATIC_BELOW).mean(), 0)} are "
+                f"to the plate. Grey: static, moved by less than {threshold}; white: not on the plate at both "
+                f"weighings. Of {count(len(moved))} particles {percent((moved < STATIC_BELOW).mean(), 0)} are "
                 f"static; the median of all is {number(1e6 * np.median(moved))}{SPACE}µm."
                 + _drawn(share, apparatus))
 
@@ -150,5 +155,36 @@ def spreading_report(run: Run, layers: Layers) -> Page:
                 "into the gaps and that went to the collector since the last weighing; (c) force "
                 "on the spreader while its lowest line is over the plate; (d) wall-clock time "
                 "since the last weighing.")
+    _add_maps(page, run, layers, evidence.apparatus)
     add_run_section(page, run, OUTLETS)
     return page
+
+
+def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None) -> None:
+    """Of runs whose layers all have pictures."""
+    pictures = run.layer_pictures()
+    if apparatus is None or len(pictures) < max(len(layers), 3):
+        return
+    try:
+        maps = read_maps(pictures, apparatus)
+    except (VtkError, KeyError):
+        return  # a broken picture has its notice above
+    page.heading("Displacement and density along the plate")
+    group = Group(run.name, [SpreadRun(run.name, layers, apparatus, maps)])
+    page.figure(maps_figure(group), "By place and layer: (a) mean displacement in the pass of what lay on the plate; "
+                f"grey: less than {length(STATIC_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
+                "added, as density of its layer.")
+
+
+def add_movie(page: Page, run: Run, layers: Layers, layer: int | None) -> None:
+    """A movie of a pass and a strip of its pictures; of the last pass that has some if none is given."""
+    found = pass_of(run, layers, layer)
+    try:
+        apparatus = Apparatus.read(run.folder / "apparatus.json")
+    except ApparatusError as error:
+        raise ReportError(f"No movie: {error}") from error
+    page.heading(f"Pass {found.layer}")
+    caption = (f"Pass {found.layer}, seen along z, to scale. Colours: how far a particle has moved over the plate "
+               f"since the last weighing; grey: less than {length(STATIC_BELOW)}; white: new powder.")
+    page.movie(movie_of(found, apparatus), caption)
+    page.figure(strip_figure(found, apparatus), caption)

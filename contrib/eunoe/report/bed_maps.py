@@ -1,0 +1,143 @@
+"""What lies in each cell of the bed on the measuring plate at each weighing, and how far the pass before it
+moved that. A cell is a bin of x, from the plate's left end, by a layer's thickness in height over the plate,
+over the whole depth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from eunoe.tables import read_columns, write_csv
+from eunoe.vtk_files import read_vtu
+
+from .apparatus import Apparatus
+from .evidence import FIELDS, Fields
+from .layer_results import STATIC_BELOW, moved_over_plate
+
+BIN = 0.1e-3  # wanted width of the bins in x (m)
+MOST_BINS = 52
+# Points by which a sphere is shared out among the cells that it reaches into.
+N_POINTS = 64
+
+
+def edges_of(apparatus: Apparatus) -> tuple[np.ndarray, np.ndarray]:
+    """The bounds of the bins in x and in height (m)."""
+    n = int(np.clip(round(apparatus.plate_length / BIN), 1, MOST_BINS))
+    height = apparatus.layer_thickness
+    return np.linspace(0., apparatus.plate_length, n + 1), height * np.arange(apparatus.n_layers + 4)
+
+
+def points_of_sphere() -> np.ndarray:
+    """Points of equal volume of a sphere of radius 1 seen from the side: the share of the volume within the
+    distance r of its axis is 1 - (1 - r^2)^(3/2)."""
+    rank = (np.arange(N_POINTS) + 0.5) / N_POINTS
+    r, angle = np.sqrt(1. - (1. - rank) ** (2. / 3.)), np.pi * (3. - np.sqrt(5.)) * np.arange(N_POINTS)
+    return np.column_stack((r * np.cos(angle), r * np.sin(angle)))
+
+
+@dataclass(frozen=True)
+class BedMaps:
+    """Arrays by weighing, bin in x and bin in height; SI units."""
+
+    layers: np.ndarray  # numbers of the weighings
+    x: np.ndarray  # bounds of the bins, from the plate's left end
+    y: np.ndarray  # above the plate
+    fraction: np.ndarray  # volume of solid over that of the cell
+    tracked: np.ndarray  # number of the particles that were on the plate at the weighing before
+    moved: np.ndarray  # mean of their displacements; 0 where there are none
+    resting: np.ndarray  # share of them that moved by less than STATIC_BELOW
+
+    def _mean(self, values: np.ndarray, axes: tuple[int, ...]) -> np.ndarray:
+        """Mean over the tracked particles; NaN where there are none."""
+        number = self.tracked.sum(axis=axes)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return (self.tracked * values).sum(axis=axes) / number
+
+    def moved_of_columns(self) -> np.ndarray:
+        """Mean displacement of what lay there before, by weighing and x (m)."""
+        return self._mean(self.moved, (2,))
+
+    def resting_of_columns(self) -> np.ndarray:
+        return self._mean(self.resting, (2,))
+
+    def moved_of_layers(self) -> np.ndarray:
+        return self._mean(self.moved, (1, 2))
+
+    def resting_of_layers(self) -> np.ndarray:
+        return self._mean(self.resting, (1, 2))
+
+    def columns(self) -> np.ndarray:
+        """Height of the solid without pores, by weighing and x (m)."""
+        return (self.fraction * np.diff(self.y)).sum(axis=2)
+
+    def local_lrd(self) -> np.ndarray:
+        """LRD of every bin in x; NaN for a layer whose last one is not known."""
+        found = np.full((len(self.layers), len(self.x) - 1), np.nan)
+        for k in range(1, len(self.layers)):
+            if self.layers[k] == self.layers[k - 1] + 1:
+                found[k] = (self.columns()[k] - self.columns()[k - 1]) / np.diff(self.y)[0]
+        return found
+
+
+def map_of(particles: Fields, apparatus: Apparatus, layer: int) -> tuple[np.ndarray, ...]:
+    """Fraction, tracked, moved and resting of one weighing."""
+    x_edges, y_edges = edges_of(apparatus)
+    on = particles["on_plate"] > 0
+    place = particles["points"][on, :2].astype(float) - (apparatus.x_plate, apparatus.plate_height(layer))
+    radius = 0.5 * particles["diameter"][on].astype(float)
+    points = place[:, np.newaxis] + radius[:, np.newaxis, np.newaxis] * points_of_sphere()
+    share = np.repeat(4. / 3. * np.pi * radius**3 / N_POINTS, N_POINTS)
+    bins = (x_edges, y_edges)
+    solid = np.histogram2d(*points.reshape(-1, 2).T, bins, weights=share)[0]
+    cell = np.outer(np.diff(x_edges), np.diff(y_edges)) * apparatus.depth
+    known = particles["tracked"][on] > 0
+    moved = moved_over_plate(particles)[on][known]
+
+    def sum_of(weights: np.ndarray) -> np.ndarray:
+        return np.histogram2d(*place[known].T, bins, weights=weights)[0]
+
+    tracked = sum_of(np.ones(len(moved)))
+    count = np.maximum(tracked, 1.)
+    return solid / cell, tracked, sum_of(moved) / count, sum_of(moved < STATIC_BELOW) / count
+
+
+def read_maps(pictures: dict[int, Path], apparatus: Apparatus) -> BedMaps:
+    """:param pictures: the files with the particles at the weighings, by the number of the layer"""
+    return maps_of({layer: read_vtu(pictures[layer], FIELDS) for layer in sorted(pictures)}.items(), apparatus)
+
+
+def maps_of(pictures: Iterable[tuple[int, Fields]], apparatus: Apparatus) -> BedMaps:
+    x, y = edges_of(apparatus)
+    layers, arrays = [], []
+    for layer, particles in pictures:
+        layers.append(layer)
+        arrays.append(map_of(particles, apparatus, layer))
+    stacks = [np.array([found[k] for found in arrays]) for k in range(4)]
+    return BedMaps(np.array(layers), x, y, *stacks)
+
+
+COLUMNS = ("layer", "x_bin", "y_bin", "solid_fraction", "tracked", "displacement_um", "static_share")
+
+
+def write_table(file: Path, maps: BedMaps) -> None:
+    """A row for each cell that holds something."""
+    rows = [[int(maps.layers[k]), i, j, f"{maps.fraction[k, i, j]:.4f}", int(maps.tracked[k, i, j]),
+             f"{1e6 * maps.moved[k, i, j]:.4g}", f"{maps.resting[k, i, j]:.3g}"]
+            for k, i, j in np.argwhere((maps.fraction > 5e-5) | (maps.tracked > 0))]
+    write_csv(file, [list(COLUMNS), *rows])
+
+
+def read_table(file: Path, apparatus: Apparatus) -> BedMaps:
+    columns = read_columns(file)
+    x, y = edges_of(apparatus)
+    layers = np.unique(columns["layer"]).astype(int) if columns else np.empty(0, int)
+    shape = (len(layers), len(x) - 1, len(y) - 1)
+    arrays = [np.zeros(shape) for _ in range(4)]
+    if columns:
+        rows = (np.searchsorted(layers, columns["layer"]), columns["x_bin"].astype(int), columns["y_bin"].astype(int))
+        for array, name, size in zip(arrays, COLUMNS[3:], (1., 1., 1e-6, 1.)):
+            array[rows] = size * columns[name]
+    return BedMaps(layers, x, y, *arrays)

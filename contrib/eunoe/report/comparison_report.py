@@ -1,0 +1,119 @@
+"""The report of several spreading runs in one page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from eunoe.vtk_files import VtkError
+
+from .apparatus import Apparatus, ApparatusError
+from .bed_maps import read_maps
+from .comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
+                                profiles_figure)
+from .comparison_text import densities_table, differences_table, measured_group, rest_table, rise_sentence
+from .measured import read_measured
+from .page import Page
+from .quantities import length
+from .run_folder import ReportError, Run, read_run
+from .spread_run import Group, SpreadRun
+
+BAND = "Lines: means over the runs; bands: one standard deviation of a single run."
+
+
+def spread_run(run: Run, problems: list[str]) -> SpreadRun:
+    """The run with the maps of its pictures; a sentence in `problems` says why it has none."""
+    if run.layers is None:
+        raise ReportError(f"{run.folder} is no spreading run: only those are compared.")
+    apparatus, maps = None, None
+    try:
+        apparatus = Apparatus.read(run.folder / "apparatus.json")
+        pictures = run.layer_pictures()
+        if pictures:
+            maps = read_maps(pictures, apparatus)
+        else:
+            problems.append(f"{run.name} has no pictures of its layers, so it has no maps.")
+    except (ApparatusError, VtkError, KeyError) as error:
+        problems.append(f"{run.name} has no maps: {error}")
+    return SpreadRun(run.name, run.layers, apparatus, maps)
+
+
+def default_label(folder: Path) -> str:
+    """The folder's name; names that differ in the seed alone have one label."""
+    return re.sub(r"[_-]?seed[_-]?\d+$", "", folder.resolve().name) or folder.resolve().name
+
+
+def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str]) -> list[Group]:
+    """Runs of one label are one group, in the order in which labels appear."""
+    if labels and len(labels) != len(folders):
+        raise ReportError(f"There are {len(labels)} labels for {len(folders)} runs: give --label once for each "
+                          "run, in the same order, or not at all. Runs of one label are pooled.")
+    runs: dict[str, list[SpreadRun]] = {}
+    for folder, label in zip(folders, labels or map(default_label, folders)):
+        runs.setdefault(label, []).append(spread_run(read_run(folder), problems))
+    if len(runs) > MOST_GROUPS:
+        raise ReportError(f"{len(runs)} labels are too many for one page: give at most {MOST_GROUPS}.")
+    return [Group(label, found) for label, found in runs.items()]
+
+
+def _plates(groups: Sequence[Group]) -> str:
+    """A warning where plates differ in length."""
+    lengths = {run.apparatus.plate_length for group in groups for run in group.runs if run.apparatus}
+    if len(lengths) < 2:
+        return ""
+    return ("The plates differ in length (" + ", ".join(map(length, sorted(lengths)))
+            + "): slopes at the two ends take a larger share of a shorter one.")
+
+
+def _unmarked(table: list[list[str]]) -> list[list[str]]:
+    return [[cell.replace("**", "") for cell in row] for row in table]
+
+
+def _add_densities(page: Page, groups: Sequence[Group]) -> None:
+    measured = read_measured()
+    page.heading("Density of the layers")
+    page.figure(densities_figure(groups, measured), f"Relative density of the layers. {BAND} Black: measured at full "
+                "size, with its repeats.")
+    everyone = [*groups, measured_group(measured)]
+    head, *rows = densities_table(everyone)
+    page.table(head, rows)
+    page.paragraph("Means over the runs with their 95 % intervals (Student's t). The peak is the largest mean of "
+                   "three layers in a row, from layer 2 on.")
+    for group in everyone:
+        page.paragraph(rise_sentence(group))
+    if len(groups) > 1:
+        head, *rows = _unmarked(differences_table(groups))
+        page.table(head, rows)
+        page.paragraph("Differences of the means with their 95 % intervals (Welch's t). Where 0 lies within, the runs "
+                       "do not show a difference.")
+
+
+def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:
+    mapped = [group for group in groups if group.mapped]
+    page.heading("What a pass does to the powder that lies on the plate")
+    page.figure(mechanism_figure(groups), "By pass: (a) mean displacement over the plate of the particles that lay on "
+                "it; (b) share of them that moved by less than 1 µm; (c) mass that the pass removed; (d) length "
+                f"of the zones at the two ends of the bed in which most particles rest. {BAND}")
+    if not mapped:
+        return
+    head, *rows = rest_table(mapped)
+    page.table(head, rows)
+    for group in mapped:
+        page.figure(maps_figure(group), f"{group.label}: (a) mean displacement in the pass of what lay on the "
+                    "plate, by place and layer; grey: less than 1 µm; lines: inner ends of the zones at rest; (b) "
+                    "what the pass added, as density of its layer. Means over the runs.")
+    page.figure(profiles_figure(mapped), "After the last layer: (a) volume of the solid over the plate's area, along "
+                "the plate; (b) solid fraction over the height, in the middle half of the plate. Means over the runs.")
+
+
+def comparison_report(folders: Sequence[Path], labels: Sequence[str]) -> Page:
+    problems: list[str] = []
+    groups = groups_of(folders, labels, problems)
+    page = Page("Spreading runs compared", "; ".join(
+        f"{group.label}: {', '.join(run.name for run in group.runs)}" for group in groups))
+    for text in (*problems, *filter(None, [_plates(groups)])):
+        page.notice(text)
+    _add_densities(page, groups)
+    _add_mechanism(page, groups)
+    return page

@@ -1,0 +1,120 @@
+"""Tables and sentences that compare groups of spreading runs, with 95 % intervals of the means (Student's t,
+differences by Welch)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+
+import numpy as np
+
+from eunoe.intervals import Interval, difference_of, mean_of
+from eunoe.tables import Table
+
+from .measured import Measured
+from .run_folder import Layers
+from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
+
+
+def measured_group(measured: Measured, label: str = "measured, full size") -> Group:
+    """The repeats of the measurement as runs, of which only densities are known."""
+    runs = []
+    for number, repeat in enumerate(measured.repeats.T, start=1):
+        unknown = np.full(len(repeat), math.nan)
+        crd = unknown.copy()
+        crd[1:] = measured.cumulative()[1][:, number - 1]
+        known = {"layer": measured.layer, "lrd": repeat, "crd": crd}
+        layers = Layers(**{field.name: known.get(field.name, unknown) for field in fields(Layers)})
+        runs.append(SpreadRun(f"repeat {number}", layers, None, None))
+    return Group(label, runs)
+
+
+Number = Callable[[SpreadRun], float]
+
+
+def span(layers: tuple[int, int]) -> str:
+    return f"LRD of layers {layers[0]} to {layers[1]} (%)"
+
+
+DENSITIES: dict[str, tuple[Number, float]] = {
+    span(PLATEAU): (lambda run: run.mean_lrd(PLATEAU), 100.),
+    span(LATER): (lambda run: run.mean_lrd(LATER), 100.),
+    "rise (%)": (lambda run: run.rise, 100.),
+    "peak (%)": (lambda run: run.peak[0], 100.),
+    "its layer": (lambda run: run.peak[1], 1.),
+}
+
+
+def text_of(interval: Interval, size: float = 1., sign: str = "") -> str:
+    """The number and its interval; a single run has none."""
+    if math.isnan(interval.value):
+        return ""
+    value = f"{size * interval.value:{sign}.1f}"
+    return value if math.isnan(interval.half) else f"{value} ± {size * interval.half:.1f}"
+
+
+def densities_table(groups: Sequence[Group]) -> Table:
+    table = [["", "runs", *DENSITIES]]
+    for group in groups:
+        cells = [text_of(mean_of(group.of_runs(number)), size) for number, size in DENSITIES.values()]
+        table.append([group.label, str(len(group.runs)), *cells])
+    return table
+
+
+def differences_table(groups: Sequence[Group]) -> Table:
+    """Of each group from the first one; bold where 0 lies outside of the interval."""
+    numbers = {span(COMPARED): (lambda run: run.mean_lrd(COMPARED), 100.), **DENSITIES}
+    table = [[f"less {groups[0].label}", "runs", *numbers]]
+    for group in groups[1:]:
+        cells = []
+        for number, size in numbers.values():
+            found = difference_of(group.of_runs(number), groups[0].of_runs(number))
+            text = text_of(found, size, "+")
+            cells.append(f"**{text}**" if found.is_significant else text)
+        table.append([group.label, str(len(group.runs)), *cells])
+    return table
+
+
+def rise_sentence(group: Group) -> str:
+    """Whether the layers become denser after layer 10."""
+    rises = group.of_runs(lambda run: run.rise)
+    found = mean_of(rises)
+    if math.isnan(found.value):
+        return f"{group.label}: too few layers to say whether they become denser."
+    spans = f"from layers {PLATEAU[0]} to {PLATEAU[1]} to layers {LATER[0]} to {LATER[1]}"
+    if math.isnan(found.half):
+        return (f"{group.label}: the mean LRD changes by {100. * found.value:+.1f} % {spans}; one run has no "
+                "interval.")
+    half = f"± {100. * found.half:.1f} %"
+    if not found.is_significant:
+        return (f"{group.label}: {spans} the mean LRD changes by {100. * found.value:+.1f} {half}, which is not "
+                "significant.")
+    verb = "rises" if found.value > 0. else "falls"
+    return f"{group.label}: {spans} the mean LRD {verb} by {abs(100. * found.value):.1f} {half}."
+
+
+def _layer(values: Sequence[int | None]) -> str:
+    """The layers of all runs, of which some may have none."""
+    known = [value for value in values if value is not None]
+    if not known:
+        return "never"
+    text = f"{known[0]}" if len(set(known)) == 1 else f"{min(known)} to {max(known)}"
+    return text if len(known) == len(values) else f"{text} ({len(known)} of {len(values)} runs)"
+
+
+def rest_table(groups: Sequence[Group]) -> Table:
+    """From which layers on the bed rests, of the groups with maps."""
+    table = [["", "runs", "first zone at rest", "zones meet", "90 % at rest from", "at rest in the last pass (%)",
+              "removed by a pass from layer 11 on (% of the mass before)"]]
+    for group in groups:
+        zones = [run.zones for run in group.mapped]
+        if not zones:
+            continue
+        late = [float(run.scraped[run.layers.layer >= LATER[0]].mean()) if run.layers.last >= LATER[0] else math.nan
+                for run in group.mapped]
+        table.append([group.label, str(len(zones)), _layer([zone.first for zone in zones]),
+                      _layer([zone.meet for zone in zones]), _layer([zone.at_rest_from for zone in zones]),
+                      text_of(mean_of([float(zone.resting[-1]) for zone in zones]), 100.),
+                      text_of(mean_of(late), 100.)])
+    return table

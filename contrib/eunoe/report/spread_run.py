@@ -1,0 +1,100 @@
+"""A spreading run as comparisons see it: its layers, its maps, and the numbers that sum them up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from .apparatus import Apparatus
+from .bed_maps import BedMaps
+from .run_folder import Layers
+from .static_zones import Zones, zones_of
+
+# Layers of the measured plateau, of its rise and fall, and those by which settings are compared.
+PLATEAU, LATER, COMPARED = (2, 10), (11, 20), (5, 20)
+SMOOTHED = 3  # layers in the running mean whose largest value is the peak
+
+
+def peak_of(layer: np.ndarray, lrd: np.ndarray) -> tuple[float, float]:
+    """The largest running mean, and the layer in its middle; from layer 2 on, as layer 1 lies on a bare plate."""
+    rows = np.flatnonzero((layer >= 2) & np.isfinite(lrd))
+    if len(rows) < SMOOTHED:
+        return np.nan, np.nan
+    means = np.convolve(lrd[rows], np.full(SMOOTHED, 1. / SMOOTHED), mode="valid")
+    best = int(np.argmax(means))
+    return float(means[best]), float(layer[rows[best + SMOOTHED // 2]])
+
+
+@dataclass(frozen=True)
+class SpreadRun:
+    """Without apparatus and maps if the run left none."""
+
+    name: str
+    layers: Layers
+    apparatus: Apparatus | None
+    maps: BedMaps | None
+
+    @cached_property
+    def zones(self) -> Zones | None:
+        return zones_of(self.maps) if self.maps else None
+
+    def mean_lrd(self, span: tuple[int, int]) -> float:
+        """Of the first to the last of these layers; NaN if one of them has not been spread."""
+        rows = (self.layers.layer >= span[0]) & (self.layers.layer <= span[1])
+        return float(self.layers.lrd[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
+
+    @property
+    def rise(self) -> float:
+        """Of the mean LRD from the plateau's layers to the later ones."""
+        return self.mean_lrd(LATER) - self.mean_lrd(PLATEAU)
+
+    @cached_property
+    def peak(self) -> tuple[float, float]:
+        return peak_of(self.layers.layer, self.layers.lrd)
+
+    @property
+    def scraped(self) -> np.ndarray:
+        """Share of the mass on the plate that a pass removed; NaN for layer 0."""
+        before = np.concatenate(([np.nan], self.layers.mass[:-1]))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return self.layers.removed / before
+
+
+@dataclass(frozen=True)
+class Group:
+    """Runs that differ in the seed alone."""
+
+    label: str
+    runs: Sequence[SpreadRun]
+
+    @property
+    def layer(self) -> np.ndarray:
+        """Numbers of the layers that all runs have."""
+        return min((run.layers.layer for run in self.runs), key=len)
+
+    def stacked(self, values: str) -> np.ndarray:
+        """A column of layers.csv, a row for each run."""
+        n = len(self.layer)
+        return np.array([getattr(run.layers, values)[:n] for run in self.runs])
+
+    @property
+    def mapped(self) -> list[SpreadRun]:
+        return [run for run in self.runs if run.maps is not None and len(run.maps.layers)]
+
+    def over_maps(self, values: str) -> np.ndarray:
+        """What a method of BedMaps gives, for each run with maps; as many weighings as all have."""
+        found = [getattr(run.maps, values)() for run in self.mapped]
+        n = min(map(len, found), default=0)
+        return np.array([array[:n] for array in found])
+
+    def of_runs(self, number) -> list[float]:
+        """A number of each run."""
+        return [number(run) for run in self.runs]
+
+
+def mean_and_spread(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:
+    """Over the first axis; the standard deviation is None for a single row."""
+    return rows.mean(axis=0), rows.std(axis=0, ddof=1) if len(rows) > 1 else None

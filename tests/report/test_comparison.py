@@ -1,0 +1,244 @@
+"""Tests of maps, zones at rest, movies, and the page that compares runs; they need numpy, matplotlib and VTK."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib.util
+import io
+import sys
+import tempfile
+import unittest
+from dataclasses import replace
+from pathlib import Path
+
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
+    print("skipped: numpy, matplotlib or VTK is missing")
+    sys.exit(0)
+
+import numpy as np
+
+import sample_bed
+import sample_run
+from eunoe.intervals import difference_of, mean_of
+from eunoe.report import of_run
+from eunoe.report.bed_maps import maps_of, read_table, write_table
+from eunoe.report.comparison_text import densities_table, differences_table, measured_group, rise_sentence
+from eunoe.report.layer_results import moved_over_plate
+from eunoe.report.measured import read_measured
+from eunoe.report.movie import Frame, moved_since
+from eunoe.report.run_folder import Layers
+from eunoe.report.spread_run import Group, SpreadRun, peak_of
+from eunoe.report.static_zones import zones_of
+
+APPARATUS = replace(sample_bed.APPARATUS, n_layers=9)
+
+
+def maps(layers=range(9)):
+    return maps_of(((layer, sample_bed.bed(layer)) for layer in layers), APPARATUS)
+
+
+class Maps(unittest.TestCase):
+    def test_all_solid_is_counted(self) -> None:
+        found = maps([4])
+        cell = np.outer(np.diff(found.x), np.diff(found.y)) * APPARATUS.depth
+        bed = sample_bed.bed(4)
+        np.testing.assert_allclose((found.fraction[0] * cell).sum(), np.pi / 6. * (bed["diameter"]**3).sum())
+
+    def test_fraction_of_a_grid(self) -> None:
+        # Two rows of grains fill the bins without a remainder.
+        found = maps([4]).fraction[0]
+        np.testing.assert_allclose(found[:, :5], sample_bed.FRACTION)
+        self.assertEqual(found[:, 5:].max(), 0.)
+
+    def test_a_sphere_on_a_corner_belongs_to_four_cells(self) -> None:
+        bed = {name: values[:1] for name, values in sample_bed.bed(0).items()}
+        bed["points"] = np.array([[APPARATUS.x_plate + 0.3e-3, APPARATUS.plate_height(0) + 0.2e-3, 0.]])
+        found = maps_of([(0, bed)], APPARATUS).fraction[0]
+        quarter = np.pi / 6. * sample_bed.DIAMETER**3 / 4. / (0.1e-3**2 * APPARATUS.depth)
+        np.testing.assert_allclose(found[2:4, 1:3], quarter, rtol=0.07)
+        self.assertEqual(np.count_nonzero(found), 4)
+
+    def test_what_is_not_on_the_plate_does_not_count(self) -> None:
+        bed = sample_bed.bed(2)
+        bed["on_plate"] = np.zeros_like(bed["on_plate"])
+        self.assertEqual(maps_of([(2, bed)], APPARATUS).fraction.max(), 0.)
+
+    def test_displacement_of_the_tracked(self) -> None:
+        found = maps([4])
+        self.assertEqual(found.tracked.sum(), 30 * 8 * 8)
+        self.assertEqual(found.tracked[0, :, 4].sum(), 0.)  # the new layer
+        np.testing.assert_allclose(found.moved[0, 5, :4], 50e-6)
+        np.testing.assert_allclose(found.moved[0, 3, :4], 0.)
+        np.testing.assert_allclose(found.moved_of_layers(), 50e-6 * 7 / 15)
+        np.testing.assert_allclose(found.resting_of_layers(), 8 / 15)
+        np.testing.assert_allclose(moved_over_plate(sample_bed.bed(4)).mean(), 50e-6 * 7 / 15 * 4 / 5)
+
+    def test_density_of_a_layer_along_the_plate(self) -> None:
+        found = maps([0, 1, 2, 4]).local_lrd()
+        np.testing.assert_allclose(found[1:3], sample_bed.FRACTION)
+        self.assertTrue(np.isnan(found[[0, 3]]).all())  # the layer before is not known
+
+    def test_table(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            write_table(Path(folder) / "bed.csv", maps())
+            again = read_table(Path(folder) / "bed.csv", APPARATUS)
+        for name, tolerance in (("fraction", 5e-5), ("tracked", 0.), ("moved", 1e-8), ("resting", 5e-4)):
+            np.testing.assert_allclose(getattr(again, name), getattr(maps(), name), atol=tolerance)
+        np.testing.assert_array_equal(again.layers, range(9))
+
+
+class ZonesAtRest(unittest.TestCase):
+    def test_they_grow_from_the_ends_and_meet(self) -> None:
+        zones = zones_of(maps())
+        np.testing.assert_allclose(1e3 * zones.left[3:6], [0.2, 0.4, 0.6])
+        np.testing.assert_allclose(zones.left[3:6], zones.right[3:6])
+        np.testing.assert_allclose(1e3 * zones.bed[1:], 1.5)
+        np.testing.assert_allclose(zones.covered[1:7], [0., 0., 4 / 15, 8 / 15, 12 / 15, 1.])
+        self.assertEqual((zones.first, zones.meet, zones.at_rest_from), (3, sample_bed.MEETS, sample_bed.MEETS))
+
+    def test_they_may_never_meet(self) -> None:
+        zones = zones_of(maps(range(5)))
+        self.assertEqual((zones.first, zones.meet, zones.at_rest_from), (3, None, None))
+        self.assertIsNone(zones_of(maps(range(3))).first)
+
+    def test_a_rest_that_does_not_last(self) -> None:
+        found = maps()
+        found.resting[8] = 0.
+        zones = zones_of(found)
+        self.assertEqual((zones.meet, zones.at_rest_from), (sample_bed.MEETS, None))
+
+    def test_an_empty_plate(self) -> None:
+        zones = zones_of(maps([0]))
+        self.assertTrue(np.isnan(zones.covered[0]) and zones.left[0] == zones.right[0] == 0.)
+
+
+def run_with(lrd: list[float], name: str = "run") -> SpreadRun:
+    """Densities of layers 1, 2, ..."""
+    number = np.arange(1., len(lrd) + 1.)
+    others = {key: np.ones(len(lrd)) for key in Layers.__dataclass_fields__ if key not in ("layer", "lrd")}
+    return SpreadRun(name, Layers(layer=number, lrd=np.array(lrd), **others), None, None)
+
+
+class Numbers(unittest.TestCase):
+    def test_intervals(self) -> None:
+        found = mean_of([1., 2., 3., float("nan")])
+        self.assertEqual((found.value, round(found.half, 3)), (2., 2.484))  # 4.303 / sqrt(3)
+        self.assertFalse(found.is_significant)
+        self.assertTrue(np.isnan(mean_of([1.]).half) and np.isnan(mean_of([]).value))
+        # Welch: 2 degrees of freedom remain of 2 and 2, and of a group without scatter.
+        found = difference_of([3., 4., 5.], [1., 1., 1.])
+        self.assertEqual((found.value, round(found.half, 3)), (3., 2.484))
+        self.assertFalse(difference_of([1., 3.], [1., 2.]).is_significant)
+        self.assertFalse(difference_of([1.], [2., 3.]).is_significant)
+
+    def test_peak(self) -> None:
+        # A single high layer is no peak of three.
+        lrd = [0.9, 0.5, 0.5, 0.58, 0.5, 0.5, 0.54, 0.56, 0.55, 0.5]
+        value, layer = peak_of(np.arange(1., 11.), np.array(lrd))
+        self.assertEqual((round(value, 6), layer), (0.55, 8.))
+        self.assertTrue(np.isnan(peak_of(np.arange(1., 4.), np.array([0.5, 0.5, 0.5]))[0]))
+
+    def test_measured_curve(self) -> None:
+        group = measured_group(read_measured())
+        np.testing.assert_allclose(np.mean(group.of_runs(lambda run: run.peak[1])), 17.33, atol=0.7)
+        self.assertIn("rises by 5.5 ± 0.8 %.", rise_sentence(group))
+
+    def test_rise(self) -> None:
+        flat, steps = [0.5] * 20, [0.5] * 10 + [0.6] * 10
+        self.assertAlmostEqual(run_with(steps).rise, 0.1)
+        self.assertTrue(np.isnan(run_with(flat[:15]).rise))
+        group = Group("flat", [run_with(flat), run_with([0.5] * 10 + [0.51] * 10)])
+        self.assertIn("not significant", rise_sentence(group))
+        self.assertIn("one run has no interval", rise_sentence(Group("one", [run_with(steps)])))
+        self.assertIn("too few layers", rise_sentence(Group("short", [run_with(flat[:5])])))
+
+    def test_significant_differences_are_bold(self) -> None:
+        groups = [Group("a", [run_with([0.50] * 20), run_with([0.502] * 20)]),
+                  Group("b", [run_with([0.60] * 20), run_with([0.602] * 20)]),
+                  Group("c", [run_with([0.50] * 20), run_with([0.504] * 20)])]
+        table = differences_table(groups)
+        self.assertEqual([table[1][2], table[2][2]], ["**+10.0 ± 0.6**", "+0.1 ± 2.8"])
+        self.assertEqual(densities_table(groups)[1][:3], ["a", "2", "50.1 ± 1.3"])
+
+
+class Movie(unittest.TestCase):
+    def frame(self, plate: float) -> Frame:
+        """A moment of pass 2 in which the plate has come down to a height, and all grains with it; one has also
+        moved by 30 and 40 um. The other solid is a spreader above the plate."""
+        a, fall = APPARATUS, plate - APPARATUS.plate_height(1)
+        last = np.array([[a.x_plate + 1e-4, -1e-5, 0.], [a.x_plate + 2e-4, -1e-5, 0.], [0., 0., 0.]])
+        here = last + [[0., fall, 0.], [3e-5, fall + 4e-5, 0.], [a.x_plate, 1e-4, 0.]]
+        triangle = np.array([[a.x_plate, 0., 0.], [a.x_plate_end, 0., 0.], [a.x_plate, 0., a.depth]])
+        solids = np.array([triangle + [0., plate, 0.], triangle + [0., a.clearance, 0.]])
+        return Frame(0.2, {"points": here, "last_position": last, "layer": np.array([0., 1., -1.])}, solids)
+
+    def test_displacement_is_over_the_plate(self) -> None:
+        for plate in (-1e-4, -1.4e-4, -2e-4):
+            moved = moved_since(self.frame(plate), APPARATUS, 2)
+            np.testing.assert_allclose(moved[:2], [0., 5e-5], atol=1e-12)
+            self.assertTrue(np.isnan(moved[2]))
+
+
+class Page(unittest.TestCase):
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.names = ["PS1_seed1", "PS1_seed2", "PS3_seed1"]
+        for name in self.names:
+            sample_run.write_run(self.folder / name)
+
+    def make(self, *options: str, names=None) -> tuple[int, str, str]:
+        output, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            code = of_run.main([*(str(self.folder / name) for name in names or self.names), *options])
+        return code, output.getvalue(), errors.getvalue()
+
+    def test_runs_are_pooled(self) -> None:
+        page = self.folder / "PS1_seed1" / "comparison.html"
+        self.assertEqual(self.make(), (0, f"Comparison: {page}\n", ""))
+        text = page.read_text(encoding="utf-8")
+        # Densities, what a pass does, a map of each of two groups, profiles.
+        self.assertEqual(text.count("<figure>"), 5)
+        for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size"):
+            self.assertIn(words, text)
+
+    def test_labels(self) -> None:
+        out = self.folder / "page.html"
+        self.assertEqual(self.make("--label", "a", "--label", "b", "--label", "a", "--out", str(out))[0], 0)
+        self.assertIn("a: PS1_seed1, PS3_seed1; b: PS1_seed2", out.read_text(encoding="utf-8"))
+        code, _, errors = self.make("--label", "a")
+        self.assertEqual(code, 2)
+        self.assertIn("There are 1 labels for 3 runs", errors)
+
+    def test_figures_go_to_a_folder(self) -> None:
+        self.assertEqual(self.make("--figures", str(self.folder / "paper"))[0], 0)
+        self.assertEqual(sorted(file.name for file in (self.folder / "paper").iterdir()),
+                         [f"figure-{k}.pdf" for k in range(1, 6)])
+
+    def test_run_without_pictures(self) -> None:
+        sample_run.write_run(self.folder / "bare", pictures=False)
+        self.assertEqual(self.make(names=["bare", "PS3_seed1"])[0], 0)
+        self.assertIn("bare has no pictures of its layers", (self.folder / "bare" / "comparison.html").read_text())
+
+    def test_what_cannot_be_compared(self) -> None:
+        sample_run.write_heap(self.folder / "heap")
+        code, _, errors = self.make(names=["PS1_seed1", "heap"])
+        self.assertEqual(code, 2)
+        self.assertRegex(errors, r"heap is no spreading run: only those are compared\.\n$")
+        code, _, errors = self.make(*(word for k in range(8) for word in ("--label", str(k))), names=["PS1_seed1"] * 8)
+        self.assertEqual(code, 2)
+        self.assertIn("8 labels are too many for one page", errors)
+
+    def test_movie_without_pictures(self) -> None:
+        code, _, errors = self.make("--movie", names=["PS1_seed1"])
+        self.assertEqual(code, 2)
+        self.assertIn("has no pictures of a pass for a movie", errors)
+
+    def test_maps_of_a_whole_run(self) -> None:
+        self.assertEqual(self.make(names=["PS1_seed1"])[0], 0)
+        self.assertIn("Displacement and density along the plate", (self.folder / "PS1_seed1/report.html").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main()
