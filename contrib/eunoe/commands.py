@@ -36,6 +36,7 @@ COMMANDS = {
         "cheap-layers": ("studies.cheap_layers", "whether larger steps, softer grains or sleep change the layers"),
         "feedstock": ("studies.feedstock", "what the feedstock does to the layers"),
         "forgetting": ("studies.forgetting", "what a packing loses when its contacts forget"),
+        "reproduction": ("studies.reproduction", "goes on with the campaign that reproduces the paper"),
         "heap-size": ("studies.heap_size", "how a heap's angle depends on the size of its disc"),
         "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
         "suite": ("discovery.suite", "makes a blind suite of hidden truths for eunoe-discovery, and studies it"),

@@ -147,7 +147,7 @@ def check_pictures() -> list[str]:
             wrong.append(f"doc/pictures/README.md does not say that the rule {rule_of[name]} made {name}.")
         elif entry.digest != digest(folder / name):
             wrong.append(f"{name} is not what its rule made: its digest differs from doc/pictures/README.md.")
-    revisions = {entry.revision for entry in record.values()}
+    revisions = {name for entry in record.values() for name in entry.revisions}
     return wrong + [f"doc/pictures/README.md: there is no revision {name}."
                     for name in sorted(revisions - known_revisions(revisions))]
 

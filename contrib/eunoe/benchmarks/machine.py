@@ -33,6 +33,10 @@ def _compiler(program: str) -> str:
     return f"{version}, {_first(r'^CMAKE_BUILD_TYPE:.*=(.*)$', cache)}"
 
 
+def processor() -> str:
+    return _first(r"^model name\s*:(.*)$", _read("/proc/cpuinfo"))
+
+
 def facts(programs: list, program: str) -> dict[str, str]:
     """Names and values; `programs` are the programs compared, `program` is the path of Eunoe's."""
     cpu = _read("/proc/cpuinfo")
@@ -40,7 +44,7 @@ def facts(programs: list, program: str) -> dict[str, str]:
     widths = [name for name in ("sse2", "avx", "avx2", "fma", "avx512f") if name in flags]
     memory = _first(r"^MemTotal:\s*(\d+)", _read("/proc/meminfo"))
     result = {
-        "processor": _first(r"^model name\s*:(.*)$", cpu),
+        "processor": processor(),
         "cores": str(os.cpu_count()),
         "instruction sets": ", ".join(widths) or "unknown",
         "memory": f"{int(memory) / 2**20:.0f} GiB" if memory.isdigit() else "unknown",

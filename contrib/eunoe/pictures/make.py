@@ -111,7 +111,9 @@ def follow(rule: Rule, options: argparse.Namespace, revision: str) -> dict[str, 
         if not (rule_folder / made).exists():
             raise Failure(f"The commands of {rule.name} have not made {rule_folder / made}.")
         shutil.copyfile(rule_folder / made, options.pictures / picture)
-        entries[picture] = Entry(rule.name, revision, digest(options.pictures / picture))
+        # Commands that draw what other revisions have computed have their own record beside the picture.
+        stated = read_record((rule_folder / made).parent).get(picture)
+        entries[picture] = Entry(rule.name, stated.revision if stated else revision, digest(options.pictures / picture))
     return entries
 
 

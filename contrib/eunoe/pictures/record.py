@@ -25,8 +25,12 @@ class Entry:
     """What made a picture."""
 
     rule: str
-    revision: str
+    revision: str  # several of a campaign that was made by more than one, as "abcdef0, 1234567"
     digest: str
+
+    @property
+    def revisions(self) -> list[str]:
+        return self.revision.split(", ")
 
 
 def digest(file: Path) -> str:
@@ -38,7 +42,7 @@ def read_record(pictures: Path) -> dict[str, Entry]:
     file = pictures / NAME
     text = file.read_text(encoding="utf-8") if file.exists() else ""
     return {name: Entry(*words) for name, *words in
-            re.findall(r"^\| (\S+\.png) \| (\S+) \| ([0-9a-f]+) \| ([0-9a-f]+) \|$", text, re.M)}
+            re.findall(r"^\| (\S+\.png) \| (\S+) \| ([0-9a-f]+(?:, [0-9a-f]+)*) \| ([0-9a-f]+) \|$", text, re.M)}
 
 
 def write_record(pictures: Path, record: dict[str, Entry]) -> None:

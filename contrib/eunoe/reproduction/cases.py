@@ -1,0 +1,138 @@
+"""The table of cases: what is run, in which order, with which settings.
+
+All cases have the paper's proportions, gaps, lips, spreader, strokes and powder, from
+prm/spreading/PS*_L1.prm. What they change to be affordable is in `CHEAP`; doc/reproduction.md gives the
+reasons. A variant changes one thing more.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from eunoe.launch import Failure
+from eunoe.repository import CASES as INPUT_FILES
+
+PAPER_STEP = 2.816e-7  # s, 15 % of the Rayleigh time of the smallest grain
+RAYLEIGH_TIME = PAPER_STEP / 0.15
+L1 = 1. / 7.  # of the full size
+SPREADING, MODEL = "powder spreading", "model parameters"
+SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
+FORGET = f"{MODEL}/contact history/forget interval"
+BALANCE_INTERVAL = 10.5e-3  # s between two load balances of the published input files
+SETS = ("PS1", "PS2", "PS3")
+
+CHEAP = {SLEEP: "true", f"{SPREADING}/feedstock platform velocity": "11e-3"}
+
+
+@dataclass(frozen=True)
+class Variant:
+    """@param title in words, beside the cases without a variant
+    @param settings entries of the input and their values"""
+
+    title: str
+    settings: dict[str, Any] = field(default_factory=dict)
+
+
+VARIANTS = {
+    "": Variant("as the paper, at the cheap settings"),
+    "forget": Variant("contacts forget every 10.5 ms"),
+    "unopened": Variant("velocity Verlet without its opening half step",
+                        {f"{MODEL}/integration method": "symplectic_euler"}),
+    "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
+    "lips": Variant("lips and gap of the small cases",
+                    {f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
+    "awake": Variant("without sleep", {SLEEP: "false"}),
+    "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    """One run."""
+
+    properties: str  # the paper's property set
+    length: float  # of the plates, in units of L1
+    seed: int
+    depth: float = 0.4  # mm
+    percent: float = 30.  # time step, of the Rayleigh time
+    variant: str = ""
+
+    @property
+    def group(self) -> str:
+        """What the runs that differ in the seed alone have in common."""
+        parts = [self.properties, f"L{self.length:g}"]
+        if self.depth != 0.4:
+            parts.append(f"depth{self.depth:g}")
+        if self.percent != 30.:
+            parts.append(f"step{self.percent:g}")
+        return "_".join([*parts, *([self.variant] if self.variant else [])])
+
+    @property
+    def name(self) -> str:
+        return f"{self.group}_seed{self.seed}"
+
+    @property
+    def title(self) -> str:
+        """What differs from the cases without a variant, in words."""
+        parts = [f"depth of {self.depth:g} mm"] if self.depth != 0.4 else []
+        if self.percent != 30.:
+            parts.append(f"step of {self.percent:g} % of the Rayleigh time")
+        if self.variant:
+            parts.append(VARIANTS[self.variant].title)
+        return ", ".join(parts)
+
+    @property
+    def is_plain(self) -> bool:
+        return not self.title
+
+    @property
+    def input_file(self) -> str:
+        return str(INPUT_FILES / "spreading" / f"{self.properties}_L1.prm")
+
+    @cached_property
+    def settings(self) -> dict[str, Any]:
+        """Entries that differ from the input file's."""
+        step = 0.01 * self.percent * RAYLEIGH_TIME
+        found = {f"{SPREADING}/length factor": f"{self.length * L1:.10f}",
+                 f"{SPREADING}/depth": f"{self.depth:g}e-3",
+                 "simulation control/time step": f"{step:.6g}", **CHEAP}
+        if self.variant == "forget":
+            found[FORGET] = math.floor(BALANCE_INTERVAL / step)
+        return {**found, **VARIANTS[self.variant].settings}
+
+
+def _series(properties: str, length: float, seeds: int, **others: Any) -> list[Case]:
+    return [Case(properties, length, seed, **others) for seed in range(1, seeds + 1)]
+
+
+def _in_turn(*series: list[Case]) -> list[Case]:
+    """The first case of each series, then the second of each, and so on."""
+    return [cases[k] for k in range(max(map(len, series))) for cases in series if k < len(cases)]
+
+
+# In the order in which they are run.
+CASES = (
+    *_in_turn(_series("PS1", 0.25, 3), _series("PS3", 0.25, 3)),
+    *_series("PS1", 0.25, 3, variant="forget"),
+    *_in_turn(_series("PS1", 0.5, 2), _series("PS3", 0.5, 2)),
+    *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="unopened")),
+    *_series("PS2", 0.5, 1),
+    *_series("PS1", 1., 1),
+    *_in_turn(_series("PS1", 0.5, 2, depth=0.8), _series("PS1", 0.5, 2, depth=1.6)),
+    *_in_turn(_series("PS1", 0.25, 3, variant="slow_feed"), _series("PS1", 0.25, 3, variant="awake"),
+              _series("PS1", 0.25, 3, percent=15.)),
+    *_series("PS1", 0.25, 3, variant="full"),
+    *_series("PS3", 1., 1),
+    *_series("PS1", 2., 1),
+)
+
+
+def chosen(words: list[str]) -> list[Case]:
+    """The cases that the words name, each by its name or group; all of them if there is no word."""
+    for word in words:
+        if not any(word in (case.name, case.group) for case in CASES):
+            raise Failure(f"There is no case '{word}': contrib/tools reproduction --list names them.")
+    return [case for case in CASES if not words or case.name in words or case.group in words]

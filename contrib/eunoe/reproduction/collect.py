@@ -1,0 +1,63 @@
+"""The small results of a run: what the analysis needs of it, as text, in a folder of the repository."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+from eunoe.launch import Failure
+from eunoe.report.apparatus import Apparatus, ApparatusError
+from eunoe.report.bed_maps import read_maps, write_table
+from eunoe.report.run_folder import Run, read_run
+from eunoe.repository import DOC
+from eunoe.studies.series import summary_of
+
+from .cases import Case
+from .runs import Campaign, processor_of
+
+DATA = DOC / "reproduction" / "data"
+TABLES = ("layers.csv", "measurements.csv", "apparatus.json")
+BED, RECORD = "bed.csv", "run.json"
+# Of summary.json.
+KEPT = ("version", "git_revision", "ranks", "steps", "time_step", "simulated_time", "particle_steps",
+        "particle_steps_per_second", "loop_seconds", "share_asleep", "inserted_mass", "inside_mass", "lost_particles",
+        "mass_balance_error")
+
+
+def record_of(case: Case, folder: Path, layers: int) -> dict[str, Any]:
+    """What was run, by what, and what it took. A run that goes on has no revision and no timings yet."""
+    summary = summary_of(folder) or {}
+    return {"case": case.name, "finished": bool(summary), "layers": layers, "processor": processor_of(folder),
+            "settings": {name: str(value) for name, value in case.settings.items()},
+            **{key: summary[key] for key in KEPT if key in summary}}
+
+
+def _maps(run: Run, apparatus: Apparatus, file: Path) -> None:
+    pictures = run.layer_pictures()
+    if pictures:
+        write_table(file, read_maps(pictures, apparatus))
+
+
+def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
+    """Writes the small results of a finished run, and returns their folder; None if it has not finished."""
+    folder = campaign.of(case)
+    if not campaign.is_finished(case):
+        return None
+    target = data / case.name
+    target.mkdir(parents=True, exist_ok=True)
+    for name in TABLES:
+        if (folder / name).exists():
+            shutil.copyfile(folder / name, target / name)
+    run = read_run(folder)
+    try:
+        apparatus = Apparatus.read(folder / "apparatus.json")
+    except ApparatusError as error:
+        raise Failure(f"{case.name}: {error}") from error
+    # Maps are for the questions of the mechanism; a variant is compared by its densities alone.
+    if case.is_plain:
+        _maps(run, apparatus, target / BED)
+    record = record_of(case, folder, len(run.layers))
+    (target / RECORD).write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    return target

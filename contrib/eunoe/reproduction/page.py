@@ -1,0 +1,145 @@
+"""Renews the generated parts of doc/reproduction.md, which stand between markers."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from eunoe.launch import Failure
+from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rest_table,
+                                          rise_sentence)
+from eunoe.report.measured import read_measured
+from eunoe.report.spread_run import Group
+from eunoe.repository import DOC
+from eunoe.tables import Table, as_markdown
+
+from .cases import SETS
+from .pictures import picture_name
+from .results import Findings, Result, origin_of
+from .verdict import verdict_table
+
+PAGE = DOC / "reproduction.md"
+NOTHING = "No run of these has finished yet."
+
+
+def _block(table: Table, results: list[Result], *sentences: str) -> str:
+    if len(table) < 2:
+        return NOTHING
+    return "\n\n".join([as_markdown(table), origin_of(results), *filter(None, sentences)])
+
+
+def _results(groups: list[Group]) -> list[Result]:
+    return [run for group in groups for run in group.runs]
+
+
+def runs_block(findings: Findings) -> str:
+    """What has been run, of what is planned."""
+    table = [["case", "runs finished, of", "plate (mm)", "particles on it in the end", "steps (million)",
+              "particle-steps (1e9)", "of them asleep (%)", "core-hours of a run"]]
+    planned: dict[str, int] = {}
+    for case in findings.cases:
+        planned[case.group] = planned.get(case.group, 0) + 1
+    for name, number in planned.items():
+        results = findings.results.get(name, [])
+        cells = [f"`{name}`", f"{len(results)}, {number}"]
+        if results:
+            n = len(results)
+            mean = {key: sum(result.record[key] for result in results) / n
+                    for key in ("steps", "particle_steps", "share_asleep")}
+            hours = sum(result.record["loop_seconds"] * result.record["ranks"] for result in results) / n / 3600.
+            cells += [f"{1e3 * results[0].apparatus.plate_length:.3g}",
+                      f"{sum(result.layers.particles[-1] for result in results) / n:.0f}",
+                      f"{1e-6 * mean['steps']:.2f}", f"{1e-9 * mean['particle_steps']:.0f}",
+                      f"{100. * mean['share_asleep']:.0f}", f"{hours:.2f}"]
+        table.append([*cells, *[""] * (len(table[0]) - len(cells))])
+    if not findings:
+        return NOTHING
+    return _block(table, findings.all)
+
+
+def densities_block(findings: Findings) -> str:
+    groups = findings.plain()
+    if not groups:
+        return NOTHING
+    everyone = [*groups, measured_group(read_measured())]
+    return _block(densities_table(everyone), _results(groups), " ".join(rise_sentence(group) for group in groups))
+
+
+def _differences(pairs: list[list[Group]]) -> str:
+    """One table for each list of groups, compared with its first."""
+    blocks = [_block(differences_table(groups), _results(groups)) for groups in pairs if len(groups) > 1]
+    return "\n\n".join(blocks) or NOTHING
+
+
+def lengths_block(findings: Findings) -> str:
+    return _differences([findings.lengths(properties) for properties in SETS])
+
+
+def sets_block(findings: Findings) -> str:
+    lengths = sorted({result.case.length for result in findings.all})
+    return _differences([[group for properties in SETS if (group := findings.of(properties, length))]
+                         for length in lengths])
+
+
+def rest_block(findings: Findings) -> str:
+    groups = findings.plain()
+    return _block(rest_table(groups), _results(groups))
+
+
+def variants_block(findings: Findings) -> str:
+    return _differences([[base, *variants] for base, variants in findings.variants()])
+
+
+def needed_block(findings: Findings) -> str:
+    """How far the mean LRD of a shorter plate is from that of the longest one that has been run."""
+    table = [["plate", "of the longest one's length", "LRD of layers 5 to 20, less the longest one's (%)"]]
+    used: list[Group] = []
+    for properties in SETS:
+        groups = findings.lengths(properties)
+        if len(groups) < 2:
+            continue
+        used += groups
+        longest = groups[-1].runs[0].case.length
+        rows = differences_table([groups[-1], *groups[:-1]])[1:]
+        table += [[group.label, f"{group.runs[0].case.length / longest:.2g}", row[2].replace("**", "")]
+                  for group, row in zip(groups[:-1], rows)]
+    return _block(table, _results(used))
+
+
+def verdict_block(findings: Findings) -> str:
+    return _block(verdict_table(findings), findings.all)
+
+
+# The pictures that stand below a block, as far as they have been drawn, and what they show.
+PICTURES = {
+    "densities": {"density": "LRD and CRD of all lengths and property sets, beside the measured ones"},
+    "rest": {"mechanism": "Displacement, rest, removal and zones by layer",
+             "maps_PS1": "Displacement and density by place and layer, PS1 on its longest plate",
+             "maps_PS3": "Displacement and density by place and layer, PS3 on its longest plate",
+             "profiles": "Profiles of the solid along the plate and over the height",
+             "layers": "The bed at four weighings", "pass": "A pass in four pictures"},
+    "variants": {"variants": "LRD and CRD of the variants"},
+}
+BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
+          "sets": sets_block, "rest": rest_block, "variants": variants_block, "needed": needed_block}
+
+
+def _pictures(name: str, folder: Path) -> str:
+    found = {picture_name(picture): text for picture, text in PICTURES.get(name, {}).items()}
+    return "".join(f"\n\n![{text}](pictures/{file})" for file, text in found.items() if (folder / file).exists())
+
+
+def renewed(text: str, findings: Findings, pictures: Path) -> str:
+    """The page with new text between its markers."""
+    for name, make in BLOCKS.items():
+        begin, end = f"<!-- {name}: generated -->", f"<!-- end of {name} -->"
+        pattern = re.compile(f"{begin}\n.*?{end}", re.S)
+        if len(pattern.findall(text)) != 1:
+            raise Failure(f"{PAGE.name} must have '{begin}' and '{end}' once, in lines of their own.")
+        block = f"{begin}\n\n{make(findings)}{_pictures(name, pictures)}\n\n{end}"
+        text = pattern.sub(lambda _, block=block: block, text)
+    return text
+
+
+def renew(file: Path, findings: Findings, pictures: Path) -> None:
+    file.write_text(renewed(file.read_text(encoding="utf-8"), findings, pictures), encoding="utf-8")

@@ -1,0 +1,99 @@
+"""The small results of the campaign as the analysis reads them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eunoe.report.apparatus import Apparatus
+from eunoe.report.bed_maps import read_table
+from eunoe.report.run_folder import read_layers
+from eunoe.report.spread_run import Group, SpreadRun
+
+from .cases import CASES, Case
+from .collect import BED, DATA, RECORD
+
+
+@dataclass(frozen=True)
+class Result(SpreadRun):
+    """A finished run."""
+
+    case: Case
+    record: dict[str, Any]
+
+    @classmethod
+    def read(cls, case: Case, folder: Path) -> Result:
+        apparatus = Apparatus.read(folder / "apparatus.json")
+        maps = read_table(folder / BED, apparatus) if (folder / BED).exists() else None
+        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        return cls(case.name, read_layers(folder / "layers.csv"), apparatus, maps, case, record)
+
+    @property
+    def revision(self) -> str:
+        return str(self.record["git_revision"])[:7]
+
+
+class Findings:
+    """All finished runs whose small results are there, by groups in the order of the campaign."""
+
+    def __init__(self, data: Path = DATA, cases: Iterable[Case] = CASES) -> None:
+        self.cases = tuple(cases)
+        self.results: dict[str, list[Result]] = {}
+        for case in self.cases:
+            if (data / case.name / RECORD).exists():
+                self.results.setdefault(case.group, []).append(Result.read(case, data / case.name))
+
+    def __bool__(self) -> bool:
+        return bool(self.results)
+
+    @property
+    def all(self) -> list[Result]:
+        return [result for results in self.results.values() for result in results]
+
+    def plain(self) -> list[Group]:
+        """The groups without a variant, shorter plates first."""
+        found = [results for results in self.results.values() if results[0].case.is_plain]
+        found.sort(key=lambda results: (results[0].case.length, results[0].case.properties))
+        return [Group(plain_label(results[0].case), results) for results in found]
+
+    def of(self, properties: str, length: float) -> Group | None:
+        """The group without a variant."""
+        results = self.results.get(Case(properties, length, 1).group)
+        return Group(plain_label(results[0].case), results) if results else None
+
+    def lengths(self, properties: str) -> list[Group]:
+        """The groups of a property set without a variant, shorter plates first."""
+        return [group for group in self.plain() if group.runs[0].case.properties == properties]
+
+    def variants(self) -> list[tuple[Group, list[Group]]]:
+        """Groups with variants, with the group that they are to be compared with, as far as that is there."""
+        found: dict[str, tuple[Group, list[Group]]] = {}
+        for results in self.results.values():
+            case = results[0].case
+            base = self.of(case.properties, case.length)
+            if not case.is_plain and base:
+                found.setdefault(base.label, (base, []))[1].append(Group(case.title, results))
+        return list(found.values())
+
+
+def plain_label(case: Case) -> str:
+    return f"{case.properties}, {length_name(case.length)}"
+
+
+def length_name(length: float) -> str:
+    """As the paper names its lengths."""
+    if length == int(length):
+        return f"L{length:g}"
+    return f"L1/{1. / length:g}"
+
+
+def origin_of(results: Iterable[Result], command: str = "contrib/tools reproduction") -> str:
+    """The sentence that says what made a table."""
+    found = list(results)
+    revisions = sorted({result.revision for result in found})
+    processors = sorted({result.record["processor"] for result in found})
+    return (f"Made by `{command}` at revision{'s' if len(revisions) > 1 else ''} {', '.join(revisions)} on an "
+            f"{' and an '.join(processors)}.")

@@ -1,0 +1,120 @@
+"""Makes the runs of the campaign. Their states lie in a folder outside the repository, one folder a case."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import signal
+import subprocess
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+from eunoe.benchmarks.machine import processor
+from eunoe.launch import mpirun, overrides
+from eunoe.studies.series import CONTINUED, summary_of
+
+from .cases import Case
+from .cost import cost_of
+
+# Shares of a run between which pictures for a movie are written: a pass and a half after the tenth layer.
+FILMED = (0.62, 0.7)
+FILM_INTERVAL = 4e-3  # s
+STOPPED = 3  # exit code of a run that was asked to stop and has left a checkpoint
+
+
+class Campaign:
+    """The folder of the states, and the program that makes them."""
+
+    def __init__(self, program: str, folder: Path, ranks: int = 1) -> None:
+        self.program, self.folder, self.ranks = program, folder, ranks
+        self.stopping = threading.Event()
+        self.children: dict[str, subprocess.Popen] = {}
+
+    def of(self, case: Case) -> Path:
+        """The output folder of a case."""
+        return self.folder / case.name
+
+    def command(self, case: Case, *launcher: str) -> list[str]:
+        """The command that starts a case or goes on with it."""
+        settings = {**case.settings, "simulation control/output path": self.of(case), **CONTINUED}
+        return [*(launcher or mpirun(self.ranks)), self.program, case.input_file, "--seed", str(case.seed),
+                *overrides(settings)]
+
+    def filmed(self, case: Case) -> list[str]:
+        """Options for pictures of a pass of one run of a kind, for a movie: none of the other runs. Pictures
+        change no particle's path."""
+        if not case.is_plain or case.seed != 1:
+            return []
+        cost = cost_of(self.command(case))
+        first, last = (share * cost.steps * cost.time_step for share in FILMED)
+        return overrides({"simulation control/output control": "time",
+                          "simulation control/output time": FILM_INTERVAL,
+                          "simulation control/output time interval": f"{first:.4g}, {last:.4g}"})
+
+    def is_finished(self, case: Case) -> bool:
+        return summary_of(self.of(case)) is not None
+
+    def make(self, case: Case) -> int | None:
+        """Goes on with a case until it has finished. Returns its exit code; None if it had finished before or if
+        another process runs it. The lock is the program's, too, so it outlives this process."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with open(self.folder / f"{case.name}.lock", "w", encoding="utf-8") as lock:
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                print(f"{case.name} runs already", flush=True)
+                return None
+            if self.stopping.is_set() or self.is_finished(case):
+                return None
+            self.note_machine(case)
+            with open(self.folder / f"{case.name}.log", "a", encoding="utf-8") as log:
+                child = subprocess.Popen([*self.command(case), *self.filmed(case)], stdout=log, stderr=log,
+                                         pass_fds=[lock.fileno()])
+            self.children[case.name] = child
+            code = child.wait()
+            del self.children[case.name]
+        print(f"{case.name} ended with exit code {code}", flush=True)
+        return code
+
+    def note_machine(self, case: Case) -> None:
+        """Keeps on which processors a case has run; the program does not say."""
+        self.of(case).mkdir(parents=True, exist_ok=True)
+        file = self.of(case) / "processors.json"
+        known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
+        if processor() not in known:
+            file.write_text(json.dumps([*known, processor()]), encoding="utf-8")
+
+    def stop(self, *_) -> None:
+        """Asks all runs to leave a checkpoint and end; no further one starts."""
+        self.stopping.set()
+        for child in list(self.children.values()):
+            child.send_signal(signal.SIGTERM)
+
+    def work(self, cases: list[Case], jobs: int, after_each: Callable[[Case], None]) -> bool:
+        """Makes the cases that have not finished, so many at a time; false if one failed."""
+        before = {number: signal.signal(number, self.stop)
+                  for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)}
+        turn = threading.Lock()
+
+        def make(case: Case) -> bool:
+            code = self.make(case)
+            if code == 0:
+                with turn:
+                    after_each(case)
+            return code in (None, 0, STOPPED)
+
+        try:
+            with ThreadPoolExecutor(jobs) as pool:
+                return all(list(pool.map(make, cases)))
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+
+def processor_of(folder: Path) -> str:
+    """On which processors a run was made; unknown if it was not started by the campaign."""
+    file = folder / "processors.json"
+    return ", ".join(json.loads(file.read_text(encoding="utf-8"))) if os.path.exists(file) else "unknown"

@@ -1,0 +1,106 @@
+"""What the paper found and measured, number by number, beside what the runs of the campaign give."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from eunoe.intervals import Interval, difference_of, mean_of
+from eunoe.report.comparison_text import measured_group, text_of
+from eunoe.report.measured import read_measured
+from eunoe.report.spread_run import PLATEAU, Group, SpreadRun
+from eunoe.tables import Table
+
+from .results import Findings
+
+UNKNOWN = "not known yet"
+
+
+def _said(found: Interval, size: float = 100., unit: str = " %") -> str:
+    if math.isnan(found.value):
+        return ""
+    return text_of(found, size) + unit + ("" if not math.isnan(found.half) else " (one run)")
+
+
+def _agreement(group: Group, measured: Group, number: Callable[[SpreadRun], float]) -> str:
+    """Whether two means agree, by the interval of their difference."""
+    found = difference_of(group.of_runs(number), measured.of_runs(number))
+    if math.isnan(found.value):
+        return UNKNOWN
+    if math.isnan(found.half):
+        return f"differs by {100. * found.value:+.1f} %; one run has no interval"
+    if found.is_significant:
+        return f"no: differs by {100. * found.value:+.1f} ± {100. * found.half:.1f} %"
+    return f"agrees within ± {100. * found.half:.1f} %"
+
+
+def _sign(found: Interval, wanted: str) -> str:
+    """Whether a difference has the wanted sign (+ or -), and significantly so."""
+    if math.isnan(found.value):
+        return UNKNOWN
+    right = (found.value > 0.) == (wanted == "+")
+    if math.isnan(found.half):
+        return ("yes" if right else "no") + ", but one run has no interval"
+    if not found.is_significant:
+        return f"not significant: {100. * found.value:+.1f} ± {100. * found.half:.1f}"
+    return "yes" if right else "no: the opposite"
+
+
+def _rise(run: SpreadRun) -> float:
+    return run.rise
+
+
+def _fall(run: SpreadRun) -> float:
+    """From the peak to the last layer."""
+    return run.peak[0] - float(run.layers.lrd[-1])
+
+
+def _by_group(groups: list[Group], measured: Group) -> Table:
+    rows = []
+    for title, number in ((f"LRD of layers {PLATEAU[0]} to {PLATEAU[1]}", lambda run: run.mean_lrd(PLATEAU)),
+                          ("rise of LRD from there to layers 11 to 20", _rise),
+                          ("peak of LRD", lambda run: run.peak[0]),
+                          ("fall of LRD from the peak to layer 20", _fall)):
+        rows += [[title, "measured: " + _said(mean_of(measured.of_runs(number))),
+                  f"{group.label}: {_said(mean_of(group.of_runs(number)))}", _agreement(group, measured, number)]
+                 for group in groups]
+    return rows
+
+
+def _differences(findings: Findings) -> Table:
+    rows = []
+    for properties in ("PS1", "PS2", "PS3"):
+        groups = findings.lengths(properties)
+        for shorter, longer in zip(groups, groups[1:]):
+            for title, number, size in (("the peak grows with the length", lambda run: run.peak[0], 100.),
+                                        ("its layer grows with the length", lambda run: run.peak[1], 1.)):
+                found = difference_of(longer.of_runs(number), shorter.of_runs(number))
+                rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, '')}",
+                             _sign(Interval(found.value * size / 100., found.half * size / 100.), "+")])
+    for length in sorted({result.case.length for result in findings.all}):
+        first, third = findings.of("PS1", length), findings.of("PS3", length)
+        if first and third:
+            found = difference_of(third.of_runs(lambda run: run.peak[0]), first.of_runs(lambda run: run.peak[0]))
+            rows.append(["the peak of PS3 is lower than that of PS1", "simulated: yes",
+                         f"{third.label}, less {first.label}: {_said(found)}", _sign(found, "-")])
+    return rows
+
+
+def _rest(groups: list[Group]) -> Table:
+    rows = []
+    for group in groups:
+        zones = [run.zones for run in group.mapped]
+        if not zones:
+            continue
+        meet = [zone.meet for zone in zones if zone.meet is not None]
+        here = f"{min(meet)} to {max(meet)}" if meet else "never"
+        rows.append(["zones at rest grow from both ends and meet in layer", "simulated: PS1, L2: 9 to 13; PS3, L2: 8",
+                     f"{group.label}: {here}", f"in {len(meet)} of {len(zones)} runs"])
+    return rows
+
+
+def verdict_table(findings: Findings) -> Table:
+    groups = [found[-1] for properties in ("PS1", "PS2", "PS3") if (found := findings.lengths(properties))]
+    measured = measured_group(read_measured())
+    return [["what", "in the paper", "here", "verdict"],
+            *_by_group(groups, measured), *_differences(findings), *_rest(groups)]

@@ -1,0 +1,109 @@
+"""The campaign that reproduces Gaboriault et al. (2025): goes on with its runs, keeps their small results
+in the repository, and rebuilds doc/reproduction.md and its pictures.
+
+Usage: contrib/tools reproduction path/to/eunoe-particles folder [--only CASE ...] [--jobs 1] [--ranks 1]
+       contrib/tools reproduction path/to/eunoe-particles folder --plan [--speed MILLIONS]
+       contrib/tools reproduction path/to/eunoe-particles folder --only CASE --command
+       contrib/tools reproduction path/to/eunoe-particles folder --collect
+       contrib/tools reproduction --list | --page-only
+
+The states of the runs lie in the folder, which should stand outside the repository. A run that has finished
+is not made again; one that was stopped or killed continues from its checkpoint. SIGTERM, SIGINT and SIGUSR1
+ask all runs to leave a checkpoint and end; the exit code is then 3. Several of these commands may work in one folder: a case that
+another one runs is left out. --only takes names of cases, or of groups of seeds. --command
+prints the command that a batch job on this machine starts with its own launcher. --collect runs nothing: it
+takes over what has finished, and rebuilds page and pictures; --page-only does so from the small results alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import sys
+from pathlib import Path
+
+from eunoe.launch import Failure, parser
+from eunoe.reproduction.cases import CASES, Case, chosen
+from eunoe.reproduction.collect import DATA, collect
+from eunoe.reproduction.page import PAGE, renew
+from eunoe.reproduction.pictures import draw, draw_movie
+from eunoe.reproduction.plan import measured_speed, plan_of
+from eunoe.reproduction.results import Findings
+from eunoe.reproduction.runs import STOPPED, Campaign
+from eunoe.repository import DOC
+from eunoe.tables import as_text
+
+
+def parse(words: list[str]) -> argparse.Namespace:
+    arguments = parser(__doc__)
+    arguments.add_argument("program", nargs="?")
+    arguments.add_argument("folder", type=Path, nargs="?")
+    arguments.add_argument("--only", nargs="+", default=[], metavar="CASE")
+    arguments.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    arguments.add_argument("--ranks", type=int, default=1, help="of each run")
+    arguments.add_argument("--speed", type=float, help="million particle-steps per second and core, for --plan")
+    for name, default in (("data", DATA), ("page", PAGE), ("pictures", DOC / "pictures")):
+        arguments.add_argument(f"--{name}", type=Path, default=default, help="default: %(default)s")
+    what = arguments.add_mutually_exclusive_group()
+    for name, text in (("list", "names the cases"),
+                       ("plan", "says what is missing and what it costs; runs nothing"),
+                       ("command", "prints the command of a run, for a batch job"),
+                       ("collect", "runs nothing"), ("page-only", "reads the small results alone")):
+        what.add_argument(f"--{name}", action="store_true", help=text)
+    options = arguments.parse_args(words)
+    if not (options.list or options.page_only) and options.folder is None:
+        raise Failure("Name the program and the folder of the runs: contrib/tools reproduction PROGRAM FOLDER.")
+    return options
+
+
+def show_plan(campaign: Campaign, cases: list[Case], speed: float | None) -> None:
+    table, sentence = plan_of(campaign, cases, 1e6 * speed if speed else measured_speed(campaign, list(CASES)))
+    print(as_text(table), sentence, sep="\n")
+
+
+def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
+    """Page and pictures from the small results, and from the states if they are there."""
+    findings = Findings(options.data)
+    draw(findings, campaign, options.pictures)
+    renew(options.page, findings, options.pictures)
+    movie = draw_movie(campaign, findings) if campaign else None
+    print(f"{len(findings.all)} finished runs are in {options.page}" + (f", a movie is in {movie}" if movie else ""))
+
+
+def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
+    """Runs, takes over the results of each run when it has finished, and rebuilds; false if a run failed."""
+    def take(case: Case) -> None:
+        try:
+            collect(campaign, case, options.data)
+        except Failure as failure:  # the other runs go on
+            print(failure, file=sys.stderr, flush=True)
+
+    for case in cases:
+        take(case)
+    good = options.collect or campaign.work(cases, options.jobs, take)
+    rebuild(options, campaign)
+    return good
+
+
+def main(words: list[str]) -> int:
+    options = parse(words)
+    cases = chosen(options.only)
+    if options.list:
+        print("\n".join(case.name for case in cases))
+        return 0
+    if options.page_only:
+        rebuild(options, None)
+        return 0
+    campaign = Campaign(str(Path(options.program).resolve()), options.folder.resolve(), options.ranks)
+    os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    if options.plan:
+        show_plan(campaign, cases, options.speed)
+        return 0
+    if options.command:
+        for case in cases:
+            campaign.note_machine(case)
+            print(shlex.join(campaign.command(case)))
+        return 0
+    good = go_on(options, campaign, cases)
+    return STOPPED if campaign.stopping.is_set() else 0 if good else 1

@@ -1,0 +1,190 @@
+"""Tests of contrib/tools reproduction, with a program that takes no time; they need numpy, matplotlib and VTK."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import importlib.util
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
+    print("skipped: numpy, matplotlib or VTK is missing")
+    sys.exit(0)
+
+from eunoe import commands
+from eunoe.pictures.record import digest, read_record
+from eunoe.reproduction.cases import CASES, VARIANTS, Case
+from eunoe.reproduction.page import BLOCKS
+from eunoe.reproduction.results import Findings, length_name
+from eunoe.repository import DOC, ROOT
+
+HERE = Path(__file__).resolve().parent
+MARKED = "".join(f"<!-- {name}: generated -->\nold\n<!-- end of {name} -->\n" for name in BLOCKS)
+
+
+class Cases(unittest.TestCase):
+    def test_names_are_unique_and_seeds_are_grouped(self) -> None:
+        self.assertEqual(len({case.name for case in CASES}), len(CASES))
+        self.assertEqual(len({(case.group, case.seed) for case in CASES}), len(CASES))
+
+    def test_settings(self) -> None:
+        case = Case("PS1", 0.25, 1)
+        self.assertTrue(case.is_plain)
+        self.assertEqual(case.settings["powder spreading/length factor"], "0.0357142857")
+        self.assertEqual(case.settings["simulation control/time step"], "5.632e-07")
+        forgets = Case("PS1", 0.25, 1, variant="forget")
+        self.assertEqual(forgets.settings["model parameters/contact history/forget interval"], 18643)
+        self.assertIn("forget", forgets.title)
+
+    def test_names_of_lengths(self) -> None:
+        self.assertEqual([length_name(length) for length in (0.25, 0.5, 1., 2.)], ["L1/4", "L1/2", "L1", "L2"])
+
+    def test_the_page_has_its_markers(self) -> None:
+        text = (DOC / "reproduction.md").read_text(encoding="utf-8")
+        for name in BLOCKS:
+            self.assertEqual(text.count(f"<!-- {name}: generated -->\n"), 1, name)
+            self.assertEqual(text.count(f"<!-- end of {name} -->"), 1, name)
+
+    def test_each_variant_is_run(self) -> None:
+        self.assertEqual({case.variant for case in CASES}, set(VARIANTS))
+
+
+class Campaign(unittest.TestCase):
+    def setUp(self) -> None:
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.states = self.folder / "states"
+        self.states.mkdir()
+        self.program = self.folder / "program"
+        self.program.write_text(f"#!/bin/sh\nexec {sys.executable} -B {HERE / 'sample_program.py'} \"$@\"\n")
+        self.program.chmod(0o755)
+        self.page = self.folder / "page.md"
+        self.page.write_text(MARKED)
+
+    def words(self, *more: str) -> list[str]:
+        return [str(self.program), str(self.states), "--data", str(self.folder / "data"), "--page", str(self.page),
+                "--pictures", str(self.folder / "pictures"), *more]
+
+    def run_it(self, *more: str) -> tuple[int, str, str]:
+        output, errors = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+            code = commands.run("reproduction", self.words(*more))
+        return code, output.getvalue(), errors.getvalue()
+
+    def starts(self) -> int:
+        return sum(log.read_text().count("starts") for log in self.states.glob("*.log"))
+
+    def test_runs_page_and_pictures(self) -> None:
+        only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1")
+        self.assertEqual(self.run_it(*only, "--jobs", "2")[::2], (0, ""))
+        self.check_data()
+        self.check_page()
+        self.check_pictures()
+        # Nothing is run twice, and the same results give the same page.
+        before = self.page.read_text()
+        self.assertEqual(self.run_it(*only)[0], 0)
+        self.assertEqual((self.starts(), self.page.read_text()), (7, before))
+        # The small results are enough for the page.
+        self.page.write_text(MARKED)
+        self.assertEqual(self.run_it("--page-only")[0], 0)
+        self.assertEqual(self.page.read_text(), before)
+
+    def check_data(self) -> None:
+        data = self.folder / "data"
+        self.assertEqual(len(list(data.iterdir())), 7)
+        names = sorted(file.name for file in (data / "PS1_L0.25_seed1").iterdir())
+        self.assertEqual(names, ["apparatus.json", "bed.csv", "layers.csv", "run.json"])
+        self.assertFalse((data / "PS1_L0.25_forget_seed1" / "bed.csv").exists())
+        record = json.loads((data / "PS1_L0.25_seed1" / "run.json").read_text())
+        self.assertEqual((record["git_revision"], record["finished"], record["layers"]), ("abc1234567", True, 21))
+        self.assertNotEqual(record["processor"], "unknown")
+        result = Findings(data).of("PS1", 0.25).runs[1]
+        self.assertEqual((round(result.peak[0], 4), result.peak[1]), (0.6437, 14.))
+        self.assertEqual((result.zones.first, result.zones.meet), (3, 6))
+
+    def check_page(self) -> None:
+        text = self.page.read_text()
+        # Means of 0.001 to 0.003 more than 0.6, and what the peak adds to each span of layers.
+        self.assertRegex(text, r"\| PS1, L1/4 \| 3 \| 60\.2 ± 0\.2 \| .* \| 64\.4 ± 0\.2 \| 14\.0 ± 0\.0 \|")
+        self.assertRegex(text, r"\| PS3, L1/4 \| 3 \| .* \| 64\.4 ± 0\.2 \| 10\.0 ± 0\.0 \|")
+        self.assertRegex(text, r"\| PS1, L1/4 \| 3 \| 3 \| 6 \| 6 \| 100\.0 ± 0\.0 \|")
+        self.assertIn("| contacts forget every 10.5 ms | 1 |", text)
+        self.assertIn("Made by `contrib/tools reproduction` at revision abc1234 on an ", text)
+        self.assertRegex(text, r"\| `PS1_L0\.25` \| 3, 3 \| 1\.5 \|")
+        self.assertNotIn("old", text)
+        self.assertIn("](pictures/reproduction_density.png)", text)
+        self.assertNotIn("reproduction_pass.png", text)  # the runs have no pictures of a pass
+
+    def check_pictures(self) -> None:
+        folder = self.folder / "pictures"
+        record = read_record(folder)
+        self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
+                                          ("density", "maps_PS1", "maps_PS3", "mechanism", "profiles", "variants")])
+        for name, entry in record.items():
+            self.assertEqual((entry.rule, entry.revision, entry.digest),
+                             ("reproduction", "abc1234", digest(folder / name)))
+
+    def test_a_run_that_died_goes_on(self) -> None:
+        (self.states / "die").touch()
+        self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 1)
+        self.assertIn("No run of these has finished yet.", self.page.read_text())
+        self.assertIn("5 of 21 layers", self.run_it("--plan", "--only", "PS1_L0.25_seed1")[1])
+        self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 0)
+        self.assertEqual(self.starts(), 2)
+
+    def test_a_run_of_another_process_is_left_alone(self) -> None:
+        with open(self.states / "PS1_L0.25_seed1.lock", "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            code, output, _ = self.run_it("--only", "PS1_L0.25_seed1")
+        self.assertEqual((code, self.starts()), (0, 0))
+        self.assertIn("PS1_L0.25_seed1 runs already", output)
+
+    def test_runs_are_asked_to_stop(self) -> None:
+        (self.states / "wait").touch()
+        process = subprocess.Popen([sys.executable, "-B", str(ROOT / "contrib" / "tools"), "reproduction",
+                                    *self.words("--only", "PS1_L0.25")], stdout=subprocess.DEVNULL)
+        deadline = time.monotonic() + 60.
+        while not (self.states / "waits").exists() and time.monotonic() < deadline:
+            time.sleep(0.05)
+        os.kill(process.pid, signal.SIGTERM)
+        self.assertEqual(process.wait(60.), 3)
+        self.assertEqual(self.starts(), 1)
+
+    def test_plan(self) -> None:
+        code, output, _ = self.run_it("--plan", "--only", "PS1_L0.25", "PS1_L2_seed1")
+        self.assertEqual(code, 0)
+        # 3.6e10 particle-steps at 16 million a second.
+        self.assertRegex(output, r"PS1_L2_seed1 +16525 +2\.00 +36 +0\.62 +missing")
+        self.assertIn("Left to do: about 2.5 core-hours at the speed that --check assumes.", output)
+        self.assertIn("about 10 core-hours at 4.0 million", self.run_it(
+            "--plan", "--speed", "4", "--only", "PS1_L0.25", "PS1_L2_seed1")[1])
+
+    def test_command_for_a_batch_job(self) -> None:
+        output = self.run_it("--command", "--only", "PS3_L1_seed1")[1]
+        self.assertIn("PS3_L1.prm --seed 1 --set 'powder spreading/length factor = 0.1428571429'", output)
+        self.assertEqual(output.count("\n"), 1)
+
+    def test_what_is_wrong_is_said(self) -> None:
+        done = subprocess.run([sys.executable, "-B", str(ROOT / "contrib" / "tools"), "reproduction",
+                               *self.words("--only", "PS9")], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertEqual(done.stderr, "There is no case 'PS9': contrib/tools reproduction --list names them.\n")
+        self.page.write_text(MARKED.replace("<!-- end of runs -->", ""))
+        done = subprocess.run([sys.executable, "-B", str(ROOT / "contrib" / "tools"), "reproduction",
+                               *self.words("--page-only")], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"must have '<!-- runs: generated -->' and '<!-- end of runs -->' once")
+
+
+if __name__ == "__main__":
+    unittest.main()
