@@ -71,7 +71,7 @@ def densities_figure(groups: Sequence[Group], measured: Measured | None) -> Figu
 def mechanism_figure(groups: Sequence[Group]) -> Figure:
     """What happens to the powder that lies on the plate when the spreader passes."""
     figure = Figure(figsize=(style.WIDTH, 4.9), layout="constrained")
-    panels = figure.subplots(2, 2).flat
+    panels = list(figure.subplots(2, 2).flat)
     for number, group in enumerate(groups):
         scraped = np.array([run.scraped[:len(group.layer)] for run in group.runs])
         draw_group(panels[2], number, group.layer, scraped, group.label, 100.)
@@ -90,6 +90,7 @@ def mechanism_figure(groups: Sequence[Group]) -> Figure:
         axes.set_title(title)
         axes.set_ylabel(label)
         style.layer_axis(axes, max(group.layer[-1] for group in groups))
+    style.plain_log_axis(panels[0].yaxis)
     _legend_below(figure, panels[2])
     return figure
 
@@ -118,7 +119,8 @@ def _draw_zones(axes: Axes, group: Group) -> None:
         for run in group.mapped:
             filled = run.maps.tracked.sum(axis=2) > 0
             ends = [run.maps.x[[row.argmax(), len(row) - row[::-1].argmax()]] for row in filled]
-            length = getattr(run.zones, side)
+            # A bed that rests as a whole has no zones that end within it.
+            length = np.where(run.zones.covered < 1. - 1e-9, getattr(run.zones, side), 0.)
             places.append([(end[0] + zone if side == "left" else end[1] - zone) if zone > 0. else np.nan
                            for end, zone in zip(ends[:n], length[:n])])
         mean = np.array(places).mean(axis=0)
@@ -133,6 +135,7 @@ def maps_figure(group: Group) -> Figure:
     moved = 1e6 * np.ma.masked_invalid(group.over_maps("moved_of_columns")).mean(axis=0).filled(np.nan)
     lrd = 100. * group.over_maps("local_lrd").mean(axis=0)
     largest = max(np.nanmax(moved, initial=0.), 100. * 1e6 * STATIC_BELOW)
+    moved = np.maximum(moved, 1e-3 * 1e6 * STATIC_BELOW)  # a logarithm has no 0, and NaN stays
     # Below the limit the scale is grey, as in the picture of the particles.
     colours = colormaps["plasma_r"].with_extremes(under=(0.6, 0.6, 0.6))
     _draw_map(figure, left, group, moved, "Displacement (µm)", cmap=colours, norm=LogNorm(1e6 * STATIC_BELOW, largest))

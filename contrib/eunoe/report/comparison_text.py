@@ -94,7 +94,7 @@ def rise_sentence(group: Group) -> str:
     return f"{group.label}: {spans} the mean LRD {verb} by {abs(100. * found.value):.1f} {half}."
 
 
-def _layer(values: Sequence[int | None]) -> str:
+def layers_of(values: Sequence[int | None]) -> str:
     """The layers of all runs, of which some may have none."""
     known = [value for value in values if value is not None]
     if not known:
@@ -113,8 +113,8 @@ def rest_table(groups: Sequence[Group]) -> Table:
             continue
         late = [float(run.scraped[run.layers.layer >= LATER[0]].mean()) if run.layers.last >= LATER[0] else math.nan
                 for run in group.mapped]
-        table.append([group.label, str(len(zones)), _layer([zone.first for zone in zones]),
-                      _layer([zone.meet for zone in zones]), _layer([zone.at_rest_from for zone in zones]),
+        table.append([group.label, str(len(zones)), layers_of([zone.first for zone in zones]),
+                      layers_of([zone.meet for zone in zones]), layers_of([zone.at_rest_from for zone in zones]),
                       text_of(mean_of([float(zone.resting[-1]) for zone in zones]), 100.),
                       text_of(mean_of(late), 100.)])
     return table

@@ -23,6 +23,7 @@ SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
 FORGET = f"{MODEL}/contact history/forget interval"
 BALANCE_INTERVAL = 10.5e-3  # s between two load balances of the published input files
 SETS = ("PS1", "PS2", "PS3")
+N_LAYERS = 21
 
 CHEAP = {SLEEP: "true", f"{SPREADING}/feedstock platform velocity": "11e-3"}
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from eunoe.studies.series import summary_of
 from eunoe.tables import Table
 
-from .cases import Case
+from .cases import N_LAYERS, Case
 from .cost import Cost, cost_of
 from .runs import Campaign
+
 
 def measured_speed(campaign: Campaign, cases: list[Case]) -> float | None:
     """Particle-steps per second and core of the finished runs together; None if there is none yet."""
@@ -23,7 +24,7 @@ def state_of(campaign: Campaign, case: Case) -> tuple[str, float]:
         return "finished", 0.
     table = campaign.of(case) / "layers.csv"
     layers = len(table.read_text(encoding="utf-8").splitlines()) - 1 if table.exists() else 0
-    return (f"{layers} of 21 layers" if table.exists() else "missing"), 1. - layers / 21.
+    return (f"{layers} of {N_LAYERS} layers" if table.exists() else "missing"), 1. - layers / N_LAYERS
 
 
 def plan_of(campaign: Campaign, cases: list[Case], speed: float | None) -> tuple[Table, str]:

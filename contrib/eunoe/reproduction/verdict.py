@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 
 from eunoe.intervals import Interval, difference_of, mean_of
-from eunoe.report.comparison_text import measured_group, text_of
+from eunoe.report.comparison_text import layers_of, measured_group, text_of
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import PLATEAU, Group, SpreadRun
 from eunoe.tables import Table
@@ -92,10 +92,10 @@ def _rest(groups: list[Group]) -> Table:
         zones = [run.zones for run in group.mapped]
         if not zones:
             continue
-        meet = [zone.meet for zone in zones if zone.meet is not None]
-        here = f"{min(meet)} to {max(meet)}" if meet else "never"
+        meet = [zone.meet for zone in zones]
+        number = sum(layer is not None for layer in meet)
         rows.append(["zones at rest grow from both ends and meet in layer", "simulated: PS1, L2: 9 to 13; PS3, L2: 8",
-                     f"{group.label}: {here}", f"in {len(meet)} of {len(zones)} runs"])
+                     f"{group.label}: {layers_of(meet)}", f"in {number} of {len(zones)} runs"])
     return rows
 
 
