@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 FIELDS = {"ID": 1, "diameter": 1, "mass": 1, "velocity": 3, "layer": 1, "tracked": 1,
-          "displacement": 3, "on_plate": 1}
+          "displacement": 3, "on_plate": 1, "last_position": 3}
 
 PARAMETERS = """
 # Listing of Parameters
@@ -125,6 +125,21 @@ def write_run(folder: Path, layers: int = 3, pictures: bool = True, summary: boo
         entries.append((0.1 * (layer + 1), f"spreading_layers_{layer:05d}.vtu"))
         (folder / entries[-1][1]).write_text(vtu(piece(*bed(layer))))
     (folder / "spreading_layers.pvd").write_text(pvd(entries))
+
+
+def write_pass(folder: Path) -> None:
+    """Adds four pictures of particles and solids between the last two weighings of a run of three layers."""
+    a = APPARATUS
+    level = np.array([[a["x_plate"], 0., 0.], [a["x_plate_end"], 0., 0.], [a["x_plate"], 0., a["depth"]]])
+    entries = [(0.2 + 0.02 * k, f"spreading_{k:05d}.vtu") for k in range(1, 5)]
+    for k, (_, name) in enumerate(entries):
+        points, fields = bed(1)
+        fields["last_position"] = points - [1e-5 * k, 0., 0.]
+        (folder / name).write_text(vtu(piece(points - [0., 1e-4, 0.], fields)))
+        (folder / name.replace("spreading", "spreading_solids")).write_text(vtu(piece(level - [0., 2e-4, 0.], {})))
+    (folder / "spreading.pvd").write_text(pvd(entries))
+    (folder / "spreading_solids.pvd").write_text(
+        pvd([(time, name.replace("spreading", "spreading_solids")) for time, name in entries]))
 
 
 HEAP = """\

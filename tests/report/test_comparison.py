@@ -235,6 +235,22 @@ class Page(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("has no pictures of a pass for a movie", errors)
 
+    def test_movie(self) -> None:
+        if importlib.util.find_spec("PIL") is None:
+            self.skipTest("Pillow is missing")
+        from PIL import Image
+        sample_run.write_pass(self.folder / "PS1_seed1")
+        for wanted in ((), ("2",)):
+            code, _, errors = self.make("--movie", *wanted, "--figures", "png", names=["PS1_seed1"])
+            self.assertEqual((code, errors), (0, ""))
+        movie = self.folder / "PS1_seed1" / "figures" / "movie-1.gif"
+        with Image.open(movie) as image:
+            self.assertEqual(image.n_frames, 4)
+        self.assertIn("data:image/gif;base64,", (self.folder / "PS1_seed1" / "report.html").read_text())
+        code, _, errors = self.make("--movie", "1", names=["PS1_seed1"])
+        self.assertEqual(code, 2)
+        self.assertRegex(errors, r"no pictures of pass 1 for a movie.* It has those of 2\.\n$")
+
     def test_maps_of_a_whole_run(self) -> None:
         self.assertEqual(self.make(names=["PS1_seed1"])[0], 0)
         self.assertIn("Displacement and density along the plate", (self.folder / "PS1_seed1/report.html").read_text())

@@ -96,6 +96,10 @@ def _rest(groups: list[Group]) -> Table:
         number = sum(layer is not None for layer in meet)
         rows.append(["zones at rest grow from both ends and meet in layer", "simulated: PS1, L2: 9 to 13; PS3, L2: 8",
                      f"{group.label}: {layers_of(meet)}", f"in {number} of {len(zones)} runs"])
+        rest = [zone.at_rest_from for zone in zones]
+        number = sum(layer is not None for layer in rest)
+        rows.append(["the bed is at rest from layer", "simulated: PS3, L2: 11", f"{group.label}: {layers_of(rest)}",
+                     f"in {number} of {len(zones)} runs"])
     return rows
 
 
