@@ -78,6 +78,14 @@ class Maps(unittest.TestCase):
         np.testing.assert_allclose(found[1:3], sample_bed.FRACTION)
         self.assertTrue(np.isnan(found[[0, 3]]).all())  # the layer before is not known
 
+    def test_density_of_the_middle_half(self) -> None:
+        beds = [sample_bed.bed(layer) for layer in range(3)]
+        for bed in beds:  # the new layers of the first 0.4 mm, outside the middle half, are missing
+            bed["on_plate"] = np.where((bed["points"][:, 0] < APPARATUS.x_plate + 0.4e-3) & (bed["layer"] > 0), 0., 1.)
+        found = maps_of(enumerate(beds), APPARATUS)
+        np.testing.assert_allclose(found.middle_lrd()[1:], sample_bed.FRACTION)
+        self.assertLess(found.local_lrd()[1].mean(), 0.8 * sample_bed.FRACTION)
+
     def test_table(self) -> None:
         with tempfile.TemporaryDirectory() as folder:
             write_table(Path(folder) / "bed.csv", maps())
@@ -198,8 +206,8 @@ class Page(unittest.TestCase):
         page = self.folder / "PS1_seed1" / "comparison.html"
         self.assertEqual(self.make(), (0, f"Comparison: {page}\n", ""))
         text = page.read_text(encoding="utf-8")
-        # Densities, what a pass does, a map of each of two groups, profiles.
-        self.assertEqual(text.count("<figure>"), 5)
+        # Densities, also of the middle half, what a pass does, a map of each of two groups, profiles.
+        self.assertEqual(text.count("<figure>"), 6)
         for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size"):
             self.assertIn(words, text)
 
@@ -214,7 +222,7 @@ class Page(unittest.TestCase):
     def test_figures_go_to_a_folder(self) -> None:
         self.assertEqual(self.make("--figures", str(self.folder / "paper"))[0], 0)
         self.assertEqual(sorted(file.name for file in (self.folder / "paper").iterdir()),
-                         [f"figure-{k}.pdf" for k in range(1, 6)])
+                         [f"figure-{k}.pdf" for k in range(1, 7)])
 
     def test_run_without_pictures(self) -> None:
         sample_run.write_run(self.folder / "bare", pictures=False)

@@ -129,7 +129,7 @@ class Campaign(unittest.TestCase):
         folder = self.folder / "pictures"
         record = read_record(folder)
         self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
-                                          ("density", "maps_PS1", "maps_PS3", "mechanism", "profiles", "variants")])
+                                          ("density", "maps_PS1", "maps_PS3", "mechanism", "middle", "profiles", "variants")])
         for name, entry in record.items():
             self.assertEqual((entry.rule, entry.revision, entry.digest),
                              ("reproduction", "abc1234", digest(folder / name)))

@@ -73,6 +73,15 @@ class BedMaps:
         """Height of the solid without pores, by weighing and x (m)."""
         return (self.fraction * np.diff(self.y)).sum(axis=2)
 
+    def middle(self) -> np.ndarray:
+        """Which bins of x lie in the middle half of the plate."""
+        x = 0.5 * (self.x[1:] + self.x[:-1]) / self.x[-1]
+        return (x > 0.25) & (x < 0.75)
+
+    def middle_lrd(self) -> np.ndarray:
+        """LRD of the middle half of the plate, by weighing."""
+        return self.local_lrd()[:, self.middle()].mean(axis=1)
+
     def local_lrd(self) -> np.ndarray:
         """LRD of every bin in x; NaN for a layer whose last one is not known."""
         found = np.full((len(self.layers), len(self.x) - 1), np.nan)

@@ -147,7 +147,20 @@ def maps_figure(group: Group) -> Figure:
     return figure
 
 
-MIDDLE = (0.25, 0.75)  # of the plate's length
+def middle_figure(groups: Sequence[Group], measured: Measured | None) -> Figure:
+    """LRD of the middle half of the plate, which the slopes at the ends reach last."""
+    figure = Figure(figsize=(style.WIDTH, 2.9), layout="constrained")
+    axes = figure.subplots()
+    if measured:
+        draw_measured(axes, measured.layer, measured.repeats)
+    for number, group in enumerate(groups):
+        if group.mapped:
+            rows = group.over_maps("middle_lrd")
+            draw_group(axes, number, group.mapped[0].maps.layers[:rows.shape[1]], rows, group.label, 100.)
+    axes.set_ylabel("LRD of the middle half (%)")
+    style.layer_axis(axes, max(group.layer[-1] for group in groups))
+    _legend_below(figure, axes)
+    return figure
 
 
 def profiles_figure(groups: Sequence[Group]) -> Figure:
@@ -162,9 +175,8 @@ def profiles_figure(groups: Sequence[Group]) -> Figure:
         x = 0.5 * (maps[0].x[1:] + maps[0].x[:-1]) / maps[0].x[-1]
         y = 0.5 * (maps[0].y[1:] + maps[0].y[:-1])
         columns = np.mean([m.columns()[-1] for m in maps], axis=0)
-        inside = (x > MIDDLE[0]) & (x < MIDDLE[1])
         left.plot(x, MM * columns, color=colour, label=group.label)
-        right.plot(100. * np.mean([m.fraction[-1][inside].mean(axis=0) for m in maps], axis=0), MM * y, color=colour)
+        right.plot(100. * np.mean([m.fraction[-1][m.middle()].mean(axis=0) for m in maps], axis=0), MM * y, color=colour)
     left.set_xlabel("x over the plate's length")
     left.set_ylabel("Height of the solid without pores (mm)")
     left.set_title("(a) Along the plate")

@@ -11,7 +11,7 @@ from eunoe.vtk_files import VtkError
 from .apparatus import Apparatus, ApparatusError
 from .bed_maps import read_maps
 from .comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
-                                profiles_figure)
+                                middle_figure, profiles_figure)
 from .comparison_text import densities_table, differences_table, measured_group, rest_table, rise_sentence
 from .measured import read_measured
 from .page import Page
@@ -75,6 +75,9 @@ def _add_densities(page: Page, groups: Sequence[Group]) -> None:
     page.heading("Density of the layers")
     page.figure(densities_figure(groups, measured), f"Relative density of the layers. {BAND} Black: measured at full "
                 "size, with its repeats.")
+    if any(group.mapped for group in groups):
+        page.figure(middle_figure(groups, measured), "LRD of the middle half of the plate, which the slopes at its two "
+                    f"ends reach last, beside the measured LRD of a whole plate. {BAND}")
     everyone = [*groups, measured_group(measured)]
     head, *rows = densities_table(everyone)
     page.table(head, rows)

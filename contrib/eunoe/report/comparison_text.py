@@ -40,6 +40,8 @@ def span(layers: tuple[int, int]) -> str:
 DENSITIES: dict[str, tuple[Number, float]] = {
     span(PLATEAU): (lambda run: run.mean_lrd(PLATEAU), 100.),
     span(LATER): (lambda run: run.mean_lrd(LATER), 100.),
+    f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)": (lambda run: run.middle_lrd(PLATEAU), 100.),
+    f"of the middle half, layers {LATER[0]} to {LATER[1]} (%)": (lambda run: run.middle_lrd(LATER), 100.),
     "rise (%)": (lambda run: run.rise, 100.),
     "peak (%)": (lambda run: run.peak[0], 100.),
     "its layer": (lambda run: run.peak[1], 1.),

@@ -46,6 +46,13 @@ class SpreadRun:
         rows = (self.layers.layer >= span[0]) & (self.layers.layer <= span[1])
         return float(self.layers.lrd[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
 
+    def middle_lrd(self, span: tuple[int, int]) -> float:
+        """The same of the middle half of the plate; NaN without maps."""
+        if self.maps is None:
+            return np.nan
+        rows = (self.maps.layers >= span[0]) & (self.maps.layers <= span[1])
+        return float(self.maps.middle_lrd()[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
+
     @property
     def rise(self) -> float:
         """Of the mean LRD from the plateau's layers to the later ones."""

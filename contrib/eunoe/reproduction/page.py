@@ -112,7 +112,8 @@ def verdict_block(findings: Findings) -> str:
 
 # The pictures that stand below a block, as far as they have been drawn, and what they show.
 PICTURES = {
-    "densities": {"density": "LRD and CRD of all lengths and property sets, beside the measured ones"},
+    "densities": {"density": "LRD and CRD of all lengths and property sets, beside the measured ones",
+                  "middle": "LRD of the middle half of the plate"},
     "rest": {"mechanism": "Displacement, rest, removal and zones by layer",
              "maps_PS1": "Displacement and density by place and layer, PS1 on its longest plate",
              "maps_PS3": "Displacement and density by place and layer, PS3 on its longest plate",

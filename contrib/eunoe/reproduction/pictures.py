@@ -10,7 +10,8 @@ from matplotlib.figure import Figure
 from eunoe.pictures.record import Entry, digest, read_record, write_record
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_pictures import layers_figure
-from eunoe.report.comparison_charts import MOST_GROUPS, densities_figure, maps_figure, mechanism_figure, profiles_figure
+from eunoe.report.comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
+                                              middle_figure, profiles_figure)
 from eunoe.report.evidence import FIELDS
 from eunoe.report.measured import read_measured
 from eunoe.report.movie import movie_of, pass_of, strip_figure
@@ -46,6 +47,7 @@ def _of_results(findings: Findings) -> dict[str, tuple[Callable[[], Figure], lis
 
     if plain:
         add("density", lambda: densities_figure(plain, read_measured()), plain)
+        add("middle", lambda: middle_figure(plain, read_measured()), plain)
         add("mechanism", lambda: mechanism_figure(plain), plain)
         add("profiles", lambda: profiles_figure(plain), plain)
     for properties in ("PS1", "PS3"):
