@@ -15,7 +15,7 @@ from eunoe.vtk_files import read_vtu
 
 from .apparatus import Apparatus
 from .evidence import FIELDS, Fields
-from .layer_results import STATIC_BELOW, moved_over_plate
+from .layer_results import RESTS_BELOW, moved_over_plate
 
 BIN = 0.1e-3  # wanted width of the bins in x (m)
 MOST_BINS = 52
@@ -48,7 +48,7 @@ class BedMaps:
     fraction: np.ndarray  # volume of solid over that of the cell
     tracked: np.ndarray  # number of the particles that were on the plate at the weighing before
     moved: np.ndarray  # mean of their displacements; 0 where there are none
-    resting: np.ndarray  # share of them that moved by less than STATIC_BELOW
+    resting: np.ndarray  # share of them that moved by less than RESTS_BELOW
 
     def _mean(self, values: np.ndarray, axes: tuple[int, ...]) -> np.ndarray:
         """Mean over the tracked particles; NaN where there are none."""
@@ -110,7 +110,7 @@ def map_of(particles: Fields, apparatus: Apparatus, layer: int) -> tuple[np.ndar
 
     tracked = sum_of(np.ones(len(moved)))
     count = np.maximum(tracked, 1.)
-    return solid / cell, tracked, sum_of(moved) / count, sum_of(moved < STATIC_BELOW) / count
+    return solid / cell, tracked, sum_of(moved) / count, sum_of(moved < RESTS_BELOW) / count
 
 
 def read_maps(pictures: dict[int, Path], apparatus: Apparatus) -> BedMaps:

@@ -14,7 +14,7 @@ from matplotlib.ticker import MaxNLocator
 from . import style
 from .canvas import MM
 from .layer_charts import draw_measured
-from .layer_results import STATIC_BELOW
+from .layer_results import RESTS_BELOW
 from .measured import Measured
 from .spread_run import Group, mean_and_spread
 
@@ -134,11 +134,11 @@ def maps_figure(group: Group) -> Figure:
     # Of the runs that have something at a place.
     moved = 1e6 * np.ma.masked_invalid(group.over_maps("moved_of_columns")).mean(axis=0).filled(np.nan)
     lrd = 100. * group.over_maps("local_lrd").mean(axis=0)
-    largest = max(np.nanmax(moved, initial=0.), 100. * 1e6 * STATIC_BELOW)
-    moved = np.maximum(moved, 1e-3 * 1e6 * STATIC_BELOW)  # a logarithm has no 0, and NaN stays
+    largest = max(np.nanmax(moved, initial=0.), 100. * 1e6 * RESTS_BELOW)
+    moved = np.maximum(moved, 1e-3 * 1e6 * RESTS_BELOW)  # a logarithm has no 0, and NaN stays
     # Below the limit the scale is grey, as in the picture of the particles.
     colours = colormaps["plasma_r"].with_extremes(under=(0.6, 0.6, 0.6))
-    _draw_map(figure, left, group, moved, "Displacement (µm)", cmap=colours, norm=LogNorm(1e6 * STATIC_BELOW, largest))
+    _draw_map(figure, left, group, moved, "Displacement (µm)", cmap=colours, norm=LogNorm(1e6 * RESTS_BELOW, largest))
     _draw_zones(left, group)
     _draw_map(figure, right, group, lrd, "LRD (%)", cmap="viridis", norm=Normalize(0., 100.))
     left.set_ylabel("Layer")

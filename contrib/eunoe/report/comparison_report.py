@@ -96,7 +96,7 @@ def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:
     mapped = [group for group in groups if group.mapped]
     page.heading("What a pass does to the powder that lies on the plate")
     page.figure(mechanism_figure(groups), "By pass: (a) mean displacement over the plate of the particles that lay on "
-                "it; (b) share of them that moved by less than 1 µm; (c) mass that the pass removed; (d) length "
+                "it; (b) share of them that moved by less than 10 µm; (c) mass that the pass removed; (d) length "
                 f"of the zones at the two ends of the bed in which most particles rest. {BAND}")
     if not mapped:
         return
@@ -104,7 +104,7 @@ def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:
     page.table(head, rows)
     for group in mapped:
         page.figure(maps_figure(group), f"{group.label}: (a) mean displacement in the pass of what lay on the "
-                    "plate, by place and layer; grey: less than 1 µm; lines: inner ends of the zones at rest; (b) "
+                    "plate, by place and layer; grey: less than 10 µm; lines: inner ends of the zones at rest; (b) "
                     "what the pass added, as density of its layer. Means over the runs.")
     page.figure(profiles_figure(mapped), "After the last layer: (a) volume of the solid over the plate's area, along "
                 "the plate; (b) solid fraction over the height, in the middle half of the plate. Means over the runs.")

@@ -10,6 +10,9 @@ from .apparatus import Apparatus
 from .run_folder import Layers
 
 STATIC_BELOW = 1e-6  # distance over the plate (m) under which a particle counts as static
+# Under which it rests in a map: a seventh of a mean grain. A bed gives way by some um wherever it carries the
+# spreader's load; grains that slide along go much farther.
+RESTS_BELOW = 10e-6
 
 
 @dataclass(frozen=True)

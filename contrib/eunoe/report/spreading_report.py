@@ -13,7 +13,7 @@ from .case_section import add_case_section
 from .comparison_charts import maps_figure
 from .evidence import Evidence, Fields, gather
 from .layer_charts import budget_figure, density_figure
-from .layer_results import STATIC_BELOW, DensityNoise, counting_noise, moved_over_plate
+from .layer_results import RESTS_BELOW, STATIC_BELOW, DensityNoise, counting_noise, moved_over_plate
 from .measured import Measured, read_measured
 from .movie import movie_of, pass_of, strip_figure
 from .page import Page, table
@@ -172,7 +172,7 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
     page.heading("Displacement and density along the plate")
     group = Group(run.name, [SpreadRun(run.name, layers, apparatus, maps)])
     page.figure(maps_figure(group), "By place and layer: (a) mean displacement in the pass of what lay on the plate; "
-                f"grey: less than {length(STATIC_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
+                f"grey: less than {length(RESTS_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
                 "added, as density of its layer.")
 
 

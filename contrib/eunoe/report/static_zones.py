@@ -1,7 +1,7 @@
 """Where the powder on the plate stays at rest during a pass: zones that begin at the two ends of the bed.
 
 A column of the bed (a bin of x) rests in a pass if at least half of its particles moved by less than
-STATIC_BELOW over the plate. Columns with fewer than `FEWEST` particles do not count.
+RESTS_BELOW over the plate. Columns with fewer than `FEWEST` particles do not count.
 """
 
 from __future__ import annotations
