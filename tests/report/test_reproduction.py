@@ -28,7 +28,7 @@ from eunoe.reproduction.results import Findings, length_name
 from eunoe.repository import DOC, ROOT
 
 HERE = Path(__file__).resolve().parent
-MARKED = "".join(f"<!-- {name}: generated -->\nold\n<!-- end of {name} -->\n" for name in BLOCKS)
+MARKED = "".join(f"<!-- {name}: generated -->\nstale\n<!-- end of {name} -->\n" for name in BLOCKS)
 
 
 class Cases(unittest.TestCase):
@@ -44,6 +44,10 @@ class Cases(unittest.TestCase):
         forgets = Case("PS1", 0.25, 1, variant="forget")
         self.assertEqual(forgets.settings["model parameters/contact history/forget interval"], 18643)
         self.assertIn("forget", forgets.title)
+        self.assertEqual((case.base, forgets.base), ("PS1_L0.25", "PS1_L0.25"))
+        held = Case("PS1", 0.25, 1, variant="lips_forget")
+        self.assertEqual((held.base, held.settings["powder spreading/gap"]), ("PS1_L0.25_lips", "0.1e-3"))
+        self.assertIn("model parameters/contact history/forget interval", held.settings)
 
     def test_names_of_lengths(self) -> None:
         self.assertEqual([length_name(length) for length in (0.25, 0.5, 1., 2.)], ["L1/4", "L1/2", "L1", "L2"])
@@ -85,7 +89,7 @@ class Campaign(unittest.TestCase):
         return sum(log.read_text().count("starts") for log in self.states.glob("*.log"))
 
     def test_runs_page_and_pictures(self) -> None:
-        only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1")
+        only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1", "PS1_L0.25_lips_seed1")
         self.assertEqual(self.run_it(*only, "--jobs", "2")[::2], (0, ""))
         self.check_data()
         self.check_page()
@@ -93,7 +97,7 @@ class Campaign(unittest.TestCase):
         # Nothing is run twice, and the same results give the same page.
         before = self.page.read_text()
         self.assertEqual(self.run_it(*only)[0], 0)
-        self.assertEqual((self.starts(), self.page.read_text()), (7, before))
+        self.assertEqual((self.starts(), self.page.read_text()), (8, before))
         # The small results are enough for the page.
         self.page.write_text(MARKED)
         self.assertEqual(self.run_it("--page-only")[0], 0)
@@ -101,10 +105,11 @@ class Campaign(unittest.TestCase):
 
     def check_data(self) -> None:
         data = self.folder / "data"
-        self.assertEqual(len(list(data.iterdir())), 7)
+        self.assertEqual(len(list(data.iterdir())), 8)
         names = sorted(file.name for file in (data / "PS1_L0.25_seed1").iterdir())
         self.assertEqual(names, ["apparatus.json", "bed.csv", "layers.csv", "run.json"])
         self.assertFalse((data / "PS1_L0.25_forget_seed1" / "bed.csv").exists())
+        self.assertTrue((data / "PS1_L0.25_lips_seed1" / "bed.csv").exists())
         record = json.loads((data / "PS1_L0.25_seed1" / "run.json").read_text())
         self.assertEqual((record["git_revision"], record["finished"], record["layers"]), ("abc1234567", True, 21))
         self.assertNotEqual(record["processor"], "unknown")
@@ -121,7 +126,7 @@ class Campaign(unittest.TestCase):
         self.assertIn("| contacts forget every 10.5 ms | 1 |", text)
         self.assertIn("Made by `contrib/tools reproduction` at revision abc1234 on an ", text)
         self.assertRegex(text, r"\| `PS1_L0\.25` \| 3, 3 \| 1\.5 \|")
-        self.assertNotIn("old", text)
+        self.assertNotIn("stale", text)
         self.assertIn("](pictures/reproduction_density.png)", text)
         self.assertNotIn("reproduction_pass.png", text)  # the runs have no pictures of a pass
 
@@ -129,7 +134,8 @@ class Campaign(unittest.TestCase):
         folder = self.folder / "pictures"
         record = read_record(folder)
         self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
-                                          ("density", "maps_PS1", "maps_PS3", "mechanism", "middle", "profiles", "variants")])
+                                          ("density", "held", "held_layers", "held_maps_PS1", "held_mechanism", "layers",
+                                           "maps_PS1", "maps_PS3", "mechanism", "middle", "profiles", "variants_1")])
         for name, entry in record.items():
             self.assertEqual((entry.rule, entry.revision, entry.digest),
                              ("reproduction", "abc1234", digest(folder / name)))

@@ -86,6 +86,17 @@ def rest_block(findings: Findings) -> str:
     return _block(rest_table(groups), _results(groups))
 
 
+def held_block(findings: Findings) -> str:
+    groups = findings.held()
+    if not groups:
+        return NOTHING
+    parts = [_block(densities_table(groups), _results(groups), " ".join(map(rise_sentence, groups))),
+             _block(rest_table(groups), _results(groups))]
+    if len(groups) > 1:
+        parts.append(_block(differences_table(groups), _results(groups)))
+    return "\n\n".join(parts)
+
+
 def variants_block(findings: Findings) -> str:
     return _differences([[base, *variants] for base, variants in findings.variants()])
 
@@ -119,10 +130,16 @@ PICTURES = {
              "maps_PS3": "Displacement and density by place and layer, PS3 on its longest plate",
              "profiles": "Profiles of the solid along the plate and over the height",
              "layers": "The bed at four weighings", "pass": "A pass in four pictures"},
-    "variants": {"variants": "LRD and CRD of the variants"},
+    "held": {"held": "LRD and CRD where lips hold the ends, beside the measured ones",
+             "held_mechanism": "Displacement, rest, removal and zones by layer, ends held",
+             "held_maps_PS1": "Displacement and density by place and layer, PS1, ends held",
+             "held_maps_PS3": "Displacement and density by place and layer, PS3, ends held",
+             "held_layers": "The bed at four weighings, ends held", "held_pass": "A pass in four pictures, ends held"},
+    "variants": {"variants_1": "LRD and CRD of the variants", "variants_2": "LRD and CRD of further variants"},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "rest": rest_block, "variants": variants_block, "needed": needed_block}
+          "sets": sets_block, "rest": rest_block, "held": held_block,
+          "variants": variants_block, "needed": needed_block}
 
 
 def _pictures(name: str, folder: Path) -> str:

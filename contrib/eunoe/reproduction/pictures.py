@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -13,10 +13,10 @@ from eunoe.report.bed_pictures import layers_figure
 from eunoe.report.comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
                                               middle_figure, profiles_figure)
 from eunoe.report.evidence import FIELDS
-from eunoe.report.measured import read_measured
+from eunoe.report.measured import Measured, read_measured
 from eunoe.report.movie import movie_of, pass_of, strip_figure
-from eunoe.report.run_folder import ReportError, read_run
-from eunoe.report.spread_run import Group
+from eunoe.report.run_folder import ReportError, Run, read_run
+from eunoe.report.spread_run import Group, SpreadRun
 from eunoe.vtk_files import read_vtu
 
 from .results import Findings, Result
@@ -24,7 +24,6 @@ from .runs import Campaign
 
 RULE = "reproduction"
 SHOWN_LAYERS = (2, 8, 14, 20)
-MOVIE = "reproduction_pass.gif"  # in the folder of the states, as it is large
 RESOLUTION = 180  # dots per inch
 
 
@@ -37,70 +36,90 @@ def _longest(findings: Findings, properties: str) -> Group | None:
     return groups[-1] if groups else None
 
 
-def _of_results(findings: Findings) -> dict[str, tuple[Callable[[], Figure], list[Result]]]:
-    """Pictures that the small results suffice for, with the runs that they show."""
-    plain = findings.plain()[:MOST_GROUPS]
-    found: dict[str, tuple[Callable[[], Figure], list[Result]]] = {}
+Todo = dict[str, tuple[Callable[[], Figure], Sequence[SpreadRun]]]  # by name: how to draw, and the runs shown
 
-    def add(name: str, draw: Callable[[], Figure], groups: list[Group]) -> None:
-        found[picture_name(name)] = (draw, [run for group in groups for run in group.runs])
 
-    if plain:
-        add("density", lambda: densities_figure(plain, read_measured()), plain)
-        add("middle", lambda: middle_figure(plain, read_measured()), plain)
-        add("mechanism", lambda: mechanism_figure(plain), plain)
-        add("profiles", lambda: profiles_figure(plain), plain)
+def _of_results(findings: Findings) -> Todo:
+    """Pictures that the small results suffice for."""
+    found: Todo = {}
+
+    def add(name: str, draw: Callable[..., Figure], groups: list[Group], *more: Measured | None) -> None:
+        groups = groups[:MOST_GROUPS]
+        if groups:
+            found[picture_name(name)] = (lambda: draw(groups, *more), [run for group in groups for run in group.runs])
+
+    def add_map(name: str, group: Group | None) -> None:
+        if group and group.mapped:
+            found[picture_name(name)] = (lambda: maps_figure(group), group.runs)
+
+    measured, plain, held = read_measured(), findings.plain(), findings.held()
+    add("density", densities_figure, plain, measured)
+    add("middle", middle_figure, plain, measured)
+    add("mechanism", mechanism_figure, plain)
+    add("profiles", profiles_figure, plain)
     for properties in ("PS1", "PS3"):
-        if group := _longest(findings, properties):
-            add(f"maps_{properties}", lambda group=group: maps_figure(group), [group])
-    for base, variants in findings.variants()[:1]:
-        groups = [base, *variants][:MOST_GROUPS]
-        add("variants", lambda: densities_figure(groups, None), groups)
+        add_map(f"maps_{properties}", _longest(findings, properties))
+    add("held", densities_figure, held, measured)
+    add("held_mechanism", mechanism_figure, held)
+    for group in held:
+        add_map(f"held_maps_{group.runs[0].case.properties}", group)
+    for number, (base, variants) in enumerate(findings.variants(), start=1):
+        add(f"variants_{number}", densities_figure, [base, *variants], None)
     return found
 
 
-def _of_states(campaign: Campaign, findings: Findings) -> dict[str, tuple[Callable[[], Figure], list[Result]]]:
-    """Pictures of the particles, from the first run of the longest plate of PS1 whose states are there."""
-    for group in reversed(findings.lengths("PS1")):
-        result = group.runs[0]
-        run = read_run(campaign.of(result.case)) if campaign.is_finished(result.case) else None
-        if run is None or run.layers is None:
-            continue
-        try:
-            found = pass_of(run, run.layers, None)
-        except ReportError:
-            continue
-        apparatus = Apparatus.read(run.folder / "apparatus.json")
-        pictures = {layer: read_vtu(file, FIELDS) for layer, file in run.layer_pictures().items()
-                    if layer in SHOWN_LAYERS}
-        return {picture_name("pass"): (lambda: strip_figure(found, apparatus), [result]),
-                picture_name("layers"): (lambda: layers_figure(pictures, apparatus, len(run.layers))[0], [result])}
-    return {}
+def _state(campaign: Campaign, groups: Iterable[Group]) -> tuple[Result, Run, Apparatus] | None:
+    """The first run, of the last of these groups, whose states are there."""
+    for group in reversed(list(groups)):
+        for result in group.runs:
+            run = read_run(campaign.of(result.case)) if campaign.is_finished(result.case) else None
+            if run and run.layers is not None and run.layer_pictures():
+                return result, run, Apparatus.read(run.folder / "apparatus.json")
+    return None
+
+
+def _of_states(campaign: Campaign, groups: Iterable[Group], prefix: str = "") -> Todo:
+    """Pictures of the particles."""
+    state = _state(campaign, groups)
+    if state is None:
+        return {}
+    result, run, apparatus = state
+    pictures = {layer: read_vtu(file, FIELDS) for layer, file in run.layer_pictures().items() if layer in SHOWN_LAYERS}
+    todo: Todo = {picture_name(f"{prefix}layers"): (
+        lambda: layers_figure(pictures, apparatus, len(run.layers))[0], [result])}
+    try:
+        found = pass_of(run, run.layers, None)
+    except ReportError:
+        return todo
+    return {**todo, picture_name(f"{prefix}pass"): (lambda: strip_figure(found, apparatus), [result])}
 
 
 def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
     """Draws what can be drawn, and records what made it."""
     folder.mkdir(parents=True, exist_ok=True)
     record = read_record(folder)
-    todo = {**_of_results(findings), **(_of_states(campaign, findings) if campaign else {})}
+    todo = _of_results(findings)
+    if campaign:
+        todo.update(_of_states(campaign, findings.lengths("PS1")))
+        todo.update(_of_states(campaign, findings.held(), "held_"))
     for name, (make, results) in todo.items():
         make().savefig(folder / name, dpi=RESOLUTION)
-        revisions = ", ".join(sorted({result.revision for result in results}))
-        record[name] = Entry(RULE, revisions, digest(folder / name))
+        record[name] = Entry(RULE, ", ".join(sorted({result.revision for result in results})), digest(folder / name))
     write_record(folder, record)
 
 
-def draw_movie(campaign: Campaign, findings: Findings) -> Path | None:
-    """The movie of a pass of the longest plate of PS1 of which there are pictures; None if there are none."""
-    for group in reversed(findings.lengths("PS1")):
-        case = group.runs[0].case
-        run = read_run(campaign.of(case)) if campaign.is_finished(case) else None
-        if run is None or run.layers is None:
+def draw_movies(campaign: Campaign, findings: Findings) -> list[Path]:
+    """Movies of a pass, as far as the runs have pictures of one. They stay beside the states, as they are large."""
+    made = []
+    for name, groups in (("pass", findings.lengths("PS1")), ("held_pass", findings.held())):
+        state = _state(campaign, groups)
+        if state is None:
             continue
+        _, run, apparatus = state
         try:
-            movie = movie_of(pass_of(run, run.layers, None), Apparatus.read(run.folder / "apparatus.json"))
+            movie = movie_of(pass_of(run, run.layers, None), apparatus)
         except ReportError:
             continue
-        (campaign.folder / MOVIE).write_bytes(movie)
-        return campaign.folder / MOVIE
-    return None
+        made.append(campaign.folder / f"reproduction_{name}.gif")
+        made[-1].write_bytes(movie)
+    return made

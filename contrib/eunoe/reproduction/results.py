@@ -16,6 +16,8 @@ from eunoe.report.spread_run import Group, SpreadRun
 from .cases import CASES, Case
 from .collect import BED, DATA, RECORD
 
+HELD = "lips"  # the variant whose ends are held
+
 
 @dataclass(frozen=True)
 class Result(SpreadRun):
@@ -68,14 +70,21 @@ class Findings:
         """The groups of a property set without a variant, shorter plates first."""
         return [group for group in self.plain() if group.runs[0].case.properties == properties]
 
+    def held(self) -> list[Group]:
+        """The groups whose ends are held by lips."""
+        return [Group(plain_label(results[0].case), results) for results in self.results.values()
+                if results[0].case.variant == HELD]
+
     def variants(self) -> list[tuple[Group, list[Group]]]:
         """Groups with variants, with the group that they are to be compared with, as far as that is there."""
         found: dict[str, tuple[Group, list[Group]]] = {}
-        for results in self.results.values():
+        for name, results in self.results.items():
             case = results[0].case
-            base = self.of(case.properties, case.length)
-            if not case.is_plain and base:
-                found.setdefault(base.label, (base, []))[1].append(Group(case.title, results))
+            base = self.results.get(case.base)
+            if name == case.base or not base:
+                continue
+            label = ", ".join(filter(None, [plain_label(base[0].case), base[0].case.title]))
+            found.setdefault(case.base, (Group(label, base), []))[1].append(Group(case.title, results))
         return list(found.values())
 
 

@@ -27,7 +27,7 @@ from eunoe.launch import Failure, parser
 from eunoe.reproduction.cases import CASES, Case, chosen
 from eunoe.reproduction.collect import DATA, collect
 from eunoe.reproduction.page import PAGE, renew
-from eunoe.reproduction.pictures import draw, draw_movie
+from eunoe.reproduction.pictures import draw, draw_movies
 from eunoe.reproduction.plan import measured_speed, plan_of
 from eunoe.reproduction.results import Findings
 from eunoe.reproduction.runs import STOPPED, Campaign
@@ -67,8 +67,9 @@ def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
     findings = Findings(options.data)
     draw(findings, campaign, options.pictures)
     renew(options.page, findings, options.pictures)
-    movie = draw_movie(campaign, findings) if campaign else None
-    print(f"{len(findings.all)} finished runs are in {options.page}" + (f", a movie is in {movie}" if movie else ""))
+    print(f"{len(findings.all)} finished runs are in {options.page}")
+    for movie in draw_movies(campaign, findings) if campaign else ():
+        print(f"A movie is in {movie}")
 
 
 def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
