@@ -101,7 +101,7 @@ def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
     todo = _of_results(findings)
     if campaign:
         todo.update(_of_states(campaign, findings.lengths("PS1")))
-        todo.update(_of_states(campaign, findings.held(), "held_"))
+        todo.update(_of_states(campaign, findings.held()[:1], "held_"))
     for name, (make, results) in todo.items():
         make().savefig(folder / name, dpi=RESOLUTION)
         record[name] = Entry(RULE, ", ".join(sorted({result.revision for result in results})), digest(folder / name))
@@ -111,7 +111,7 @@ def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
 def draw_movies(campaign: Campaign, findings: Findings) -> list[Path]:
     """Movies of a pass, as far as the runs have pictures of one. They stay beside the states, as they are large."""
     made = []
-    for name, groups in (("pass", findings.lengths("PS1")), ("held_pass", findings.held())):
+    for name, groups in (("pass", findings.lengths("PS1")), ("held_pass", findings.held()[:1])):
         state = _state(campaign, groups)
         if state is None:
             continue
