@@ -48,7 +48,7 @@ void ParticleSystem::forget_contacts()
 
 void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)
 {
-  sparse.update(particles, pairs, solid_contacts, halo, stirring);
+  sparse.update(particles, pairs, solid_contacts, halo, domain.periods(), stirring);
   // Also the ghosts that have just fallen asleep.
   halo.include_sleepers();
   halo.update(particles);

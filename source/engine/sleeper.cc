@@ -49,8 +49,9 @@ Stirring Sleeper::look(const Clock &clock, const std::vector<Solid> &solids,
   stirring.everything = wake_all || std::any_of(loads.begin(), loads.end(), [&](const auto &load) {
                           return load->changes(last_time, clock.time());
                         });
+  const bool is_first = last_states.empty();
   for (std::size_t s = 0; s < solids.size(); ++s)
-    stirring.solid_moves.push_back(wake_all ||
+    stirring.solid_moves.push_back(wake_all || is_first ||
                                    stirs(solids[s], last_states[s], last_time, clock.time()));
   last_time = clock.time();
   last_states = states_of(solids);

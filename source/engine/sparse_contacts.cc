@@ -2,6 +2,7 @@
 #include <eunoe/engine/sparse_contacts.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace eunoe {
 
@@ -38,11 +39,20 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
                  "Whether particles that are at rest, and whose neighbours are, sleep: they do "
                  "not move and their contacts with each other are not computed, until something "
                  "moves near them.");
-  declare::not_negative(prm, "rest speed", rest_speed,
-                        "Speed up to which a particle is at rest (m/s).");
-  declare::not_negative(
-      prm, "rest time", rest_time,
-      "Time for which a particle must have been at rest before it may sleep (s).");
+  constexpr double largest = std::numeric_limits<double>::max();
+  declare::number_or_word(
+      prm, "rest speed", "auto", "auto", 0., largest,
+      "Speed up to which a particle is at rest (m/s). 'auto': that of a fall through the rest "
+      "displacement.",
+      [this](const std::optional<double> &value) { rest_speed = value; });
+  declare::number_or_word(
+      prm, "rest time", "auto", "auto", 0., largest,
+      "Time for which a particle must have been at rest before it may sleep (s). 'auto': that of a "
+      "fall through half of its diameter.",
+      [this](const std::optional<double> &value) { rest_time = value; });
+  declare::not_negative(prm, "rest displacement", rest_displacement,
+                        "Distance from where its rest began, up to which a particle is at rest "
+                        "(in its diameters): finds creep slower than the rest speed.");
   declare::count(prm, "check frequency", frequency,
                  "Steps between two checks which particles may sleep and which must wake; every "
                  "search for contacts checks as well.",
@@ -51,8 +61,19 @@ void SparseContactParameters::declare(dealii::ParameterHandler &prm)
   declare::leave(prm);
 }
 
-SparseContacts::SparseContacts(const SparseContactParameters &parameters, const double time_step)
-    : parameters(parameters), rest_steps(parameters.rest_time / time_step)
+void SparseContactParameters::check_with(const Vec3 &gravity, const ParameterCheck &check) const
+{
+  const ParameterCheck::Path path = {"model parameters", "adaptive sparse contacts"};
+  const bool can_fall = !enabled || norm_square(gravity) > 0.;
+  check.require(can_fall || rest_speed, path, "rest speed", "is 'auto' in a case without gravity.",
+                "Give the speed (m/s) up to which a particle is at rest.");
+  check.require(can_fall || rest_time, path, "rest time", "is 'auto' in a case without gravity.",
+                "Give the time (s) for which a particle must have been at rest.");
+}
+
+SparseContacts::SparseContacts(const SparseContactParameters &parameters, const double gravity,
+                               const double time_step)
+    : parameters(parameters), rest(parameters, gravity, time_step)
 {
 }
 
@@ -62,36 +83,44 @@ void SparseContacts::add_fields(ParticleFields &fields)
     return;
   asleep = fields.add({"asleep", 1, 0.});
   last_moved = fields.add({"last_moved_step", 1, -1.});
+  rest_place = fields.add({"rest_place", 3, 0.});
 }
 
 std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
                                                         const SolidContacts &solids,
+                                                        const PeriodicBox &periods,
                                                         const Stirring &stirring) const
 {
   std::vector<double> &moved = p.component(*last_moved);
   const auto now = static_cast<double>(stirring.step);
-  const double limit = parameters.rest_speed * parameters.rest_speed;
+  const auto note_motion = [&](const std::size_t row) {
+    moved[row] = now;
+    p.set_vector(*rest_place, row, p.position[row].vec());
+  };
   for (std::size_t row = 0; row < p.n_owned; ++row) {
+    const double radius = p.radius(row), far = rest.displacement(radius);
+    const Vec3 drift = periods.shortest(p.position[row].vec() - p.vector(*rest_place, row));
     // NaN is not at rest. Spin does not count: many particles turn in place for long, as nothing
     // resists a spin about the normal of a contact, and a rolling particle has a velocity.
-    const bool at_rest = norm_square(p.velocity[row].vec()) <= limit;
+    const bool at_rest = norm_square(p.velocity[row].vec()) <= rest.speed_square(radius) &&
+                         norm_square(drift) <= far * far;
     if (!at_rest || stirring.everything || moved[row] < 0.)
-      moved[row] = now;
+      note_motion(row);
   }
   for (const SolidContacts::Candidate &candidate : solids.get_candidates())
     if (stirring.solid_moves[candidate.solid])
-      moved[candidate.particle] = now;
+      note_motion(candidate.particle);
   // Ghosts outside all pairs get no flags from their owners.
   std::vector<std::uint8_t> restless(p.size(), 1);
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    restless[row] = now - moved[row] < rest_steps;
+    restless[row] = now - moved[row] < rest.steps(p.radius(row));
   return restless;
 }
 
 void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const SolidContacts &solids,
-                            Halo &halo, const Stirring &stirring) const
+                            Halo &halo, const PeriodicBox &periods, const Stirring &stirring) const
 {
-  std::vector<std::uint8_t> awake = find_restless(p, solids, stirring), wider;
+  std::vector<std::uint8_t> awake = find_restless(p, solids, periods, stirring), wider;
   halo.update(awake);
   for (unsigned int ring = 0; ring < n_rings; ++ring) {
     wider = awake;

@@ -36,6 +36,20 @@ std::size_t number_of_events(const Parameters &parameters)
 
 namespace {
 
+/// When particles of each type count as at rest.
+void describe_sleep(const Parameters &parameters, const std::vector<DiameterRange> &diameters,
+                    Forecast &forecast)
+{
+  const RestCriterion rest(parameters.sparse_contacts, norm(parameters.physics.gravity), 1.);
+  for (const auto &[type, smallest, largest] : diameters)
+    forecast.facts.push_back("Sleep: a particle of type " + std::to_string(type) + " of " +
+                             format(1e6 * smallest) + " um is at rest when it was slower than " +
+                             format(std::sqrt(rest.speed_square(0.5 * smallest))) +
+                             " m/s and has moved by less than " +
+                             format(rest.displacement(0.5 * smallest)) + " m for " +
+                             format(rest.steps(0.5 * smallest)) + " s");
+}
+
 /// Diameters of each type that has particles: those of the particles that are given one by one,
 /// else those of the types.
 /// @param are_given whether the input gives the particles one by one
@@ -93,6 +107,8 @@ Forecast Simulation::foresee(const bool writes) const
   const Vec3 &g = parameters.physics.gravity;
   forecast.facts.push_back("Gravity: (" + format(g.x) + ", " + format(g.y) + ", " + format(g.z) +
                            ") m/s2" + (norm_square(g) > 0. ? "" : ", so that nothing falls"));
+  if (sleeper.is_enabled())
+    describe_sleep(parameters, diameters, forecast);
   double smallest_radius = std::numeric_limits<double>::max();
   for (const DiameterRange &range : diameters)
     smallest_radius = std::min(smallest_radius, 0.5 * range.smallest);

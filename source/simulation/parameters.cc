@@ -161,6 +161,7 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
     // A process makes its own insertion.
     if (process == nullptr || section != &parameters.insertion)
       section->check(check);
+  parameters.sparse_contacts.check_with(parameters.physics.gravity, check);
   // Sizes and materials make sense only now.
   ControlParameters &control = parameters.control;
   if (!control.given_time_step && problems.empty())

@@ -110,7 +110,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       domain(background_of(parameters, log), parameters.boundaries,
              parameters.physics.wall_material(), comm),
       clock(parameters.control.time_step, parameters.control.n_steps()),
-      sleeper(parameters.sparse_contacts, clock.time_step()),
+      sleeper(parameters.sparse_contacts, norm(parameters.physics.gravity), clock.time_step()),
       system(domain, physics_of(parameters, inserter, process.get(), sleeper),
              skin(parameters, inserter, domain), largest_diameter(parameters, inserter),
              progress.timers),
@@ -344,6 +344,12 @@ void Simulation::insert_and_remove(const Delivery &delivery,
 {
   complete_step();
   const std::vector<std::size_t> lost = inspect();
+  if (sleeper.is_enabled() && system.n_global() > 0) {
+    // What comes wakes its neighbours, as it has never been at rest.
+    std::vector<std::size_t> leaving = removed;
+    leaving.insert(leaving.end(), lost.begin(), lost.end());
+    system.stir_around_leaving(sleeper.get(), leaving, clock.step());
+  }
   ParticleId first_new;
   {
     const Timers::Scope scope(progress.timers, Section::search);
@@ -357,7 +363,7 @@ void Simulation::insert_and_remove(const Delivery &delivery,
   }
   note_search();
   if (sleeper.is_enabled())
-    update_sleep(true);
+    update_sleep(false);
   system.start_forces_on_new(first_new, solids.list(), clock.time());
 }
 

@@ -30,7 +30,7 @@ OTHER_MESH = ("mesh/grid arguments = 3, 2, 1 : 0, 0, 0 : 10e-3, 8e-3, 4e-3 : tru
 SPARSE = "model parameters/adaptive sparse contacts/"
 # Particles fall asleep far more easily than is physical, so that many sleep.
 SLEEPY = (SPARSE + "enable adaptive sparse contacts = true", SPARSE + "rest time = 2e-4",
-          SPARSE + "rest speed = 0.45", SPARSE + "check frequency = 20")
+          SPARSE + "rest speed = 0.45", SPARSE + "rest displacement = 1e3", SPARSE + "check frequency = 20")
 # Particles are inserted where the mesh cells at a plane are empty.
 ON_PLANE = ("insertion info/insertion method = plane",
             "insertion info/insertion plane point = 0, 7e-3, 0",

@@ -35,7 +35,7 @@ std::string looks(unsigned long long restart)
   std::vector<std::unique_ptr<Load>> loads;
   loads.push_back(std::make_unique<Gust>(25.));
   Clock clock(1., 100);
-  auto sleeper = std::make_unique<Sleeper>(parameters, 1.);
+  auto sleeper = std::make_unique<Sleeper>(parameters, 9.81, 1.);
   std::string all;
   const auto look = [&](bool wake_all) {
     const Stirring stirring = sleeper->look(clock, solids.list(), loads, wake_all);
@@ -51,7 +51,7 @@ std::string looks(unsigned long long restart)
       look(false);
     if (clock.step() == restart) {
       const std::string saved = sleeper->save().dump();
-      sleeper = std::make_unique<Sleeper>(parameters, 1.);
+      sleeper = std::make_unique<Sleeper>(parameters, 9.81, 1.);
       sleeper->load(nlohmann::ordered_json::parse(saved), 2);
     }
   }
@@ -69,5 +69,6 @@ EUNOE_MPI_TEST()
   check("restarted after the gust", looks(33) == found, looks(33));
   const SparseContactParameters off;
   MovingSolids solids;
-  check("never where nobody sleeps", !Sleeper(off, 1.).is_look_due(Clock(1., 1), solids.list()));
+  check("never where nobody sleeps",
+        !Sleeper(off, 1., 1.).is_look_due(Clock(1., 1), solids.list()));
 }

@@ -3,21 +3,24 @@
 // neighbour. References: collisions with a wall that moves (a grain at rest leaves an elastic one
 // with twice the speed of the wall), free fall, and the same case without sleep.
 
+#include <eunoe/processes/loose_powder.h>
+
 #include "../spheres.h"
 
 using namespace test;
 
 namespace {
 
-/// Speed below which a grain counts as at rest (m/s), the square root of the threshold.
-constexpr double rest_speed = 1e-2;
+/// Speed below which a grain counts as at rest (m/s). It may go far meanwhile, so that a sleeper
+/// has drifted since the search.
+constexpr double rest_speed = 1e-2, rest_displacement = 1e3;
 
-std::string sparse(bool enabled, double rest_time)
+std::string sparse(bool enabled, double rest_time, double displacement = rest_displacement)
 {
   return "subsection model parameters\n subsection adaptive sparse contacts\n" +
          Scene::entry("enable adaptive sparse contacts", enabled ? "true" : "false") +
          Scene::entry("rest speed", rest_speed) + Scene::entry("rest time", rest_time) +
-         " end\nend\n";
+         Scene::entry("rest displacement", displacement) + " end\nend\n";
 }
 
 /// A horizontal plate that rises with @p speed from a time on.
@@ -82,6 +85,87 @@ void test_drift(const std::string &integration)
                    last_of(*test_case)[c_vz], sleep ? 0.2 : 0.2 + 7.5e-3,
                    integration == "velocity_verlet" ? 1e-3 : 3e-2);
   }
+}
+
+/// A grain that moves more slowly than the rest speed, but goes on: it creeps, and so is awake.
+/// With a period in its direction it crosses the end of the box, where its coordinate jumps.
+void test_creep()
+{
+  // In the rest time of 25 ms it goes a hundredth of its diameter.
+  const double speed = 4e-4;
+  for (const double displacement : {0.009, 0.011}) {
+    Scene scene;
+    scene.time_step = 1e-5;
+    scene.time_end = 0.06;
+    Sphere grain;
+    grain.x.x = 10e-3 - 0.5 * speed * scene.time_end;
+    grain.v.x = speed;
+    scene.spheres = {grain};
+    scene.more = sparse(true, 0.025, displacement) +
+                 "subsection DEM boundary conditions\n set number of boundary conditions = 1\n"
+                 " subsection boundary condition 0\n  set type = periodic\n"
+                 "  set periodic id 0 = 0\n  set periodic id 1 = 1\n"
+                 "  set periodic direction = 0\n end\nend\n";
+    Case test_case(scene.text());
+    std::size_t asleep = 0;
+    test_case.run([&](Simulation &simulation) { asleep = std::max(asleep, n_asleep(simulation)); });
+    const bool sleeps = displacement > 0.01;
+    check(std::string("creep within ") + (sleeps ? "a larger" : "a smaller") +
+              " displacement: it " + (sleeps ? "sleeps" : "is awake"),
+          asleep == (sleeps ? 1 : 0));
+  }
+}
+
+/// Whether the particle with an id sleeps, on whatever rank it is.
+bool sleeps(Simulation &simulation, ParticleId id)
+{
+  const ParticleArrays &p = simulation.get_system().particles;
+  int found = 0;
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (p.id[row] == id && !p.is_awake(row))
+      found = 1;
+  MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, simulation.communicator());
+  return found != 0;
+}
+
+/// A particle that is inserted or taken out wakes those that touch it, and nobody else.
+void test_insertion()
+{
+  constexpr unsigned long long insertion = 20000, removal = 40000;
+  Scene scene;
+  scene.particle.restitution = scene.wall.restitution = 0.3;
+  scene.gravity.z = -9.81;
+  scene.time_step = 2e-6;
+  scene.time_end = 0.09;
+  scene.floor = true;
+  Sphere here = resting_sphere(scene), there = here;
+  there.x.x += 5e-3;
+  scene.spheres = {here, there};
+  scene.more = sparse(true, 0.01);
+  Case test_case(scene.text());
+  test_case.run([&](Simulation &simulation) {
+    const unsigned long long step = simulation.step_number();
+    if (step == insertion || step == removal)
+      check("two grains: both sleep", sleeps(simulation, 0) && sleeps(simulation, 1));
+    if (step == insertion)
+      simulation.insert_and_remove(loose_powder(simulation, 0, 1, Vec3(),
+                                                [&](auto...) {
+                                                  return here.x + Vec3{0., 0., here.diameter};
+                                                }),
+                                   {});
+    if (step == removal) {
+      const ParticleArrays &p = simulation.complete_step();
+      std::vector<std::size_t> above;
+      for (std::size_t row = 0; row < p.n_owned; ++row)
+        if (p.id[row] == 2)
+          above.push_back(row);
+      simulation.insert_and_remove({}, above);
+    }
+    if (step == insertion || step == removal)
+      check(std::string("one more ") + (step == removal ? "goes" : "comes") +
+                ": that which touches it wakes, the other sleeps on",
+            !sleeps(simulation, 0) && sleeps(simulation, 1));
+  });
 }
 
 /// The same, interrupted while the grain sleeps at its new place.
@@ -174,6 +258,8 @@ EUNOE_MPI_TEST()
 {
   for (const std::string integration : {"velocity_verlet", "explicit_euler", "symplectic_euler"})
     test_drift(integration);
+  test_creep();
+  test_insertion();
   test_restart();
   test_start();
   test_support();

@@ -12,8 +12,9 @@ namespace eunoe {
 class Sleeper
 {
 public:
-  Sleeper(const SparseContactParameters &parameters, double time_step)
-      : sparse(parameters, time_step)
+  /// @param gravity magnitude (m/s2)
+  Sleeper(const SparseContactParameters &parameters, double gravity, double time_step)
+      : sparse(parameters, gravity, time_step)
   {
   }
 
@@ -28,7 +29,7 @@ public:
   bool is_look_due(const Clock &clock, const std::vector<Solid> &solids) const;
 
   /// The disturbances since the last look; this call counts as a look.
-  /// @param wake_all whether particles have come or gone
+  /// @param wake_all whether everything is to wake
   Stirring look(const Clock &clock, const std::vector<Solid> &solids,
                 const std::vector<std::unique_ptr<Load>> &loads, bool wake_all);
 
