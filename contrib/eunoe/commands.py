@@ -28,6 +28,7 @@ COMMANDS = {
     "Speed": {
         "benchmark": ("benchmarks.speed", "measures the speed beside LAMMPS and LIGGGHTS"),
         "balance": ("benchmarks.balance", "measures what load balancing does over a spreading run"),
+        "late-layers": ("benchmarks.late_layers", "measures what sleeping particles save in a pass over 20 layers"),
         "late-pass": ("benchmarks.late_pass", "measures what sleeping particles save"),
         "collapse": ("benchmarks.collapse", "compares the collapse of a column with LAMMPS"),
         "predict-scaling": ("scaling.predict", "predicts what a case takes on many ranks"),
@@ -39,6 +40,7 @@ COMMANDS = {
         "reproduction": ("studies.reproduction", "goes on with the campaign that reproduces the paper"),
         "heap-size": ("studies.heap_size", "how a heap's angle depends on the size of its disc"),
         "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
+        "sleep-proofs": ("studies.sleep_proofs", "whether sleeping particles change what creeps or flows"),
         "suite": ("discovery.suite", "makes a blind suite of hidden truths for eunoe-discovery, and studies it"),
         "score": ("discovery.score", "compares the answers of such a suite with the truths"),
     },

@@ -42,10 +42,10 @@ def output_of(command: list[str], folder: Path) -> str:
     return done.stdout
 
 
-def logged(command: list[str], log: Path) -> int:
-    """Runs a command and appends its output to a file; returns the exit code."""
+def logged(command: list[str], log: Path, folder: Path | None = None) -> int:
+    """Runs a command, in a folder or in the present one, and appends its output to a file; returns the exit code."""
     with open(log, "a", encoding="utf-8") as output:
-        return subprocess.run(command, stdout=output, stderr=subprocess.STDOUT, check=False).returncode
+        return subprocess.run(command, stdout=output, stderr=subprocess.STDOUT, check=False, cwd=folder).returncode
 
 
 def parser(documentation: str) -> argparse.ArgumentParser:

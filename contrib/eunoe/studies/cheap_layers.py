@@ -24,7 +24,7 @@ from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import arguments, compute, layers_of, publish, spread, spreading_command
+from .series import arguments, compute, interval, layers_of, publish, spread, spreading_command
 
 RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
 TYPE = "lagrangian physical properties/particle type 0"
@@ -64,6 +64,7 @@ VARIANTS = {
     "step40": Variant("40 %", step(40)),
     "soft_pull": Variant("E / 10, the same pull-off force", softer(0.1, 0.)),
     "soft_energy": Variant("E / 10, surface energy / 10^0.4", softer(0.1, 0.4)),
+    "soft_ratio": Variant("E / 10, surface energy / 10", softer(0.1, 1.)),
     "sleep": Variant("with sleep", {**step(15), SLEEP: "true"}),
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -49,6 +50,7 @@ class Bench:
     program: str
     folder: Path
     reuse: bool = False  # whether finished runs in the folder are used again
+    rayleigh_share: float | None = None  # time step of all cases in place of their own
 
     def run(self, case: str, label: str = "", **settings: Any) -> Results:
         """Runs prm/verification/<case>.prm.
@@ -61,13 +63,31 @@ class Bench:
             return Results(folder)
         entries = {name.replace("__", "/").replace("_", " "): value for name, value in settings.items()}
         entries["simulation control/output path"] = folder
-        command = [self.program, str(CASES / "verification" / f"{case}.prm"), "--quiet",
-                   *overrides(entries)]
+        if self.rayleigh_share is not None:
+            entries["simulation control/time step"] = self._time_step(case, entries)
+        self._start(case, entries, "--quiet")
+        return Results(folder)
+
+    def _time_step(self, case: str, entries: dict[str, Any]) -> float:
+        """The time step that is the wanted share of the Rayleigh time, from what --check says of others."""
+        step = 1e-9
+        for _ in range(20):
+            text = self._start(case, {**entries, "simulation control/time step": step}, "--check")
+            percent = max(map(float, re.findall(r"is (\S+) % of the Rayleigh time", text)))
+            if 100. * self.rayleigh_share <= percent < 200. * self.rayleigh_share:
+                return step * 100. * self.rayleigh_share / percent
+            # The share is written with one digit behind the point.
+            step *= 150. * self.rayleigh_share / percent if percent >= 1. else 10.
+        raise RuntimeError(f"{case}: no time step is {100. * self.rayleigh_share:g} % of the Rayleigh time.")
+
+    def _start(self, case: str, entries: dict[str, Any], option: str) -> str:
+        """Starts the program and returns its output."""
+        command = [self.program, str(CASES / "verification" / f"{case}.prm"), option, *overrides(entries)]
         # Files that a case names are relative to the folder where the program starts.
         done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=ROOT)
         if done.returncode != 0:
             raise RuntimeError(f"{case} ended with exit code {done.returncode}: {done.stderr}")
-        return Results(folder)
+        return done.stdout
 
 
 @dataclass(frozen=True)

@@ -2,10 +2,11 @@
 reference and tolerance, and draws both together.
 
 Usage: contrib/tools verification path/to/eunoe-particles folder [--rows NAME ...] [--long]
-       [--reuse] [--pictures FOLDER] [--page doc/verification.md [--renew]]
+       [--reuse] [--rayleigh-share 0.2] [--pictures FOLDER] [--page doc/verification.md [--renew]]
 
 Without --rows: all rows but the long ones, which --long adds. --page compares the numbers with those that
-the table of a page has, and --renew writes them there. Exit code 1 if a number is beyond its tolerance or
+the table of a page has, and --renew writes them there. --rayleigh-share sets the time step of all cases to that
+share of the Rayleigh time. Exit code 1 if a number is beyond its tolerance or
 is not that of the page. Needs numpy, and matplotlib for pictures.
 """
 
@@ -43,6 +44,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--rows", nargs="+", choices=list(ROWS))
     arguments.add_argument("--long", action="store_true", help="the long rows, too")
     arguments.add_argument("--reuse", action="store_true", help="does not run again what has finished")
+    arguments.add_argument("--rayleigh-share", type=float, help="time step of all cases")
     arguments.add_argument("--pictures", type=Path, help="folder for .png files")
     arguments.add_argument("--page", type=Path, help="page whose table is compared")
     arguments.add_argument("--renew", action="store_true", help="writes the numbers into the page")
@@ -70,7 +72,8 @@ def compare(maker: RowMaker, bench: Bench, options: argparse.Namespace) -> int:
 
 def main(words: list[str]) -> int:
     options = parse(words)
-    bench = Bench(str(Path(options.program).resolve()), options.folder.resolve(), options.reuse)
+    bench = Bench(str(Path(options.program).resolve()), options.folder.resolve(), options.reuse,
+                  options.rayleigh_share)
     names = options.rows or [name for name, maker in ROWS.items() if options.long or not maker.is_long]
     failed = sum(compare(ROWS[name], bench, options) for name in names)
     print(f"{failed} numbers do not agree." if failed else "All agree.")
