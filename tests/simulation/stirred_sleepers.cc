@@ -146,7 +146,7 @@ void test_insertion()
   test_case.run([&](Simulation &simulation) {
     const unsigned long long step = simulation.step_number();
     if (step == insertion || step == removal)
-      check("two grains: both sleep", sleeps(simulation, 0) && sleeps(simulation, 1));
+      check("two grains: both sleep", sleeps(simulation, 1) && sleeps(simulation, 2));
     if (step == insertion)
       simulation.insert_and_remove(loose_powder(simulation, 0, 1, Vec3(),
                                                 [&](auto...) {
@@ -157,14 +157,14 @@ void test_insertion()
       const ParticleArrays &p = simulation.complete_step();
       std::vector<std::size_t> above;
       for (std::size_t row = 0; row < p.n_owned; ++row)
-        if (p.id[row] == 2)
+        if (p.id[row] == 3)
           above.push_back(row);
       simulation.insert_and_remove({}, above);
     }
     if (step == insertion || step == removal)
       check(std::string("one more ") + (step == removal ? "goes" : "comes") +
                 ": that which touches it wakes, the other sleeps on",
-            !sleeps(simulation, 0) && sleeps(simulation, 1));
+            !sleeps(simulation, 1) && sleeps(simulation, 2));
   });
 }
 
