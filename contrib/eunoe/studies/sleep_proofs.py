@@ -106,12 +106,14 @@ def slope_measures(stages: dict[str, Rows]) -> dict[str, float]:
 
 # A heap that grows grain by grain.
 
-FULL = 5.  # time after which the heap has all that it can hold (s)
+FULL, TRICKLED = 5., 25.  # time after which the heap has all that it can hold, and at the end (s)
 PLATE = 20e-3  # (m)
+TRICKLE = (Stage("fill", {"simulation control/time end": FULL}, shared=True),
+           Stage("trickle", {"simulation control/time end": TRICKLED, "insertion info/insertion frequency": 15625}))
 
 
 def trickle_measures(stages: dict[str, Rows]) -> dict[str, float]:
-    rows = [row for row in stages["run"] if row["time"] >= FULL]
+    rows = stages["trickle"]
     height = [row["potential"] / (GRAVITY * GRAIN_MASS * row["particles"]) for row in rows]
     # The centre of a wedge lies at a third of its height.
     angles = [math.degrees(math.atan(6. * h / PLATE)) for h in height]
@@ -136,7 +138,7 @@ def hourglass_measures(stages: dict[str, Rows]) -> dict[str, float]:
 PROOFS = {
     "slope": slope("slope", {}),
     "creep": slope("slope", {"model parameters/rolling resistance torque method": "constant"}),
-    "trickle": Proof("trickle", (Stage("run", {}),), trickle_measures),
+    "trickle": Proof("trickle", TRICKLE, trickle_measures),
     "hourglass": Proof("hourglass", (Stage("run", {}),), hourglass_measures),
 }
 
