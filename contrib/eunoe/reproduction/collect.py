@@ -21,7 +21,7 @@ DATA = DOC / "reproduction" / "data"
 TABLES = ("layers.csv", "measurements.csv", "apparatus.json")
 BED, RECORD = "bed.csv", "run.json"
 # Of summary.json.
-KEPT = ("version", "git_revision", "ranks", "steps", "time_step", "simulated_time", "particle_steps",
+KEPT = ("version", "git_revision", "ranks", "first_step", "steps", "time_step", "simulated_time", "particle_steps",
         "particle_steps_per_second", "loop_seconds", "share_asleep", "inserted_mass", "inside_mass", "lost_particles",
         "mass_balance_error")
 

@@ -32,6 +32,16 @@ def _results(groups: list[Group]) -> list[Result]:
     return [run for group in groups for run in group.runs]
 
 
+def _costs(results: list[Result]) -> list[str]:
+    """What a run took, of those that went through at one go: a summary begins anew with a restart."""
+    whole = [result.record for result in results if result.record.get("first_step", 0) == 0]
+    if not whole:
+        return ["restarted"] * 3
+    hours = sum(record["loop_seconds"] * record["ranks"] for record in whole) / 3600.
+    return [f"{1e-9 * sum(record['particle_steps'] for record in whole) / len(whole):.0f}",
+            f"{100. * sum(record['share_asleep'] for record in whole) / len(whole):.0f}", f"{hours / len(whole):.2f}"]
+
+
 def runs_block(findings: Findings) -> str:
     """What has been run, of what is planned."""
     table = [["case", "runs finished, of", "plate (mm)", "particles on it in the end", "steps (million)",
@@ -43,14 +53,10 @@ def runs_block(findings: Findings) -> str:
         results = findings.results.get(name, [])
         cells = [f"`{name}`", f"{len(results)}, {number}"]
         if results:
-            n = len(results)
-            mean = {key: sum(result.record[key] for result in results) / n
-                    for key in ("steps", "particle_steps", "share_asleep")}
-            hours = sum(result.record["loop_seconds"] * result.record["ranks"] for result in results) / n / 3600.
             cells += [f"{1e3 * results[0].apparatus.plate_length:.3g}",
-                      f"{sum(result.layers.particles[-1] for result in results) / n:.0f}",
-                      f"{1e-6 * mean['steps']:.2f}", f"{1e-9 * mean['particle_steps']:.0f}",
-                      f"{100. * mean['share_asleep']:.0f}", f"{hours:.2f}"]
+                      f"{sum(result.layers.particles[-1] for result in results) / len(results):.0f}",
+                      f"{1e-6 * sum(result.record['steps'] for result in results) / len(results):.2f}",
+                      *_costs(results)]
         table.append([*cells, *[""] * (len(table[0]) - len(cells))])
     if not findings:
         return NOTHING
