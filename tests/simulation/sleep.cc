@@ -68,7 +68,7 @@ std::vector<Grain> bed(double width = 6e-3)
   for (double y = 1.6e-3; y < 8e-3; y += 1.05e-3)
     for (double x = 0.6e-3; x < width - 0.5e-3; x += 1.05e-3)
       for (double z = 0.6e-3; z < 3e-3; z += 1.05e-3, ++n)
-        grains.push_back({x + 0.03e-3 * std::sin(7. * n), y, z + 0.03e-3 * std::cos(5. * n), 0.,
+        grains.push_back({x + 0.021e-3 * std::sin(7. * n), y, z + 0.021e-3 * std::cos(5. * n), 0.,
                           diameter * (1. + 0.1 * std::sin(3. * n))});
   return grains;
 }
