@@ -24,7 +24,7 @@ from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import arguments, compute, interval, layers_of, publish, spread, spreading_command
+from .series import arguments, compute, layers_of, publish, spread, spreading_command
 
 RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
 TYPE = "lagrangian physical properties/particle type 0"

@@ -32,11 +32,6 @@ class Run(Protocol):
 # Settings of a run that is long enough to be interrupted: it continues from its checkpoint.
 CONTINUED = {"restart/restart": "auto", "restart/checkpoint": "true", "restart/wall time interval": 5}
 
-# Quantiles of Student's t for two sides of 95 %, by degrees of freedom; 2 from 30 on is near enough.
-STUDENT = (math.nan, 12.71, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160,
-           2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086, 2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052,
-           2.048, 2.045)
-
 
 def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentParser:
     """The command-line arguments that all studies share."""
@@ -112,18 +107,3 @@ def in_errors(values: Sequence[float], reference: Sequence[float]) -> float:
     """Difference of the means over its standard error; NaN if the error is unknown or zero."""
     error = math.hypot(*(spread(v) / math.sqrt(len(v)) for v in (values, reference)))
     return (statistics.mean(values) - statistics.mean(reference)) / error if error > 0. else math.nan
-
-
-def interval(values: list[float], reference: list[float]) -> tuple[float, float]:
-    """Difference of the means, and half the width of its 95 % interval (Welch 1947); NaN for fewer than
-    two values each."""
-    difference = statistics.mean(values) - statistics.mean(reference)
-    if min(len(values), len(reference)) < 2:
-        return difference, math.nan
-    parts = [statistics.variance(group) / len(group) for group in (values, reference)]
-    if sum(parts) == 0.:
-        return difference, 0.
-    freedom = sum(parts) ** 2 / sum(part**2 / (len(group) - 1)
-                                    for part, group in zip(parts, (values, reference)))
-    quantile = STUDENT[int(freedom)] if freedom < len(STUDENT) else 2.
-    return difference, quantile * math.sqrt(sum(parts))

@@ -27,11 +27,12 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from eunoe.intervals import difference_of
 from eunoe.launch import Failure, logged, overrides
 from eunoe.repository import CASES, ROOT
 from eunoe.tables import Table, read_rows, write_csv
 
-from .series import arguments, interval, publish, spread, summary_of
+from .series import arguments, publish, spread, summary_of
 
 Settings = dict[str, object]
 Rows = list[dict[str, float]]
@@ -200,8 +201,8 @@ def table_of(found: dict[tuple[str, str], list[dict[str, float]]], proofs: list[
                 if not values:
                     cells += ["", ""]
                     continue
-                difference, half = interval(values, reference)
-                cells += [f"{statistics.mean(values):.4g} ± {spread(values):.2g}", f"{difference:+.2g} ± {half:.2g}"]
+                gap = difference_of(values, reference)
+                cells += [f"{statistics.mean(values):.4g} ± {spread(values):.2g}", f"{gap.value:+.2g} ± {gap.half:.2g}"]
             table.append([f"{proof} ({len(awake)} seeds)" if k == 0 else "", quantity, *cells])
     return table
 
