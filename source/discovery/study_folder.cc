@@ -41,6 +41,9 @@ std::string StudyFolder::file(const std::string &name) const
 
 bool StudyFolder::open(const std::map<std::string, std::string> &identity)
 {
+  create_folder(path, comm);
+  lock = std::make_unique<RunLock>(file("running.lock"), "The folder " + path,
+                                   "Wait until it ends, or choose another 'output path'.", comm);
   nlohmann::ordered_json mine;
   for (const auto &[name, text] : identity)
     mine[name] = sha256(text);

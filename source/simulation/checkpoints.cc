@@ -4,6 +4,7 @@
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/input_file.h>
 #include <eunoe/core/log.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/checkpoints.h>
 #include <eunoe/simulation/control_parameters.h>
@@ -172,6 +173,19 @@ void Checkpoints::understand(
   } catch (const std::invalid_argument &) {
     throw checkpoint->damaged("a number in its head is none.");
   }
+}
+
+std::string Checkpoints::occupy()
+{
+  if (!parameters.checkpoint)
+    return "";
+  create_folder(folder, comm);
+  const std::string path = (fs::path(folder) / parameters.name()).string();
+  lock = std::make_unique<RunLock>(
+      path + ".lock", "The place of the checkpoints " + shortened(path),
+      "Wait until it ends, or stop it, or choose another 'filename' in subsection 'restart'.",
+      comm);
+  return lock->weakness();
 }
 
 void Checkpoints::begin()

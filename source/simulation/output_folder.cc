@@ -2,16 +2,21 @@
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/new_file.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/simulation/output_folder.h>
 
 #include <nlohmann/json.hpp>
 
 namespace eunoe {
 
-void OutputFolder::open()
+std::string OutputFolder::open()
 {
   create_folder(path, comm);
+  lock = std::make_unique<RunLock>(
+      file("running.lock"), "The folder " + shortened(path),
+      "Wait until it ends, or stop it, or choose another 'output path'.", comm);
   opened = true;
+  return lock->weakness();
 }
 
 void OutputFolder::write(const std::string &name, const std::string &text) const

@@ -17,9 +17,8 @@ void append(std::vector<Item> &all, std::vector<Item> &&more)
 
 } // namespace
 
-void Outputs::open(const nlohmann::ordered_json *saved)
+void Outputs::begin_series(const nlohmann::ordered_json *saved)
 {
-  folder.open();
   if (saved != nullptr)
     folder.resume(saved->at("folder"));
   particle_pictures = folder.pictures(control.output_name);

@@ -187,11 +187,15 @@ RunEstimate Simulation::estimate() const
 
 void Simulation::open_output()
 {
+  for (const std::string &weakness : {outputs.folder.open(), checkpoints.occupy()})
+    if (!weakness.empty())
+      get_log().warning("The file system cannot lock a file: " + weakness +
+                        ". So a second run into the same folder would not be refused.");
   if (checkpoints.opened() == nullptr || !checkpoints.is_own())
-    outputs.open(nullptr);
+    outputs.begin_series(nullptr);
   else
     checkpoints.understand(
-        [this](const nlohmann::ordered_json &head) { outputs.open(&head.at("outputs")); });
+        [this](const nlohmann::ordered_json &head) { outputs.begin_series(&head.at("outputs")); });
   int rank;
   MPI_Comm_rank(communicator(), &rank);
   if (rank == 0)

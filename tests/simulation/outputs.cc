@@ -23,7 +23,8 @@ std::string pictures(const ControlParameters &c, unsigned long long restart = 0)
 {
   Timers timers;
   auto outputs = std::make_unique<Outputs>(c, timers, MPI_COMM_WORLD);
-  outputs->open(nullptr);
+  outputs->folder.open();
+  outputs->begin_series(nullptr);
   Clock clock(0.1, 100);
   std::string steps;
   while (true) {
@@ -34,7 +35,8 @@ std::string pictures(const ControlParameters &c, unsigned long long restart = 0)
     if (restart > 0 && clock.step() == restart) {
       const auto saved = nlohmann::ordered_json::parse(outputs->save().dump());
       outputs = std::make_unique<Outputs>(c, timers, MPI_COMM_WORLD);
-      outputs->open(&saved);
+      outputs->folder.open();
+      outputs->begin_series(&saved);
       outputs->load(saved);
     }
     clock.advance();

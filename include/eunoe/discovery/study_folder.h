@@ -1,8 +1,10 @@
 #ifndef eunoe_discovery_study_folder_h
 #define eunoe_discovery_study_folder_h
 
+#include <eunoe/core/run_lock.h>
 #include <eunoe/discovery/study.h>
 
+#include <memory>
 #include <mpi.h>
 
 namespace eunoe::discovery {
@@ -34,6 +36,7 @@ public:
 private:
   const std::string path;
   MPI_Comm comm;
+  std::unique_ptr<RunLock> lock;
 };
 
 /// A list of objects as a table with commas; members other than numbers, words and truth values

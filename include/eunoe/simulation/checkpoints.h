@@ -3,6 +3,7 @@
 
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/checkpoint/restart_parameters.h>
+#include <eunoe/core/run_lock.h>
 
 #include <functional>
 #include <limits>
@@ -43,6 +44,10 @@ public:
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;
 
+  /// Keeps other runs from writing checkpoints of the same name into the same folder, if they are
+  /// written at all. Throws a UserError on every rank if another run writes there; collective.
+  /// @return why others are not kept out, on the first rank; empty if they are
+  std::string occupy();
   /// Makes the folder of the checkpoints and starts to watch signals and the time, if checkpoints
   /// are written at all; collective.
   void begin();
@@ -83,6 +88,7 @@ private:
   MPI_Comm comm;
   CheckpointStore store;
   std::unique_ptr<Checkpoint> checkpoint;
+  std::unique_ptr<RunLock> lock;
   bool is_other_input = false, is_own_folder = true, has_own_results = true;
   double last_time = 0.; ///< by the wall clock (s)
   /// Of the one that was opened or written last.

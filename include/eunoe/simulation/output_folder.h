@@ -2,6 +2,7 @@
 #define eunoe_simulation_output_folder_h
 
 #include <eunoe/core/csv_file.h>
+#include <eunoe/core/run_lock.h>
 #include <eunoe/simulation/output.h>
 
 #include <nlohmann/json_fwd.hpp>
@@ -21,8 +22,10 @@ public:
 
   const std::string path;
 
-  /// Creates the folder. Throws a UserError on every rank if that fails; collective.
-  void open();
+  /// Creates the folder and keeps other runs out of it. Throws a UserError on every rank if that
+  /// fails; collective.
+  /// @return why others are not kept out, on the first rank; empty if they are
+  std::string open();
   bool is_open() const { return opened; }
 
   std::string file(const std::string &name) const { return path + "/" + name; }
@@ -49,6 +52,7 @@ public:
 private:
   MPI_Comm comm;
   bool opened = false;
+  std::unique_ptr<RunLock> lock;
   std::map<std::string, std::shared_ptr<CsvFile>> tables;
   std::map<std::string, std::shared_ptr<PictureSeries>> series;
   std::map<std::string, std::uint64_t> sizes_before;

@@ -22,9 +22,9 @@ public:
 
   OutputFolder folder;
 
-  /// Creates the folder and the series of the regular pictures; collective.
+  /// Begins the series of the regular pictures in the folder, which is open; collective.
   /// @param saved what an earlier part of the run had written, null if there is none
-  void open(const nlohmann::ordered_json *saved);
+  void begin_series(const nlohmann::ordered_json *saved);
 
   /// Makes those observables that are asked for; collective.
   using Sections = std::map<std::string, std::shared_ptr<ObservableSection>>;
