@@ -31,6 +31,7 @@ COMMANDS = {
         "late-layers": ("benchmarks.late_layers", "measures what sleeping particles save in a pass over 20 layers"),
         "late-pass": ("benchmarks.late_pass", "measures what sleeping particles save"),
         "collapse": ("benchmarks.collapse", "compares the collapse of a column with LAMMPS"),
+        "slot": ("benchmarks.slot_rate", "compares the discharge through a slot with LAMMPS and LIGGGHTS"),
         "predict-scaling": ("scaling.predict", "predicts what a case takes on many ranks"),
     },
     "Studies": {

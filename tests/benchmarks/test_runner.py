@@ -18,7 +18,7 @@ except ImportError:
     print("skipped: numpy is missing")
     sys.exit(77)
 
-from eunoe.benchmarks import bed, blade, table
+from eunoe.benchmarks import bed, blade, slot, slot_rate, table
 from eunoe.benchmarks.programs import CASES, Lammps, Liggghts, Peer, loop_seconds
 from eunoe.launch import Failure
 from eunoe.tables import as_markdown, as_text
@@ -129,6 +129,46 @@ class Bed(unittest.TestCase):
         self.assertEqual(len(corners), 3 * 2 * blade.FACETS)
 
 
+class TheSlot(unittest.TestCase):
+    particles = CASES["slot"].particles()
+
+    def test_the_bed_stands_on_its_floor_and_is_at_rest(self):
+        self.assertEqual(self.particles.shape, (50000, 4))
+        radius, (x, y, z) = 0.5 * self.particles[:, 0], self.particles[:, 1:].T
+        deepest = max(float((radius - x).max()), float((x + radius).max()) - slot.LENGTH,
+                      float((radius - y).max()) + slot.FLOOR)
+        # At the bottom of 0.3 m of grains that are so soft.
+        self.assertLess(deepest, 0.4e-3)
+        self.assertTrue((0. <= z).all() and (z < CASES["slot"].box[2] + 1e-6).all())
+        self.assertLess((y + radius).max(), slot.HEIGHT)
+
+    def test_copies_fit_together(self):
+        near = self.particles[(abs(self.particles[:, 3] - slot.PERIOD) < 0.01) & (self.particles[:, 1] < 0.1)]
+        distance = np.linalg.norm(near[:, None, 1:] - near[None, :, 1:], axis=2)
+        overlap = 0.5 * (near[:, None, 0] + near[None, :, 0]) - distance
+        np.fill_diagonal(overlap, 0.)
+        self.assertLess(overlap.max(), 0.4e-3)
+
+    def test_the_floor_is_that_of_the_input(self):
+        corners = slot.triangles(CASES["slot"].box[2]).reshape(-1, 3)
+        text = (CONTRIB.parent / "prm" / "benchmarks" / "slot.prm").read_text()
+        boxes = [[[float(word) for word in point.split(",")] for point in line.split("=")[1].split(":")]
+                 for line in text.splitlines() if "grid arguments" in line and "true" not in line]
+        self.assertEqual([boxes[0][1][0], boxes[1][0][0]], [slot.LEFT, slot.RIGHT])
+        for lower, upper in boxes:
+            self.assertEqual((lower[1], upper[1]), (slot.LIP, slot.FLOOR))
+        self.assertEqual(set(corners[:, 0]), {0., slot.LEFT, slot.RIGHT, slot.LENGTH})
+        self.assertEqual(set(corners[:, 1]), {slot.LIP, slot.FLOOR})
+
+    def test_a_rate_is_that_of_the_second_half(self):
+        self.assertAlmostEqual(slot_rate.rate(np.arange(5.), np.array([0., 0., 1., 3., 5.])), 2.)
+
+    def test_what_has_left_is_weighed(self):
+        mass = slot_rate.mass_out(np.array([[0., slot.LIP - 1e-3, 0.], [0., slot.LIP + 1e-3, 0.]]),
+                                  np.array([0.01, 0.01]))
+        self.assertAlmostEqual(mass, 2400. * np.pi / 6. * 1e-6)
+
+
 @unittest.skipIf(PROGRAM is None, "no program is given")
 class Runs(unittest.TestCase):
     def run_it(self, *arguments, **changes):
@@ -141,7 +181,7 @@ class Runs(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             results = Path(folder) / "results.json"
             page = Path(folder) / "results.md"
-            done = self.run_it("--cases", "bed_20k,collapse,plough,soft_column", "--ranks", "1", "--repeats",
+            done = self.run_it("--cases", "bed_20k,collapse,plough,soft_column,slot", "--ranks", "1", "--repeats",
                                "1", "--steps", "3", "--shares", "--json", str(results),
                                "--markdown", str(page))
             self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
@@ -149,7 +189,7 @@ class Runs(unittest.TestCase):
             self.assertIn("| case | ranks | Eunoe |", page.read_text())
             self.assertEqual("NOT COMPARED" in page.read_text(), bool(data["missing_peers"]))
         installed = {peer.name for peer in (Lammps(), Liggghts()) if peer.path}
-        self.assertEqual(len(data["speeds"]), 4)
+        self.assertEqual(len(data["speeds"]), 5)
         for row in data["speeds"]:
             self.assertEqual(set(row["speeds"]), installed | {"Eunoe"})
             self.assertEqual(row["ratio"] is None, not installed)

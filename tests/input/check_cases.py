@@ -26,7 +26,7 @@ HUNG = -signal.SIGKILL
 # case would take more than ten.
 MOST_WORK = 5. * PATIENCE
 # Cases that read a bed that a script makes, and studies that read data measured on a twin.
-MADE_FIRST = {"column_collapse", "soft_column", "settled_bed", "plough", "late_pass", "study", "heap_study",
+MADE_FIRST = {"column_collapse", "soft_column", "settled_bed", "slot", "plough", "late_pass", "study", "heap_study",
               "angle_only", "rolling"}
 # A warning that is right for this case, and one that depends on the machine.
 MEANT = {"stacked_pair": "would be shot off."}

@@ -23,13 +23,18 @@ def triangles(depth: float) -> np.ndarray:
                            np.stack((near[:-1], far[1:], far[:-1]), axis=1)))
 
 
-def write_stl(path: Path, depth: float) -> None:
+def write_triangles(path: Path, name: str, corners: np.ndarray) -> None:
+    """An STL file of triangles, shape (n, 3, 3)."""
     with open(path, "w", encoding="utf-8") as file:
-        file.write("solid blade\n")
-        for a, b, c in triangles(depth):
+        file.write(f"solid {name}\n")
+        for a, b, c in corners:
             normal = np.cross(b - a, c - a)
             file.write("facet normal %g %g %g\nouter loop\n" % tuple(normal / np.hypot.reduce(normal)))
             for corner in (a, b, c):
                 file.write("vertex %.12g %.12g %.12g\n" % tuple(corner))
             file.write("endloop\nendfacet\n")
-        file.write("endsolid blade\n")
+        file.write(f"endsolid {name}\n")
+
+
+def write_stl(path: Path, depth: float) -> None:
+    write_triangles(path, "blade", triangles(depth))

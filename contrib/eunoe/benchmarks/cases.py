@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -46,6 +47,11 @@ class Case:
     @property
     def collapse(self) -> bool:
         return self.length > bed.LENGTH
+
+    def variables(self, folder: Path) -> dict:
+        """Variables of the other programs' decks that belong to this case; their files go to the folder."""
+        del folder
+        return {}
 
     def mesh(self) -> str:
         """Arguments of Eunoe's mesh, a single cell."""

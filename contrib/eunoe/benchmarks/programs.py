@@ -20,10 +20,12 @@ from eunoe.repository import CASES as INPUTS
 
 from . import bed, blade
 from .cases import BEDS, Case
+from .slot import Slot
 from .soft_column import SoftColumn
 
 CASES = {case.name: case for case in (
-    *BEDS, SoftColumn("soft_column", "collapse of soft grains, 37,800", "soft_column.prm", 8000))}
+    *BEDS, SoftColumn("soft_column", "collapse of soft grains, 37,800", "soft_column.prm", 8000),
+    Slot("slot", "discharge through a slot, 50,000", "slot.prm", 8000, copies=5))}
 MEASURE_RSS = Path(__file__).with_name("measure_rss.py")
 
 
@@ -117,7 +119,7 @@ class Peer:
         bed.write_for_peer(folder / "bed.data", particles, case.box, case.density, self.atoms)
         values = {"data": folder / "bed.data", "timestep": case.time_step, "skin": case.skins[0],
                   "plough": int(case.plough), "speed": blade.SPEED,
-                  **self.variables(case, folder), **variables}
+                  **self.variables(case, folder), **case.variables(folder), **variables}
         options = [word for name, value in values.items() for word in ("-var", name, str(value))]
         deck = BENCHMARKS / "decks" / f"{case.deck}{self.deck}"
         return output_of([*mpirun(ranks), self.path or self.executable, "-in", str(deck), *options], folder)
