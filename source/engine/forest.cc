@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace eunoe {
 
@@ -59,16 +58,6 @@ struct Lattice
   double product() const { return n_coarse[0] * n_coarse[1] * n_coarse[2]; }
 };
 
-/// Number of a place in the order of p4est within a tree: the bits of its coordinates in turn.
-std::uint64_t in_turn(const std::array<std::uint32_t, 3> &coordinates, const unsigned int n_bits)
-{
-  std::uint64_t code = 0;
-  for (unsigned int bit = n_bits; bit-- > 0;)
-    for (unsigned int d = 3; d-- > 0;)
-      code = code << 1 | (coordinates[d] >> bit & 1);
-  return code;
-}
-
 } // namespace
 
 Forest::Forest(const Domain &domain, const double least_width)
@@ -91,6 +80,25 @@ Forest::Forest(const Domain &domain, const double least_width)
     if (box.is_periodic(d))
       dealii::GridTools::collect_periodic_faces(triangulation, 2 * d, 2 * d + 1, d, pairs);
   triangulation.add_periodicity(pairs);
+  const auto *const forest = triangulation.get_p4est();
+  owners = std::make_unique<const CurveOwners>(
+      n_coarse, n_levels,
+      std::array<bool, 3>{{box.is_periodic(0), box.is_periodic(1), box.is_periodic(2)}},
+      [this](const int cell) {
+        return static_cast<std::int64_t>(
+            triangulation.get_coarse_cell_to_p4est_tree_permutation()[cell]);
+      },
+      forest->mpisize, [this](const int rank) { return begin_of(rank); });
+}
+
+CurveOwners::Position Forest::begin_of(const int rank) const
+{
+  const auto &quadrant = triangulation.get_p4est()->global_first_position[rank];
+  const auto cut = [&](const auto coordinate) {
+    return static_cast<std::uint32_t>(coordinate) >> (P8EST_MAXLEVEL - n_levels);
+  };
+  return {static_cast<std::int64_t>(quadrant.p.which_tree),
+          CurveOwners::in_turn({{cut(quadrant.x), cut(quadrant.y), cut(quadrant.z)}}, n_levels)};
 }
 
 Forest::Place Forest::place(const Vec3 &position) const
@@ -113,78 +121,13 @@ dealii::Point<3> Forest::centre(const Place &place) const
   return x;
 }
 
-int Forest::coarse_cell(const Place &place) const
-{
-  return (place[0] >> n_levels) +
-         n_coarse[0] * ((place[1] >> n_levels) + n_coarse[1] * (place[2] >> n_levels));
-}
-
 Forest::ActiveCell Forest::find(const Place &place) const
 {
-  Cell cell(&triangulation, 0, coarse_cell(place));
+  Cell cell(&triangulation, 0, owners->coarse_cell(place));
   for (unsigned int level = n_levels; level-- > 0 && cell->has_children();)
     cell = cell->child((place[0] >> level & 1) | (place[1] >> level & 1) << 1 |
                        (place[2] >> level & 1) << 2);
   return cell;
-}
-
-unsigned int Forest::owner(const Place &place) const
-{
-  const auto *const forest = triangulation.get_p4est();
-  const auto tree = static_cast<std::int64_t>(
-      triangulation.get_coarse_cell_to_p4est_tree_permutation()[coarse_cell(place)]);
-  const std::uint32_t mask = (1u << n_levels) - 1u;
-  const std::uint64_t code = in_turn(
-      {{static_cast<std::uint32_t>(place[0]) & mask, static_cast<std::uint32_t>(place[1]) & mask,
-        static_cast<std::uint32_t>(place[2]) & mask}},
-      n_levels);
-  // The last rank that begins at the place or before it; one without cells begins where the next
-  // one does.
-  const auto *const begin = forest->global_first_position;
-  const auto *const end = begin + forest->mpisize;
-  const auto *const next =
-      std::upper_bound(begin, end, std::make_pair(tree, code), [&](const auto &at, const auto &q) {
-        const auto cut = [&](const auto coordinate) {
-          return static_cast<std::uint32_t>(coordinate) >> (P8EST_MAXLEVEL - n_levels);
-        };
-        const auto first = std::make_pair(static_cast<std::int64_t>(q.p.which_tree),
-                                          in_turn({{cut(q.x), cut(q.y), cut(q.z)}}, n_levels));
-        return at < first;
-      });
-  return static_cast<unsigned int>(next - begin) - 1;
-}
-
-std::vector<Forest::Cube> Forest::coarse_cells(const Place &begin, const Place &end) const
-{
-  // First the ranges along each axis, cut at the ends of the domain or continued behind them.
-  std::array<std::set<int>, 3> along;
-  const int size = 1 << n_levels;
-  for (unsigned int d = 0; d < 3; ++d)
-    for (int c = begin[d] >> n_levels; c * size < end[d]; ++c)
-      if (box.is_periodic(d))
-        along[d].insert((c % n_coarse[d] + n_coarse[d]) % n_coarse[d]);
-      else if (c >= 0 && c < n_coarse[d])
-        along[d].insert(c);
-  std::vector<Cube> cubes;
-  for (const int x : along[0])
-    for (const int y : along[1])
-      for (const int z : along[2])
-        cubes.push_back({{{x * size, y * size, z * size}}, size});
-  return cubes;
-}
-
-bool Forest::overlap(const Cube &cube, const Place &begin, const Place &end) const
-{
-  for (unsigned int d = 0; d < 3; ++d) {
-    const int n = n_coarse[d] << n_levels;
-    bool some = false;
-    for (const int shift : {-n, 0, n})
-      some = some || ((shift == 0 || box.is_periodic(d)) && cube.first[d] + shift < end[d] &&
-                      cube.first[d] + shift + cube.size > begin[d]);
-    if (!some)
-      return false;
-  }
-  return true;
 }
 
 std::vector<Forest::ForeignCell> Forest::foreign_near(const ActiveCell &cell, const double reach,
@@ -199,43 +142,15 @@ std::vector<Forest::ForeignCell> Forest::foreign_near(const ActiveCell &cell, co
     end[d] = first + size + ring;
   }
   std::vector<ForeignCell> found;
-  std::vector<Cube> cubes = coarse_cells(begin, end);
-  while (!cubes.empty()) {
-    const Cube cube = cubes.back();
-    cubes.pop_back();
-    if (!overlap(cube, begin, end))
-      continue;
-    Place last = cube.first;
-    for (int &coordinate : last)
-      coordinate += cube.size - 1;
-    const unsigned int rank = owner(cube.first);
-    if (rank == owner(last)) {
-      // A piece of p4est's curve, so all of it has one owner.
-      if (rank != own_rank)
-        found.push_back(foreign_cell(rank, cube));
-      continue;
+  for (const CurveOwners::Piece &piece : owners->foreign(begin, end, static_cast<int>(own_rank))) {
+    ForeignCell foreign = {piece.rank, {}, {}};
+    for (unsigned int d = 0; d < 3; ++d) {
+      foreign.half[d] = 0.5 * piece.size * width[d];
+      foreign.centre[d] = lower[d] + piece.first[d] * width[d] + foreign.half[d];
     }
-    const int half = cube.size / 2;
-    for (int child = 0; child < 8; ++child)
-      cubes.push_back(
-          {{{cube.first[0] + (child & 1) * half, cube.first[1] + (child >> 1 & 1) * half,
-             cube.first[2] + (child >> 2) * half}},
-           half});
+    found.push_back(foreign);
   }
-  std::stable_sort(found.begin(), found.end(), [](const ForeignCell &one, const ForeignCell &two) {
-    return one.rank < two.rank;
-  });
   return found;
-}
-
-Forest::ForeignCell Forest::foreign_cell(const unsigned int rank, const Cube &cube) const
-{
-  ForeignCell cell = {static_cast<int>(rank), {}, {}};
-  for (unsigned int d = 0; d < 3; ++d) {
-    cell.half[d] = 0.5 * cube.size * width[d];
-    cell.centre[d] = lower[d] + cube.first[d] * width[d] + cell.half[d];
-  }
-  return cell;
 }
 
 std::vector<std::vector<Forest::ForeignCell>> Forest::foreign_neighbours(const double reach) const

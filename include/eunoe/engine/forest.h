@@ -4,6 +4,7 @@
 // The mesh of the engine, for source files only.
 
 #include <eunoe/domain/domain.h>
+#include <eunoe/engine/curve_owners.h>
 
 #include <deal.II/base/point.h>
 #include <deal.II/distributed/tria.h>
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace eunoe {
@@ -28,8 +30,7 @@ public:
   using Triangulation = dealii::parallel::distributed::Triangulation<3>;
   using Cell = Triangulation::cell_iterator;
   using ActiveCell = Triangulation::active_cell_iterator;
-  /// A cell of the lattice, by its number along each axis.
-  using Place = std::array<std::int32_t, 3>;
+  using Place = CurveOwners::Place;
 
   /// @param least_width of a cell (m), unless the domain is narrower
   Forest(const Domain &domain, double least_width);
@@ -42,7 +43,10 @@ public:
   /// The finest cell at a place that this rank knows; of another rank's it may know a coarser one.
   ActiveCell find(const Place &place) const;
   /// The rank that owns a place.
-  unsigned int owner(const Place &place) const;
+  unsigned int owner(const Place &place) const
+  {
+    return static_cast<unsigned int>(owners->owner(place));
+  }
   /// How often a coarse cell can be cut into eight.
   unsigned int most_levels() const { return n_levels; }
   /// Whether a cell can be cut no more.
@@ -69,20 +73,8 @@ public:
   const dealii::Mapping<3> &get_mapping() const { return mapping; }
 
 private:
-  /// Index of the coarse cell that holds a place.
-  int coarse_cell(const Place &place) const;
-
-  /// Lattice cells that a cell of the forest would hold.
-  struct Cube
-  {
-    Place first;
-    int size; ///< along each axis, a power of two
-  };
-  /// The coarse cells of a box of the lattice, which may stick out of it: [begin, end).
-  std::vector<Cube> coarse_cells(const Place &begin, const Place &end) const;
-  /// Whether a cube, or one of its images across periodic ends, has cells of such a box.
-  bool overlap(const Cube &cube, const Place &begin, const Place &end) const;
-  ForeignCell foreign_cell(unsigned int rank, const Cube &cube) const;
+  /// Where a rank's piece of p4est's curve begins.
+  CurveOwners::Position begin_of(int rank) const;
   /// What others own within @p reach (m) of a cell, ordered by rank.
   std::vector<ForeignCell> foreign_near(const ActiveCell &cell, double reach,
                                         unsigned int own_rank) const;
@@ -94,6 +86,7 @@ private:
   Vec3 width;                ///< of a lattice cell (m)
   Triangulation triangulation;
   const dealii::MappingCartesian<3> mapping;
+  std::unique_ptr<const CurveOwners> owners;
 };
 
 } // namespace eunoe
