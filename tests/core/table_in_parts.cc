@@ -40,10 +40,14 @@ std::string lines(const unsigned int n, const std::string &end)
 void check_parts(const std::string &name, const std::string &text)
 {
   write(text);
-  const Table whole = parse_table(text, path), part = read_table_in_parts(path, MPI_COMM_WORLD);
-  std::vector<std::vector<double>> all;
+  const Table whole = parse_table(text, path);
+  std::vector<std::vector<double>> mine, all;
+  const Table part =
+      read_table_in_parts(path, MPI_COMM_WORLD, [&](const Table &, const std::vector<double> &row) {
+        mine.push_back(row);
+      });
   std::size_t largest = 0;
-  for (const auto &rows : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, part.rows)) {
+  for (const auto &rows : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, mine)) {
     all.insert(all.end(), rows.begin(), rows.end());
     largest = std::max(largest, rows.size());
   }
@@ -53,11 +57,33 @@ void check_parts(const std::string &name, const std::string &text)
     test::check(name + ": in about equal parts", largest < 1.2 * whole.rows.size() / n_ranks);
 }
 
+void leave(const Table &, const std::vector<double> &) {}
+
+/// A file that only the first rank sees: it hands out the parts.
+void check_one_reader()
+{
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const std::string text = "n; x\n" + lines(1000, "\n");
+  write(text);
+  std::vector<double> mine;
+  read_table_in_parts(
+      rank == 0 ? path : "nowhere/" + path, MPI_COMM_WORLD,
+      [&](const Table &, const std::vector<double> &row) { mine.push_back(row[0]); });
+  std::vector<double> all;
+  for (const auto &some : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, mine))
+    all.insert(all.end(), some.begin(), some.end());
+  bool ok = all.size() == 1000;
+  for (std::size_t k = 0; ok && k < all.size(); ++k)
+    ok = all[k] == static_cast<double>(k);
+  test::check("seen by the first rank only", ok);
+}
+
 void print_refusal(const std::string &text)
 {
   write(text);
   try {
-    read_table_in_parts(path, MPI_COMM_WORLD);
+    read_table_in_parts(path, MPI_COMM_WORLD, leave);
     test::print("taken");
   } catch (const UserError &error) {
     test::print(error.what());
@@ -73,13 +99,14 @@ EUNOE_MPI_TEST()
   check_parts("no end of the last line", "n, x\n1, 2\n3, 4");
   check_parts("fewer rows than ranks", "n; x;\n1; 2;\n");
   check_parts("no rows", "n; x\n");
+  check_one_reader();
   std::string wrong = "n; x\n" + lines(1000, "\n");
   print_refusal(wrong + "1; 2; 3\n");
   print_refusal(wrong + "1; two\n" + lines(500, "\n"));
   print_refusal("# nothing\n");
   on_first_rank(MPI_COMM_WORLD, [] { remove_file(path); });
   try {
-    read_table_in_parts(path, MPI_COMM_WORLD);
+    read_table_in_parts(path, MPI_COMM_WORLD, leave);
   } catch (const UserError &error) {
     test::print(error.what());
   }

@@ -1,6 +1,7 @@
 #ifndef eunoe_core_table_h
 #define eunoe_core_table_h
 
+#include <functional>
 #include <mpi.h>
 #include <string>
 #include <vector>
@@ -22,10 +23,15 @@ struct Table
 /// Throws a UserError that names the line.
 Table parse_table(const std::string &text, const std::string &file);
 
+/// Takes a row of a table; of the table only the columns are there.
+using TakeRow = std::function<void(const Table &columns, const std::vector<double> &row)>;
+
 /// Reads a table of which every rank gets a part of the rows, about equal in bytes and in their
-/// order; collective. The first rank reads, and never holds more than a part. Throws a UserError
-/// that names the line on every rank.
-Table read_table_in_parts(const std::string &path, MPI_Comm comm);
+/// order; collective. Where all ranks see the file, each reads its own part of it; else the first
+/// rank reads it and hands out the parts. Throws a UserError that names the line on every rank.
+/// @param take called for each row of this rank
+/// @return the columns
+Table read_table_in_parts(const std::string &path, MPI_Comm comm, const TakeRow &take);
 
 } // namespace eunoe
 

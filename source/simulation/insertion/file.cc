@@ -8,13 +8,14 @@
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 namespace eunoe {
 namespace {
 
-const char *const columns[] = {"p_x", "p_y", "p_z", "v_x", "v_y",
-                               "v_z", "w_x", "w_y", "w_z", "diameters"};
+const char *const names[] = {"p_x", "p_y", "p_z", "v_x", "v_y",
+                             "v_z", "w_x", "w_y", "w_z", "diameters"};
 
 /// Columns that a file may leave out; they are zero then.
 bool may_lack(const std::string &column)
@@ -27,13 +28,13 @@ bool may_lack(const std::string &column)
 class File : public Insertion
 {
 public:
-  File(const std::vector<std::string> &names, const bool repeats, const PhysicalProperties &physics,
+  File(const std::vector<std::string> &paths, const bool repeats, const PhysicalProperties &physics,
        MPI_Comm comm)
       : repeats(repeats), density(physics.types[0].density),
         most(physics.types[0].number > 0 ? physics.types[0].number
                                          : std::numeric_limits<std::size_t>::max())
   {
-    for (const std::string &file : names)
+    for (const std::string &file : paths)
       read(file, comm);
   }
 
@@ -103,54 +104,72 @@ private:
 
   void read(const std::string &file, MPI_Comm comm)
   {
-    const Table table = read_table_in_parts(file, comm);
-    std::vector<int> place;
-    for (const std::string name : columns) {
-      place.push_back(table.column(name));
-      if (place.back() < 0 && !may_lack(name))
-        throw UserError(file + ":1: the header has no column '" + name +
+    Contents contents = {0, {}};
+    std::vector<int> place; // of each column in a row
+    const Table columns =
+        read_table_in_parts(file, comm, [&](const Table &table, const std::vector<double> &row) {
+          if (place.empty())
+            place = places_in(table);
+          contents.share.push_back(particle(row, place));
+        });
+    for (unsigned int c = 0; c < std::size(names); ++c)
+      if (places_in(columns)[c] < 0 && !may_lack(names[c]))
+        throw UserError(file + ":1: the header has no column '" + names[c] +
                         "'. It is 'p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters'.");
-    }
-    const std::uint64_t n = table.rows.size();
+    const std::uint64_t n = contents.share.size();
     std::uint64_t first = 0, n_all;
     MPI_Exscan(&n, &first, 1, MPI_UINT64_T, MPI_SUM, comm);
     if (is_first_rank(comm))
       first = 0; // which MPI leaves undefined
     MPI_Allreduce(&n, &n_all, 1, MPI_UINT64_T, MPI_SUM, comm);
-    Contents contents = {n_all, {}};
+    contents.n = n_all;
     on_every_rank(comm, [&] {
-      for (std::size_t k = 0; k < n; ++k)
-        contents.share.push_back(particle(file, first + k, table.rows[k], place));
+      for (std::size_t k = 0; k < n; ++k) {
+        contents.share[k].id = static_cast<ParticleId>(first + k);
+        refuse_nonsense(contents.share[k], file, first + k);
+      }
     });
+    contents.share.shrink_to_fit();
     for (const NewParticle &particle : contents.share)
       largest = std::max(largest, 2. * particle.radius);
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm);
     files.push_back(std::move(contents));
   }
 
-  /// @param number of the particle in its file, from 0
-  /// @param place of each column in the row
-  NewParticle particle(const std::string &file, const std::size_t number,
-                       const std::vector<double> &row, const std::vector<int> &place) const
+  /// Places of the columns in a row; -1 for those that are missing.
+  static std::vector<int> places_in(const Table &table)
   {
-    double value[10];
-    for (unsigned int c = 0; c < 10; ++c) {
-      value[c] = place[c] < 0 ? 0. : row[place[c]];
-      if (!std::isfinite(value[c]))
-        throw UserError(file + ": particle " + std::to_string(number) + " has " + format(value[c]) +
-                        " as its '" + columns[c] + "'. Give a number.");
-    }
-    if (!(value[9] > 0.))
-      throw UserError(file + ": particle " + std::to_string(number) + " has a diameter of " +
-                      format(value[9]) + " m. Give a positive diameter.");
+    std::vector<int> places;
+    for (const char *const name : names)
+      places.push_back(table.column(name));
+    return places;
+  }
+
+  NewParticle particle(const std::vector<double> &row, const std::vector<int> &place) const
+  {
+    const auto value = [&](const unsigned int c) { return place[c] < 0 ? 0. : row[place[c]]; };
     NewParticle particle;
-    particle.id = static_cast<ParticleId>(number);
-    particle.radius = 0.5 * value[9];
+    particle.radius = 0.5 * value(9);
     particle.mass = sphere_mass(particle.radius, density);
-    particle.position = {value[0], value[1], value[2]};
-    particle.velocity = {value[3], value[4], value[5]};
-    particle.spin = {value[6], value[7], value[8]};
+    particle.position = {value(0), value(1), value(2)};
+    particle.velocity = {value(3), value(4), value(5)};
+    particle.spin = {value(6), value(7), value(8)};
     return particle;
+  }
+
+  /// @param number of the particle in its file, from 0
+  static void refuse_nonsense(const NewParticle &particle, const std::string &file,
+                              const std::uint64_t number)
+  {
+    const Vec3 &x = particle.position, &v = particle.velocity, &w = particle.spin;
+    const double values[] = {x.x, x.y, x.z, v.x, v.y, v.z, w.x, w.y, w.z, 2. * particle.radius};
+    for (unsigned int c = 0; c < std::size(values); ++c)
+      if (!std::isfinite(values[c]))
+        throw UserError(file + ": particle " + std::to_string(number) + " has " +
+                        format(values[c]) + " as its '" + names[c] + "'. Give a number.");
+    if (!(particle.radius > 0.))
+      throw UserError(file + ": particle " + std::to_string(number) + " has a diameter of " +
+                      format(2. * particle.radius) + " m. Give a positive diameter.");
   }
 
   const bool repeats;
