@@ -198,19 +198,15 @@ Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm)
   Checksum share;
   defect.attempt(path, [&] { share = file->checksum_of_share(); });
   defect.agree(comm);
-  std::vector<std::uint64_t> shares(2 * static_cast<std::size_t>(size_of(comm)));
-  const std::uint64_t mine[2] = {share.value, share.n_bytes};
-  MPI_Gather(mine, 2, MPI_UINT64_T, shares.data(), 2, MPI_UINT64_T, 0, comm);
+  std::vector<Checksum> whole = {share};
+  join_pieces(whole, comm);
 
   std::string text;
   if (is_first_rank(comm))
     defect.attempt(path, [&] {
-      Checksum whole;
-      for (std::size_t r = 0; r < shares.size(); r += 2)
-        whole.append({shares[r], shares[r + 1]});
       std::uint64_t sum;
       file->read_at(file->size - sizeof sum, &sum, sizeof sum);
-      text = file->head(sum == whole.value);
+      text = file->head(sum == whole[0].value);
     });
   defect.agree(comm);
   text = broadcast(text, comm);

@@ -35,9 +35,31 @@ public:
   {
     const Share share(n, comm);
     file.write(size + share.before, piece, n);
-    Checksum checksum;
-    checksum.add(piece, n);
-    pieces.insert(pieces.end(), {checksum.value, n});
+    pieces.emplace_back();
+    pieces.back().add(piece, n);
+    size += share.all;
+  }
+
+  /// Writes the values of this rank's rows as the next part; collective.
+  void write(const RowViews &rows)
+  {
+    constexpr std::size_t at_once = 1 << 17;
+    const Share share(rows.n_values() * sizeof(double), comm);
+    std::uint64_t begin = size + share.before;
+    pieces.emplace_back();
+    std::vector<double> buffer;
+    const auto flush = [&] {
+      file.write(begin, buffer.data(), buffer.size() * sizeof(double));
+      pieces.back().add(buffer.data(), buffer.size() * sizeof(double));
+      begin += buffer.size() * sizeof(double);
+      buffer.clear();
+    };
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      buffer.insert(buffer.end(), rows[k], rows.end(k));
+      if (buffer.size() >= at_once)
+        flush();
+    }
+    flush();
     size += share.all;
   }
 
@@ -45,16 +67,11 @@ public:
   /// @return size of the file (bytes)
   std::uint64_t complete()
   {
-    const int n_ranks = size_of(comm), n = static_cast<int>(pieces.size());
-    std::vector<std::uint64_t> all(rank_in(comm) == 0 ? pieces.size() * n_ranks : 0);
-    MPI_Gather(pieces.data(), n, MPI_UINT64_T, all.data(), n, MPI_UINT64_T, 0, comm);
+    join_pieces(pieces, comm);
     if (rank_in(comm) == 0) {
       Checksum whole;
-      for (int part = 0; part < n; part += 2)
-        for (int r = 0; r < n_ranks; ++r) {
-          const std::uint64_t *const piece = &all[static_cast<std::size_t>(r) * n + part];
-          whole.append({piece[0], piece[1]});
-        }
+      for (const Checksum &part : pieces)
+        whole.append(part);
       file.write(size, &whole.value, sizeof whole.value);
     }
     file.complete();
@@ -65,15 +82,15 @@ private:
   MPI_Comm comm;
   SharedFile file;
   std::uint64_t size = 0;
-  std::vector<std::uint64_t> pieces; ///< checksum and size of each of this rank's
+  std::vector<Checksum> pieces; ///< of this rank, one of each part
 };
 
 } // namespace
 
 void CheckpointWriter::add_rows(const std::string &name, const std::vector<std::uint32_t> &keys,
-                                const Rows &rows)
+                                Rows &&rows)
 {
-  sections.push_back({name, sort_rows(keys, rows, comm).rows});
+  sections.push_back({name, sort_rows(keys, std::move(rows), comm).rows});
 }
 
 std::uint64_t CheckpointWriter::write(const std::string &path)
@@ -81,7 +98,7 @@ std::uint64_t CheckpointWriter::write(const std::string &path)
   for (const auto &[name, rows] : sections)
     head["sections"].push_back({{"name", name},
                                 {"rows", Share(rows.size(), comm).all},
-                                {"values", Share(rows.values.size(), comm).all}});
+                                {"values", Share(rows.n_values(), comm).all}});
   PartedFile file(path, comm);
   std::string title;
   if (rank_in(comm) == 0) {
@@ -97,7 +114,7 @@ std::uint64_t CheckpointWriter::write(const std::string &path)
     for (std::size_t k = 0; k < rows.size(); ++k)
       lengths[k] = static_cast<std::uint32_t>(rows.length(k));
     file.write(lengths.data(), lengths.size() * sizeof(std::uint32_t));
-    file.write(rows.values.data(), rows.values.size() * sizeof(double));
+    file.write(rows);
   }
   try {
     return file.complete();

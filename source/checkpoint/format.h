@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <mpi.h>
 #include <string>
+#include <vector>
 #include <zlib.h>
 
 namespace eunoe::checkpoint_format {
@@ -35,6 +36,31 @@ struct Checksum
     n_bytes += next.n_bytes;
   }
 };
+
+/// Joins the pieces that the ranks have of each part, in the order of the ranks, on the first rank;
+/// no rank holds those of all; collective.
+inline void join_pieces(std::vector<Checksum> &pieces, MPI_Comm comm)
+{
+  static_assert(sizeof(Checksum) == 2 * sizeof(std::uint64_t));
+  MPI_Datatype type;
+  MPI_Type_contiguous(2, MPI_UINT64_T, &type);
+  MPI_Type_commit(&type);
+  MPI_Op join;
+  MPI_Op_create(
+      [](void *before, void *behind, int *n, MPI_Datatype *) {
+        for (int k = 0; k < *n; ++k) {
+          Checksum joined = static_cast<Checksum *>(before)[k];
+          joined.append(static_cast<Checksum *>(behind)[k]);
+          static_cast<Checksum *>(behind)[k] = joined;
+        }
+      },
+      0, &join);
+  std::vector<Checksum> joined(pieces.size());
+  MPI_Reduce(pieces.data(), joined.data(), static_cast<int>(pieces.size()), type, join, 0, comm);
+  MPI_Op_free(&join);
+  MPI_Type_free(&type);
+  pieces = joined;
+}
 
 inline int rank_in(MPI_Comm comm)
 {

@@ -48,13 +48,16 @@ void set(Quad &q, const double *place)
 
 } // namespace
 
-void ParticleSystem::save(CheckpointWriter &writer) const
+Rows ParticleSystem::rows_to_save() const
 {
   const ParticleArrays &p = particles;
-  const Rows contacts = contact_rows().get_rows();
+  const ContactRows collected = contact_rows();
+  const Rows &contacts = collected.get_rows();
   const std::size_t n_fixed = n_places + p.extra.size();
   Rows all;
-  std::vector<ParticleId> keys;
+  // So that the vectors do not take twice as much.
+  all.starts.reserve(p.n_owned + 1);
+  all.values.reserve(n_fixed * p.n_owned + contacts.values.size());
   std::vector<double> row;
   for (std::size_t k = 0; k < p.n_owned; ++k) {
     row.assign(n_fixed, 0.);
@@ -72,9 +75,15 @@ void ParticleSystem::save(CheckpointWriter &writer) const
       row[n_places + e] = p.extra[e][k];
     row.insert(row.end(), contacts[k], contacts[k] + contacts.length(k));
     all.append(row.data(), row.data() + row.size());
-    keys.push_back(p.id[k]);
   }
-  writer.add_rows("particles", keys, all);
+  return all;
+}
+
+void ParticleSystem::save(CheckpointWriter &writer) const
+{
+  const auto end = particles.id.begin() + static_cast<std::ptrdiff_t>(particles.n_owned);
+  const std::vector<ParticleId> keys(particles.id.begin(), end);
+  writer.add_rows("particles", keys, rows_to_save());
   writer.head["ledger"] = ledger.save(domain.communicator());
   SavedLayout::write(writer.head, physics.fields, physics.model, physics.wall_model);
 }
@@ -173,7 +182,7 @@ std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
     if (!keeps_ledger)
       ledger.inserted.count(particle.mass);
   }
-  store.insert(list, extra_defaults, kept);
+  store.insert(std::move(list), extra_defaults, std::move(kept));
   store.adapt();
   if (store.imbalance(balancing) > balancing.threshold_at_start)
     store.repartition(balancing);

@@ -1,6 +1,7 @@
 // Rows are brought into the order of their keys over all ranks, whole and shared out evenly.
 // Reference: each row follows from its key.
 
+#include <eunoe/core/key_ranges.h>
 #include <eunoe/core/rows.h>
 
 #include "../tests.h"
@@ -30,7 +31,7 @@ struct Result
 };
 
 /// @param keys of all ranks; every rank keeps those at its turn
-Result sorted(const std::vector<std::uint32_t> &keys)
+Result sorted(const std::vector<std::uint32_t> &keys, const int most_direct)
 {
   std::vector<std::uint32_t> mine;
   Rows rows;
@@ -40,12 +41,12 @@ Result sorted(const std::vector<std::uint32_t> &keys)
       mine.push_back(keys[k]);
       rows.append(row.data(), row.data() + row.size());
     }
-  const KeyedRows found = sort_rows(mine, rows, MPI_COMM_WORLD);
+  const SortedRows found = sort_rows(mine, std::move(rows), MPI_COMM_WORLD, most_direct);
 
   Result result;
   for (std::size_t k = 0; k < found.keys.size(); ++k) {
     result.ascend = result.ascend && (k == 0 || found.keys[k - 1] < found.keys[k]);
-    const std::vector<double> row(found.rows[k], found.rows[k] + found.rows.length(k));
+    const std::vector<double> row(found.rows[k], found.rows.end(k));
     result.are_whole = result.are_whole && row == row_of(found.keys[k]);
     result.sum += found.keys[k];
   }
@@ -65,14 +66,35 @@ Result sorted(const std::vector<std::uint32_t> &keys)
 }
 
 void check_keys(const std::string &name, const std::vector<std::uint32_t> &keys,
-                const std::uint64_t unevenness)
+                const std::uint64_t unevenness, const int most_direct = 256)
 {
-  const Result result = sorted(keys);
+  const Result result = sorted(keys, most_direct);
   const double sum = std::accumulate(keys.begin(), keys.end(), 0.);
   check(name + ", all there", result.n == keys.size() && result.sum == sum);
   check(name + ", in order", result.ascend);
   check(name + ", whole", result.are_whole);
   check(name + ", evenly", result.most <= keys.size() / n_ranks + unevenness);
+}
+
+/// Each rank asks for some keys of others, and for some that are none.
+void check_places(const std::vector<std::uint32_t> &keys)
+{
+  std::vector<std::uint32_t> mine, asked, ordered = keys;
+  for (std::size_t k = 0; k < keys.size(); ++k)
+    if (static_cast<int>(k % n_ranks) == rank)
+      mine.push_back(7 + 3 * keys[k]);
+  std::sort(ordered.begin(), ordered.end());
+  bool ok = true;
+  for (const std::uint32_t beyond : {0u, 6u, 8u, 4000000000u})
+    asked.push_back(beyond);
+  for (std::size_t k = static_cast<std::size_t>(rank); k < ordered.size(); k += 11)
+    asked.push_back(7 + 3 * ordered[k]);
+  const std::vector<std::int64_t> places = places_in_order(mine, asked, MPI_COMM_WORLD);
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    ok = ok && places[k] == (k < 4 ? -1 : static_cast<std::int64_t>(rank + 11 * (k - 4)));
+  int all_ok = ok ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &all_ok, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+  check("places in the order", all_ok != 0);
 }
 
 } // namespace
@@ -95,4 +117,7 @@ EUNOE_MPI_TEST()
   check_keys("a gap", with_a_gap, 500);
   check_keys("a single row", few, 1);
   check_keys("none", {}, 0);
+  // As with many ranks, over one between.
+  check_keys("in two steps", spread, 2, 1);
+  check_places(spread);
 }

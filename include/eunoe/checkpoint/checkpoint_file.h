@@ -29,7 +29,7 @@ public:
 
   /// Adds a section; collective.
   /// @param keys one per row, different from each other on all ranks
-  void add_rows(const std::string &name, const std::vector<std::uint32_t> &keys, const Rows &rows);
+  void add_rows(const std::string &name, const std::vector<std::uint32_t> &keys, Rows &&rows);
 
   /// Writes the file beside an old one of this name and renames it when it is complete and on the
   /// disk; collective. Throws a UserError on every rank if that fails, and leaves the old file.
@@ -40,7 +40,7 @@ private:
   struct Section
   {
     std::string name;
-    Rows rows; ///< this rank's part of the rows in the order of the keys
+    RowViews rows; ///< this rank's part of the rows in the order of the keys
   };
 
   MPI_Comm comm;

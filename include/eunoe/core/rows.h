@@ -2,6 +2,7 @@
 #define eunoe_core_rows_h
 
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <mpi.h>
 #include <vector>
@@ -37,10 +38,21 @@ public:
       add(rows[row], rows.length(row));
   }
 
+  RowViews(RowViews &&) = default;
+  RowViews &operator=(RowViews &&) = default;
+
   std::size_t size() const { return views.size(); }
   std::size_t length(std::size_t row) const { return views[row].length; }
   const double *operator[](std::size_t row) const { return views[row].begin; }
   const double *end(std::size_t row) const { return views[row].begin + views[row].length; }
+  /// Of all rows.
+  std::size_t n_values() const
+  {
+    std::size_t n = 0;
+    for (const View &view : views)
+      n += view.length;
+    return n;
+  }
 
   Rows copy() const
   {
@@ -69,16 +81,20 @@ private:
   std::list<std::vector<double>> owned;
 };
 
-/// Rows with keys by which they are ordered, different from each other on all ranks.
-struct KeyedRows
+/// Rows in the order of their keys.
+struct SortedRows
 {
   std::vector<std::uint32_t> keys;
-  Rows rows;
+  RowViews rows;
 };
 
 /// Brings rows into the order of their keys, over all ranks: the first rank gets the first ones,
 /// and all about as many. No rank sees the keys of all; collective.
-KeyedRows sort_rows(const std::vector<std::uint32_t> &keys, const Rows &rows, MPI_Comm comm);
+/// @param keys different from each other on all ranks
+/// @param most_direct number of ranks up to which each has all others for partners; with more they
+///                    are joined by SquareRoutes
+SortedRows sort_rows(const std::vector<std::uint32_t> &keys, Rows &&rows, MPI_Comm comm,
+                     int most_direct = 256);
 
 /// Where a row is kept among all ranks.
 struct Origin
@@ -90,6 +106,13 @@ struct Origin
 /// Fetches rows from where they are kept, in the order asked for; collective.
 /// @param kept this rank's rows, which must outlive the result
 RowViews fetch_rows(const Rows &kept, const std::vector<Origin> &origins, MPI_Comm comm);
+
+/// Fetches rows of @p n_values doubles from the other ranks that have them, in the order asked for;
+/// collective.
+/// @param pack appends such a row of this rank
+std::vector<double> fetch_foreign(
+    const std::vector<Origin> &origins, std::size_t n_values,
+    const std::function<void(std::int32_t row, std::vector<double> &values)> &pack, MPI_Comm comm);
 
 } // namespace eunoe
 

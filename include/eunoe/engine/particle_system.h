@@ -161,6 +161,8 @@ private:
   /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
   /// collective.
   void check_guests(const Rows &rows, const std::string &path) const;
+  /// What a checkpoint holds of this rank's particles.
+  Rows rows_to_save() const;
   /// This rank's share of a checkpoint's particles, if they fit into this run; collective.
   Rows rows_of(const Checkpoint &checkpoint, const SavedLayout &layout, bool begins_phase) const;
   /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.

@@ -1,11 +1,13 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
-#include <eunoe/core/gather.h>
+#include <eunoe/core/key_ranges.h>
 #include <eunoe/core/random.h>
 #include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 
 #include <algorithm>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace eunoe::spreading {
 
@@ -29,6 +31,31 @@ std::uint32_t find_wall(const Simulation &simulation, const unsigned int side)
   const auto wall = std::find_if(solids.begin(), solids.end(),
                                  [side](const Solid &solid) { return solid.boundary == side; });
   return static_cast<std::uint32_t>(wall - solids.begin());
+}
+
+/// Numbers of the bed's particles in the order of their ids, and -1 for others that touch them: of
+/// those of which this rank knows.
+/// @param bed rows of owned particles
+std::unordered_map<ParticleId, std::int64_t> numbers_in_bed(const ParticleArrays &p,
+                                                            const std::vector<std::size_t> &bed,
+                                                            const ContactRows &contacts,
+                                                            MPI_Comm comm)
+{
+  std::vector<ParticleId> ids;
+  std::unordered_set<ParticleId> known;
+  for (const std::size_t row : bed) {
+    ids.push_back(p.id[row]);
+    known.insert(p.id[row]);
+    for (const ContactRows::Record &record : contacts.records(row))
+      if (!record.with_solid)
+        known.insert(record.partner);
+  }
+  const std::vector<ParticleId> asked(known.begin(), known.end());
+  const std::vector<std::int64_t> places = places_in_order(ids, asked, comm);
+  std::unordered_map<ParticleId, std::int64_t> numbers;
+  for (std::size_t k = 0; k < asked.size(); ++k)
+    numbers[asked[k]] = places[k];
+  return numbers;
 }
 
 } // namespace
@@ -56,17 +83,11 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
   const ParticleArrays &p = simulation.complete_step();
   const ContactRows all_rows = simulation.get_system().contact_rows();
   const std::vector<std::size_t> found = in_reservoir(p, apparatus);
-  std::vector<ParticleId> ids;
-  for (const std::size_t row : found)
-    ids.push_back(p.id[row]);
-  std::vector<ParticleId> bed = gather_all(ids, simulation.communicator());
-  std::sort(bed.begin(), bed.end());
-  const auto number_of = [&](ParticleId id) {
-    const auto it = std::lower_bound(bed.begin(), bed.end(), id);
-    return it != bed.end() && *it == id ? it - bed.begin() : -1;
-  };
+  const auto numbers = numbers_in_bed(p, found, all_rows, simulation.communicator());
+  const auto number_of = [&](ParticleId id) { return numbers.at(id); };
 
-  n_global = bed.size();
+  n_global = found.size();
+  MPI_Allreduce(MPI_IN_PLACE, &n_global, 1, MPI_UINT64_T, MPI_SUM, simulation.communicator());
   depth = -platform_height;
   particles.clear();
   rows = ContactRows(simulation.contact_model().history_size());
@@ -169,7 +190,7 @@ void FeedBed::save(CheckpointWriter &writer) const
     all.append(row.data(), row.data() + row.size());
     keys.push_back(p.id);
   }
-  writer.add_rows("feed bed", keys, all);
+  writer.add_rows("feed bed", keys, std::move(all));
 }
 
 void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
