@@ -1,9 +1,9 @@
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
-#include <eunoe/core/messages.h>
 #include <eunoe/core/new_file.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/quoted_text.h>
+#include <eunoe/core/shared_file.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -72,28 +72,14 @@ void write_file(const std::string &path, const std::string &text, const bool syn
   file.complete(sync);
 }
 
-void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm comm)
+void write_in_parts(const std::string &path, const std::string &mine, MPI_Comm comm)
 {
-  constexpr int tag_size = 331, tag_text = 332;
-  std::uint64_t size = mine.size();
-  if (!is_first_rank(comm)) {
-    MPI_Send(&size, 1, MPI_UINT64_T, 0, tag_size, comm);
-    send(mine.data(), size, 0, tag_text, comm);
-  }
-  on_first_rank(comm, [&] {
-    int n_ranks;
-    MPI_Comm_size(comm, &n_ranks);
-    NewFile file(path);
-    file.write(mine.data(), mine.size());
-    std::string text;
-    for (int rank = 1; rank < n_ranks; ++rank) {
-      MPI_Recv(&size, 1, MPI_UINT64_T, rank, tag_size, comm, MPI_STATUS_IGNORE);
-      text.resize(size);
-      receive(text.data(), size, rank, tag_text, comm);
-      file.write(text.data(), size);
-    }
-    file.complete(false);
-  });
+  const std::uint64_t n = mine.size();
+  std::uint64_t end = 0;
+  MPI_Scan(&n, &end, 1, MPI_UINT64_T, MPI_SUM, comm);
+  SharedFile file(path, comm);
+  file.write(end - n, mine.data(), n);
+  file.complete(false);
 }
 
 double file_size(const std::string &path)

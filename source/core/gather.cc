@@ -51,12 +51,4 @@ void gather_entries(const void *mine, const std::size_t size, const RankShares &
                  shares.starts.data(), entry.type, comm);
 }
 
-void gather_entries_on_first(const void *mine, const std::size_t size, const RankShares &shares,
-                             void *all, MPI_Comm comm)
-{
-  const EntryType entry(size);
-  MPI_Gatherv(mine, shares.counts[rank_in(comm)], entry.type, all, shares.counts.data(),
-              shares.starts.data(), entry.type, 0, comm);
-}
-
 } // namespace eunoe

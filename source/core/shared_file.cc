@@ -56,10 +56,10 @@ void SharedFile::write(std::uint64_t begin, const void *const data, const std::u
   }
 }
 
-void SharedFile::complete()
+void SharedFile::complete(const bool sync)
 {
   if (handle >= 0) {
-    if (error.empty())
+    if (sync && error.empty())
       if (const int failure = sync_file(handle); failure != 0)
         error = std::strerror(failure);
     // Some file systems say only here that there was no space.
@@ -74,7 +74,8 @@ void SharedFile::complete()
     note(std::rename(beside.c_str(), path.c_str()) == 0);
     if (!error.empty())
       throw UserError(cannot_be_written(path, error));
-    sync_folder_of(path);
+    if (sync)
+      sync_folder_of(path);
   });
   is_complete = true;
 }

@@ -1,8 +1,9 @@
-#include <eunoe/core/gather.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/rows.h>
 #include <eunoe/simulation/simulation.h>
 
-#include <algorithm>
-#include <array>
+#include <cstdio>
+#include <iterator>
 
 namespace eunoe {
 namespace {
@@ -16,32 +17,29 @@ public:
   void finish(Simulation &simulation) override
   {
     const ParticleArrays &p = simulation.complete_step();
-    std::vector<Row> mine;
-    mine.reserve(p.n_owned);
+    Rows mine;
+    std::vector<std::uint32_t> ids;
     for (std::size_t k = 0; k < p.n_owned; ++k) {
       const Quad &x = p.position[k], &v = p.velocity[k], &w = p.spin[k];
-      mine.push_back({p.id[k], {x.x, x.y, x.z, v.x, v.y, v.z, w.x, w.y, w.z, 2. * p.radius(k)}});
+      // As the file names the columns.
+      const double row[] = {x.x, x.y, x.z, v.x, v.y, v.z, w.x, w.y, w.z, 2. * p.radius(k)};
+      mine.append(std::begin(row), std::end(row));
+      ids.push_back(p.id[k]);
     }
-    std::vector<Row> all = gather_on_first(mine, simulation.communicator());
-    std::sort(all.begin(), all.end(), [](const Row &a, const Row &b) { return a.id < b.id; });
-    std::string text = "p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters;\n";
-    for (const Row &row : all)
-      for (const double &value : row.columns) {
+    const RowViews rows = sort_rows(ids, std::move(mine), simulation.communicator()).rows;
+    std::string text;
+    if (is_first_rank(simulation.communicator()))
+      text = "p_x; p_y; p_z; v_x; v_y; v_z; w_x; w_y; w_z; diameters;\n";
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      for (const double *value = rows[k]; value != rows.end(k); ++value) {
         char cell[32];
-        std::snprintf(cell, sizeof cell, "%.17g;%c", value,
-                      &value == &row.columns.back() ? '\n' : ' ');
+        std::snprintf(cell, sizeof cell, "%.17g;%c", *value, value + 1 == rows.end(k) ? '\n' : ' ');
         text += cell;
       }
-    simulation.output_folder().write(name + ".csv", text);
+    simulation.output_folder().write_in_parts(name + ".csv", text);
   }
 
 private:
-  struct Row
-  {
-    ParticleId id;
-    std::array<double, 10> columns; ///< as the file names them
-  };
-
   const std::string name;
 };
 

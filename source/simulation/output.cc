@@ -140,10 +140,11 @@ void PictureSeries::write_in_parallel(const double time, dealii::DataOutInterfac
   MPI_Allreduce(&has_points, &any_has_points, 1, MPI_INT, MPI_MAX, comm);
   // ParaView needs at least one piece, but none without points in front of others.
   const bool has_piece = has_points != 0 || (any_has_points == 0 && rank == 0);
-  write_in_turn(path,
-                (rank == 0 ? text.head : std::string()) + (has_piece ? text.piece : std::string()) +
-                    (rank == n_ranks - 1 ? text.tail : std::string()),
-                comm);
+  write_in_parts(path,
+                 (rank == 0 ? text.head : std::string()) +
+                     (has_piece ? text.piece : std::string()) +
+                     (rank == n_ranks - 1 ? text.tail : std::string()),
+                 comm);
   write_index();
 }
 

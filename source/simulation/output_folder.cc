@@ -25,6 +25,12 @@ void OutputFolder::write(const std::string &name, const std::string &text) const
     on_first_rank(comm, [&] { write_file(file(name), text); });
 }
 
+void OutputFolder::write_in_parts(const std::string &name, const std::string &mine) const
+{
+  if (opened)
+    eunoe::write_in_parts(file(name), mine, comm);
+}
+
 std::shared_ptr<CsvFile> OutputFolder::table(const std::string &name,
                                              const std::vector<std::string> &columns)
 {

@@ -22,9 +22,9 @@ std::string read_file(const std::string &path, MPI_Comm comm);
 /// @param sync waits until the file would survive a crash of the machine
 void write_file(const std::string &path, const std::string &text, bool sync = false);
 
-/// Writes the texts of all ranks one behind the other, in the same way; collective. One rank
-/// writes: with MPI's own files, a full disk may be reported to some ranks only, or to none.
-void write_in_turn(const std::string &path, const std::string &mine, MPI_Comm comm);
+/// Writes the texts of all ranks one behind the other, in the same way, each its own; collective.
+/// Throws a UserError on every rank.
+void write_in_parts(const std::string &path, const std::string &mine, MPI_Comm comm);
 
 /// Size of a file (bytes), 0 if there is none.
 double file_size(const std::string &path);

@@ -19,15 +19,11 @@ struct RankShares
   std::vector<int> counts, starts; ///< one per rank
 };
 
-/// Brings the entries of all ranks to every rank, or to the first one; collective.
+/// Brings the entries of all ranks to every rank; collective.
 /// @param size of an entry (bytes)
 /// @param all room for all of them
-///@{
 void gather_entries(const void *mine, std::size_t size, const RankShares &shares, void *all,
                     MPI_Comm comm);
-void gather_entries_on_first(const void *mine, std::size_t size, const RankShares &shares,
-                             void *all, MPI_Comm comm);
-///@}
 
 /// The entries of all ranks, by rank, on every rank; collective.
 template <typename Entry>
@@ -37,19 +33,6 @@ std::vector<Entry> gather_all(const std::vector<Entry> &mine, MPI_Comm comm)
   const RankShares shares(mine.size(), comm);
   std::vector<Entry> all(shares.total());
   gather_entries(mine.data(), sizeof(Entry), shares, all.data(), comm);
-  return all;
-}
-
-/// The entries of all ranks, by rank, on the first one; none on the others; collective.
-template <typename Entry>
-std::vector<Entry> gather_on_first(const std::vector<Entry> &mine, MPI_Comm comm)
-{
-  static_assert(std::is_trivially_copyable_v<Entry>);
-  const RankShares shares(mine.size(), comm);
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  std::vector<Entry> all(rank == 0 ? shares.total() : 0);
-  gather_entries_on_first(mine.data(), sizeof(Entry), shares, all.data(), comm);
   return all;
 }
 

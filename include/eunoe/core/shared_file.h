@@ -22,9 +22,10 @@ public:
   /// Writes @p n bytes from the byte @p begin of the file on.
   void write(std::uint64_t begin, const void *data, std::uint64_t n);
 
-  /// Waits until the file and its name would survive a crash of the machine; collective. Throws a
-  /// UserError on every rank if a rank could not write its parts; then the old file is as it was.
-  void complete();
+  /// Gives the file its name; collective. Throws a UserError on every rank if a rank could not
+  /// write its parts; then the old file is as it was.
+  /// @param sync waits until the file and its name would survive a crash of the machine
+  void complete(bool sync = true);
 
 private:
   void note(bool ok);

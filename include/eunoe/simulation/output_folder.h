@@ -34,6 +34,9 @@ public:
   /// collective.
   void write(const std::string &name, const std::string &text) const;
 
+  /// The same for a file of which each rank has a part, in their order.
+  void write_in_parts(const std::string &name, const std::string &mine) const;
+
   /// A table "name", new or continued. Throws a UserError on every rank; collective.
   std::shared_ptr<CsvFile> table(const std::string &name, const std::vector<std::string> &columns);
 
