@@ -18,26 +18,13 @@
 
 namespace eunoe {
 
-/// Places of a particle's data among its properties in the handler. The position is one of them, as
-/// the handler is told the centre of a lattice cell instead.
+/// What the handler keeps of a particle beside its id: where its state is, and what decides the
+/// load of its cell. The handler is told the centre of a lattice cell as its position.
 namespace property {
-constexpr unsigned int position = 0, velocity = 3, spin = 6, force = 9, torque = 12, radius = 15,
-                       mass = 16, type = 17, origin = 18, id = 19, work = 20, extra = 21;
+constexpr unsigned int origin = 0, work = 1, asleep = 2, n = 3;
 } // namespace property
 
-inline void store(const Vec3 &v, double *values)
-{
-  values[0] = v.x;
-  values[1] = v.y;
-  values[2] = v.z;
-}
-
-inline Quad load(const double *values, const double w)
-{
-  return {values[0], values[1], values[2], w};
-}
-
-/// A place in memory as one double, exact below 2^53.
+/// A place in memory as one double, exact below 2^53: for 2^21 ranks.
 inline double encode(const Origin &origin)
 {
   return origin.rank < 0 ? -1. : origin.rank * 0x1p32 + origin.row;
@@ -58,7 +45,7 @@ struct ParticleStore::Implementation
   Implementation(const Domain &domain, double least_width, double reach, unsigned int n_extra,
                  std::optional<FieldHandle> asleep)
       : domain(domain), forest(domain, least_width), reach(reach), n_extra(n_extra), asleep(asleep),
-        handler(forest.mesh(), forest.get_mapping(), property::extra + n_extra),
+        handler(forest.mesh(), forest.get_mapping(), property::n),
         rank(dealii::Utilities::MPI::this_mpi_process(domain.communicator())),
         near_cell(forest.foreign_neighbours(reach))
   {
@@ -69,29 +56,34 @@ struct ParticleStore::Implementation
     return forest.place(domain.to_own_frame(position));
   }
 
-  std::vector<double> properties_of(const NewParticle &p, const Origin &origin,
-                                    const std::vector<double> &extra) const
-  {
-    std::vector<double> values(property::extra, 0.);
-    store(domain.periods().wrap(p.position), &values[property::position]);
-    store(p.velocity, &values[property::velocity]);
-    store(p.spin, &values[property::spin]);
-    values[property::radius] = p.radius;
-    values[property::mass] = p.mass;
-    values[property::type] = p.type;
-    values[property::origin] = encode(origin);
-    values[property::id] = p.id;
-    values[property::work] = 1.;
-    values.insert(values.end(), extra.begin(), extra.end());
-    return values;
-  }
+  /// @name The state of the particles while they find their ranks and cells
+  /// It stays where it is until the next `read`, on the rank and in the row that the origin names:
+  /// rows of the arrays that were written, behind which stand new particles.
+  ///@{
+  const ParticleArrays *written = nullptr;
+  std::vector<NewParticle> incoming;
+  std::vector<Origin> incoming_contacts; ///< empty: they have none
+  std::vector<double> incoming_extra;    ///< extra doubles of each
 
-  /// Gives particles to the ranks that own their places, by their properties; collective. The
-  /// handler's numbers are to be updated afterwards.
-  /// @param rows the properties of one particle after another, by rank
-  void hand_over(std::map<unsigned int, std::vector<double>> &rows);
+  std::size_t n_written() const { return written != nullptr ? written->n_owned : 0; }
+  bool is_new(std::int32_t row) const { return static_cast<std::size_t>(row) >= n_written(); }
+  const NewParticle &new_one(std::int32_t row) const { return incoming[row - n_written()]; }
+  /// Position and radius, wrapped at periods.
+  Quad position(std::int32_t row) const;
+  ///@}
+
+  /// The particles in the order of the arrays, by their numbers in that of the handler.
+  std::vector<std::uint32_t> order(const States &states, const ContactGrid &grid);
+
+  /// A particle that goes to a cell, in doubles: lattice cell, id, properties.
+  static constexpr std::size_t traveller_size = 4 + property::n;
+  static void append_traveller(const Forest::Place &place, ParticleId id, const double *properties,
+                               std::vector<double> &travellers);
+  /// Gives particles to the ranks that own their places; collective. The handler's numbers are to
+  /// be updated afterwards.
+  void hand_over(std::map<unsigned int, std::vector<double>> &travellers);
   /// Takes particles into this rank's cells.
-  void take(const std::vector<double> &rows);
+  void take(const std::vector<double> &travellers);
 
   /// This rank's cells that have many particles, and parents of cells that have few.
   struct Marks
@@ -115,7 +107,6 @@ struct ParticleStore::Implementation
     change(forest.mesh());
     handler.unpack_after_coarsening_and_refinement();
     near_cell = forest.foreign_neighbours(reach);
-    particles.clear();
   }
 
   /// Cost of particles, as they were when they were last written.
@@ -125,9 +116,8 @@ struct ParticleStore::Implementation
     double sum = 0.;
     for (const auto &particle : particles) {
       const auto values = particle.get_properties();
-      sum += values[property::work] * (asleep && values[property::extra + asleep->first] != 0.
-                                           ? p.inactive_factor
-                                           : p.active_factor);
+      sum += values[property::work] *
+             (values[property::asleep] != 0. ? p.inactive_factor : p.active_factor);
     }
     return sum * p.particle_weight;
   }
@@ -157,8 +147,7 @@ struct ParticleStore::Implementation
   std::uint64_t cannot_be_united = 0;
   /// What others own around each cell, by active index.
   std::vector<std::vector<Forest::ForeignCell>> near_cell;
-  /// The particles of the last read and their cells, in the order of the arrays.
-  std::vector<Handler::particle_iterator> particles;
+  /// The cells of the particles of the last read, in the order of the arrays.
   std::vector<unsigned int> cells;
 };
 

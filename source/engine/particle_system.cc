@@ -80,24 +80,30 @@ void ParticleSystem::leave_out_sleepers()
 
 void ParticleSystem::add_loads(const std::vector<std::size_t> &list, const double time)
 {
+  // In portions: there may be as many as there are particles.
+  constexpr std::size_t portion = 4096;
   ParticleArrays some;
-  some.resize(list.size(), 0, static_cast<unsigned int>(particles.extra.size()));
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    const std::size_t row = list[k];
-    some.position[k] = particles.position[row];
-    some.velocity[k] = particles.velocity[row];
-    some.spin[k] = particles.spin[row];
-    some.id[k] = particles.id[row];
-    some.type[k] = particles.type[row];
-    some.reference[k] = particles.reference[row];
-    for (std::size_t e = 0; e < some.extra.size(); ++e)
-      some.extra[e][k] = particles.extra[e][row];
-  }
-  for (const auto &load : physics.loads)
-    load->add(some, time);
-  for (std::size_t k = 0; k < list.size(); ++k) {
-    particles.force[list[k]].add(some.force[k].vec());
-    particles.torque[list[k]].add(some.torque[k].vec());
+  for (std::size_t begin = 0; begin < list.size(); begin += portion) {
+    const std::size_t n = std::min(portion, list.size() - begin);
+    some.resize(n, 0, static_cast<unsigned int>(particles.extra.size()));
+    for (std::size_t k = 0; k < n; ++k) {
+      const std::size_t row = list[begin + k];
+      some.position[k] = particles.position[row];
+      some.velocity[k] = particles.velocity[row];
+      some.spin[k] = particles.spin[row];
+      some.force[k] = some.torque[k] = Quad();
+      some.id[k] = particles.id[row];
+      some.type[k] = particles.type[row];
+      some.reference[k] = particles.reference[row];
+      for (std::size_t e = 0; e < some.extra.size(); ++e)
+        some.extra[e][k] = particles.extra[e][row];
+    }
+    for (const auto &load : physics.loads)
+      load->add(some, time);
+    for (std::size_t k = 0; k < n; ++k) {
+      particles.force[list[begin + k]].add(some.force[k].vec());
+      particles.torque[list[begin + k]].add(some.torque[k].vec());
+    }
   }
 }
 

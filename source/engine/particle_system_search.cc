@@ -184,7 +184,7 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   return true;
 }
 
-ParticleId ParticleSystem::insert_and_remove(const Delivery &delivery,
+ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
                                              const std::vector<std::size_t> &removed,
                                              const std::vector<std::size_t> &lost,
                                              const std::vector<Solid> &solids)
@@ -214,12 +214,12 @@ ParticleId ParticleSystem::insert_and_remove(const Delivery &delivery,
     for (const ContactRows::Record &record : delivery.rows.records(k))
       rows.add(record);
   }
-  store.insert(delivery.particles, extra_defaults, origins);
-  rebuild(solids, nullptr);
-
   ParticleId first_new = std::numeric_limits<ParticleId>::max();
   for (const NewParticle &particle : delivery.particles)
     first_new = std::min(first_new, particle.id);
+  store.insert(std::move(delivery.particles), extra_defaults, std::move(origins));
+  rebuild(solids, nullptr);
+
   MPI_Allreduce(MPI_IN_PLACE, &first_new, 1, MPI_UINT32_T, MPI_MIN, domain.communicator());
   return first_new;
 }

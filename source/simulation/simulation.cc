@@ -343,8 +343,7 @@ void Simulation::compute_forces()
                     wanted ? &solids.new_loads() : nullptr);
 }
 
-void Simulation::insert_and_remove(const Delivery &delivery,
-                                   const std::vector<std::size_t> &removed)
+void Simulation::insert_and_remove(Delivery delivery, const std::vector<std::size_t> &removed)
 {
   complete_step();
   const std::vector<std::size_t> lost = inspect();
@@ -357,7 +356,7 @@ void Simulation::insert_and_remove(const Delivery &delivery,
   ParticleId first_new;
   {
     const Timers::Scope scope(progress.timers, Section::search);
-    first_new = system.insert_and_remove(delivery, removed, lost, solids.list());
+    first_new = system.insert_and_remove(std::move(delivery), removed, lost, solids.list());
     // The mesh was shared out before there were particles. This changes no result.
     const LoadBalancingParameters *const balance =
         clock.step() == 0 ? balancer.at_start(system.imbalance(parameters.load_balancing))
@@ -374,13 +373,13 @@ void Simulation::insert_and_remove(const Delivery &delivery,
 void Simulation::do_what_is_due()
 {
   if (inserter.is_due(clock.step())) {
-    const Inserter::Event event =
+    Inserter::Event event =
         inserter.next_event(domain, system.particles, solids.list(), clock.time());
     if (event.n_outside > 0)
       get_log().line("At t = " + format(time()) + " s, " +
                      format_count(static_cast<double>(event.n_outside), "particle", "particles") +
                      " outside the mesh left out of the insertion");
-    insert_and_remove(event.delivery, event.removed);
+    insert_and_remove(std::move(event.delivery), event.removed);
   }
   if (process) {
     const Timers::Scope scope(progress.timers, Section::process);

@@ -13,10 +13,10 @@ namespace eunoe {
 
 struct LoadBalancingParameters;
 
-/// The store of record of all particles, distributed over the ranks by a mesh of the engine's own
-/// (deal.II's ParticleHandler on a p4est forest): identity, migration, repartitioning. Between
-/// searches the simulation computes with ParticleArrays; `write` and `read` move the state between
-/// the two.
+/// Which rank and which cell have which particles: deal.II's ParticleHandler on a p4est forest, a
+/// mesh of the engine's own. The handler moves no more than a particle's id and where its state is
+/// kept, in the ParticleArrays with which the simulation computes: after `write` the particles find
+/// their ranks and cells, and `read` brings their states there.
 class ParticleStore
 {
 public:
@@ -34,17 +34,19 @@ public:
   std::uint64_t n_cells() const;
   ///@}
 
-  /// Inserts this rank's share of new particles, wherever they lie; collective.
-  /// @param extra initial values of the extra doubles of every particle
-  /// @param origins where the contacts of each are kept, empty for none
-  /// Throws a UserError if one of them lies outside the mesh.
-  void insert(const std::vector<NewParticle> &particles, const std::vector<double> &extra,
-              const std::vector<Origin> &origins = {});
-
-  /// Takes over the state of the owned particles, which must be those of the last `read`, wraps
-  /// their positions and notes that their contacts are kept in row k of this rank.
+  /// Takes the state of the owned particles, which must be those of the last `read`, from these
+  /// arrays, which must stay as they are until the next `read`. Their contacts are kept in row k of
+  /// this rank.
   /// @param work cost of each in a step, about 1; new particles count 1
   void write(const ParticleArrays &particles, const std::vector<double> &work);
+
+  /// Inserts this rank's share of new particles, wherever they lie; collective. To be called after
+  /// `write`, if there are others, and once before the next `read`.
+  /// @param extra initial values of the extra doubles of every particle
+  /// @param contacts where those of each are kept, empty for none
+  /// Throws a UserError if one of them lies outside the mesh.
+  void insert(std::vector<NewParticle> &&particles, const std::vector<double> &extra,
+              std::vector<Origin> &&contacts = {});
 
   /// Removes owned particles by their rows in the last `read`; collective. To be called between
   /// `write` and `migrate`.
@@ -63,9 +65,10 @@ public:
   /// Largest load of a rank less the smallest, over the mean; collective.
   double imbalance(const LoadBalancingParameters &parameters) const;
 
-  /// Fills the arrays with the owned particles, ordered by (cell of @p grid, id), without ghosts.
-  /// @param origins where the contacts of each are kept
-  void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &origins);
+  /// Fills the arrays with the owned particles, ordered by (cell of @p grid, id), without ghosts;
+  /// collective. They may be those that were written.
+  /// @param contacts where those of each are kept
+  void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &contacts);
 
   /// Ranks that need a copy of an owned particle by its row in the last `read`: those that own a
   /// place within reach, across periodic faces too.
@@ -77,6 +80,7 @@ public:
 
 private:
   struct Implementation;
+  class States;
   std::unique_ptr<Implementation> implementation;
 };
 

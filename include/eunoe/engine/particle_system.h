@@ -85,7 +85,7 @@ public:
   /// @param removed rows of owned particles
   /// @param lost rows of those that are taken out and counted as lost
   /// @return the smallest id of the new particles of all ranks
-  ParticleId insert_and_remove(const Delivery &delivery, const std::vector<std::size_t> &removed,
+  ParticleId insert_and_remove(Delivery delivery, const std::vector<std::size_t> &removed,
                                const std::vector<std::size_t> &lost,
                                const std::vector<Solid> &solids);
 

@@ -98,7 +98,7 @@ public:
   ParticleId take_ids(std::uint64_t n) { return inserter.take_ids(n); }
   /// Inserts and removes particles at the present time; the others continue unchanged. Particles
   /// that have gone wrong are found and treated as before a search.
-  void insert_and_remove(const Delivery &delivery, const std::vector<std::size_t> &removed);
+  void insert_and_remove(Delivery delivery, const std::vector<std::size_t> &removed);
   /// Takes note that the motion of a solid was changed at the present time.
   void renew_solids() { move_solids(); }
   ///@}
