@@ -141,17 +141,25 @@ double ExactSum::value() const
   return negative ? -value : value;
 }
 
-void ExactSum::reduce(MPI_Comm comm)
+void ExactSum::reduce(const std::initializer_list<ExactSum *> sums, MPI_Comm comm)
 {
-  carry();
-  std::array<std::int64_t, n_digits + 1> buffer;
-  std::copy(digits.begin(), digits.end(), buffer.begin());
-  buffer[n_digits] = finite ? 0 : 1;
+  constexpr std::size_t n = n_digits + 1;
+  std::vector<std::int64_t> buffer;
+  buffer.reserve(n * sums.size());
+  for (ExactSum *const sum : sums) {
+    sum->carry();
+    buffer.insert(buffer.end(), sum->digits.begin(), sum->digits.end());
+    buffer.push_back(sum->finite ? 0 : 1);
+  }
   MPI_Allreduce(MPI_IN_PLACE, buffer.data(), static_cast<int>(buffer.size()), MPI_INT64_T, MPI_SUM,
                 comm);
-  std::copy(buffer.begin(), buffer.end() - 1, digits.begin());
-  finite = buffer[n_digits] == 0;
-  carry();
+  auto from = buffer.begin();
+  for (ExactSum *const sum : sums) {
+    std::copy_n(from, n_digits, sum->digits.begin());
+    sum->finite = from[n_digits] == 0;
+    sum->carry();
+    from += n;
+  }
 }
 
 } // namespace eunoe

@@ -1,7 +1,9 @@
 // The insertion before the run: whether particles come, whether they have room, whether they move.
 
 #include <eunoe/contact/contact_grid.h>
+#include <eunoe/core/box_parts.h>
 #include <eunoe/core/gather.h>
+#include <eunoe/core/sparse_exchange.h>
 
 #include "insertion/obstacles.h"
 #include "judgements.h"
@@ -21,7 +23,7 @@ const std::string insertion_info = "subsection 'insertion info'";
 constexpr double doubtful_overlap = 0.1;
 /// Share of its radius that a particle may go in a time step.
 constexpr double largest_way = 0.1;
-/// Most particles of an event whose pairs are looked at.
+/// Most particles of an event and a rank whose pairs are looked at.
 constexpr double most_looked_at = 2e6;
 /// Most ids of a run.
 constexpr double most_particles = 4294967294.;
@@ -30,73 +32,140 @@ struct Sphere
 {
   Vec3 centre;
   double radius;
+  std::uint64_t number; ///< in the event
 };
 
-/// All particles of an event, the same on every rank.
-std::vector<Sphere> spheres_of_all(const std::vector<NewParticle> &share, MPI_Comm comm)
+/// The spheres of an event in a rank's part of the domain, and behind them those around that may
+/// touch one of them.
+struct Spheres
 {
-  std::vector<Sphere> mine;
-  for (const NewParticle &p : share)
-    mine.push_back({p.position, p.radius});
+  std::vector<Sphere> all;
+  std::size_t n_own = 0;
+  double largest = 0.; ///< radius of those of all ranks (m)
+};
+
+/// Where about the particles of all ranks are, the same on every rank.
+std::vector<Vec3> sample_of(const std::vector<NewParticle> &share, MPI_Comm comm)
+{
+  const std::size_t n = std::min(share.size(), BoxParts::sample_size(1));
+  std::vector<Vec3> mine;
+  for (std::size_t k = 0; k < n; ++k)
+    mine.push_back(share[k * share.size() / n].position);
   return gather_all(mine, comm);
 }
 
-/// The deepest overlap that was found.
+Spheres spheres_near(const std::vector<NewParticle> &share, const Domain &domain)
+{
+  MPI_Comm comm = domain.communicator();
+  int rank, n_ranks;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &n_ranks);
+  const BoxParts parts(domain.lower(), domain.upper(), domain.periods(), sample_of(share, comm),
+                       n_ranks);
+  Spheres found;
+  std::uint64_t n = share.size(), end = 0;
+  MPI_Scan(&n, &end, 1, MPI_UINT64_T, MPI_SUM, comm);
+  std::map<int, std::vector<Sphere>> out;
+  for (std::size_t k = 0; k < share.size(); ++k) {
+    const NewParticle &p = share[k];
+    out[parts.at(p.position)].push_back({p.position, p.radius, end - n + k});
+    found.largest = std::max(found.largest, p.radius);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &found.largest, 1, MPI_DOUBLE, MPI_MAX, comm);
+  const auto take = [&] {
+    for (const auto &[from, list] : exchange_lists(std::move(out), comm))
+      found.all.insert(found.all.end(), list.begin(), list.end());
+    out.clear();
+  };
+  take();
+  found.n_own = found.all.size();
+  std::vector<int> near;
+  for (const Sphere &sphere : found.all) {
+    parts.near(sphere.centre, sphere.radius + found.largest, near);
+    for (const int part : near)
+      if (part != rank)
+        out[part].push_back(sphere);
+  }
+  take();
+  return found;
+}
+
+/// The deepest overlap that was found; of several the one of the first particle.
 struct Overlap
 {
   double share = 0.; ///< over the smaller radius
+  std::uint64_t number = std::numeric_limits<std::uint64_t>::max();
   Vec3 where;
 
-  void take(const double overlap, const double radius, const Vec3 &x)
+  void take(const double overlap, const double radius, const Sphere &sphere)
   {
-    if (overlap > share * radius) {
-      share = overlap / radius;
-      where = x;
+    const double found = overlap / radius;
+    if (found > share || (found == share && sphere.number < number)) {
+      share = found;
+      number = sphere.number;
+      where = sphere.centre;
     }
+  }
+
+  /// Takes the deepest one of all ranks; collective.
+  void reduce(MPI_Comm comm)
+  {
+    double deepest = share;
+    MPI_Allreduce(MPI_IN_PLACE, &deepest, 1, MPI_DOUBLE, MPI_MAX, comm);
+    std::uint64_t first = share == deepest ? number : std::numeric_limits<std::uint64_t>::max();
+    MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_UINT64_T, MPI_MIN, comm);
+    const double nowhere = -std::numeric_limits<double>::infinity();
+    Vec3 place = share == deepest && number == first ? where : Vec3{nowhere, nowhere, nowhere};
+    for (unsigned int d = 0; d < 3; ++d)
+      MPI_Allreduce(MPI_IN_PLACE, &place[d], 1, MPI_DOUBLE, MPI_MAX, comm);
+    share = deepest;
+    number = first;
+    where = place;
   }
 };
 
 /// Of pairs of particles.
-Overlap overlap_of_pairs(const std::vector<Sphere> &spheres, const Domain &domain)
+Overlap overlap_of_pairs(const Spheres &spheres, const Domain &domain)
 {
   Overlap deepest;
-  if (spheres.empty())
+  if (spheres.all.empty())
     return deepest;
-  double largest = 0.;
-  for (const Sphere &sphere : spheres)
-    largest = std::max(largest, sphere.radius);
   const ContactGrid grid(domain.box_from_centre().lower, domain.box_from_centre().upper,
-                         domain.periods(), 2. * largest);
+                         domain.periods(), 2. * spheres.largest);
   std::vector<std::uint64_t> keys;
-  for (const Sphere &sphere : spheres)
+  for (const Sphere &sphere : spheres.all)
     keys.push_back(grid.key(sphere.centre));
-  std::vector<std::size_t> order(spheres.size());
+  std::vector<std::size_t> order(spheres.all.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return keys[a] != keys[b] ? keys[a] < keys[b] : a < b;
-  });
+  const auto comes_first = [&](const std::size_t a, const std::size_t b) {
+    return keys[a] != keys[b] ? keys[a] < keys[b] : spheres.all[a].number < spheres.all[b].number;
+  };
+  const auto first_ghost = order.begin() + static_cast<std::ptrdiff_t>(spheres.n_own);
+  std::sort(order.begin(), first_ghost, comes_first);
+  std::sort(first_ghost, order.end(), comes_first);
+  // Only what the grid looks at.
   ParticleArrays rows;
-  rows.resize(spheres.size(), 0, 0);
-  for (std::size_t row = 0; row < order.size(); ++row) {
-    const auto &[centre, radius] = spheres[order[row]];
-    rows.position[row] = {centre.x, centre.y, centre.z, radius};
-    rows.id[row] = static_cast<ParticleId>(order[row]);
+  rows.n_owned = spheres.n_own;
+  rows.n_ghosts = order.size() - spheres.n_own;
+  for (const std::size_t k : order) {
+    const Vec3 &x = spheres.all[k].centre;
+    rows.position.push_back({x.x, x.y, x.z, spheres.all[k].radius});
+    rows.id.push_back(static_cast<ParticleId>(spheres.all[k].number));
   }
   PairList pairs;
   pairs.clear(0);
   grid.find_pairs(rows, 0., pairs);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const std::int32_t i = pairs.i[k], j = pairs.j[k];
-    const Vec3 a = rows.position[i].vec(), b = rows.position[j].vec();
-    const double distance = norm(domain.periods().shortest(a - b));
-    const double radius_a = rows.radius(i), radius_b = rows.radius(j);
-    deepest.take(radius_a + radius_b - distance, std::min(radius_a, radius_b), a);
+    const Sphere &a = spheres.all[order[pairs.i[k]]], &b = spheres.all[order[pairs.j[k]]];
+    const double distance = norm(domain.periods().shortest(a.centre - b.centre));
+    deepest.take(a.radius + b.radius - distance, std::min(a.radius, b.radius),
+                 a.number < b.number ? a : b);
   }
   return deepest;
 }
 
 /// Of particles with the walls and solids that act at the beginning.
-Overlap overlap_with_solids(const std::vector<Sphere> &spheres, std::vector<Solid> solids)
+Overlap overlap_with_solids(const Spheres &spheres, std::vector<Solid> solids)
 {
   solids.erase(std::remove_if(solids.begin(), solids.end(),
                               [](const Solid &solid) { return !solid.is_active(0.); }),
@@ -105,9 +174,9 @@ Overlap overlap_with_solids(const std::vector<Sphere> &spheres, std::vector<Soli
     solid.state = solid.motion->at(0.);
   std::vector<Vec3> centres;
   std::vector<double> radii;
-  for (const Sphere &sphere : spheres) {
-    centres.push_back(sphere.centre);
-    radii.push_back(sphere.radius);
+  for (std::size_t k = 0; k < spheres.n_own; ++k) {
+    centres.push_back(spheres.all[k].centre);
+    radii.push_back(spheres.all[k].radius);
   }
   Obstacles obstacles(std::move(solids));
   obstacles.search(centres, radii, 0, centres.size(), 0.);
@@ -115,7 +184,7 @@ Overlap overlap_with_solids(const std::vector<Sphere> &spheres, std::vector<Soli
   for (std::size_t k = 0; k < centres.size(); ++k) {
     double overlap = 0.;
     obstacles.push(k, centres[k], radii[k], overlap);
-    deepest.take(overlap, radii[k], centres[k]);
+    deepest.take(overlap, radii[k], spheres.all[k]);
   }
   return deepest;
 }
@@ -231,20 +300,27 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
                    problems);
   Overlap of_pairs, with_solids;
   for (std::size_t e = 0; e < events.size(); ++e) {
-    std::vector<NewParticle> event = events[e];
-    if (!insertion.gives_particles())
-      judge_outside(leave_out_what_is_outside(event, domain), event.size(), domain, problems);
+    std::vector<NewParticle> inside;
+    if (!insertion.gives_particles()) {
+      inside = events[e];
+      const std::size_t n_outside = leave_out_what_is_outside(inside, domain);
+      judge_outside(n_outside, inside.size(), domain, problems);
+    }
+    const std::vector<NewParticle> &event = insertion.gives_particles() ? events[e] : inside;
     judge_speed(event, parameters.control.time_step, domain.communicator(), problems);
     std::uint64_t n = event.size();
-    MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
+    MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UINT64_T, MPI_MAX, domain.communicator());
     if (static_cast<double>(n) > most_looked_at)
       continue;
-    const std::vector<Sphere> spheres = spheres_of_all(event, domain.communicator());
-    const Overlap pairs = overlap_of_pairs(spheres, domain);
+    const Spheres spheres = spheres_near(event, domain);
+    Overlap pairs = overlap_of_pairs(spheres, domain);
+    pairs.reduce(domain.communicator());
     of_pairs = pairs.share > of_pairs.share ? pairs : of_pairs;
     // Solids may have moved until the events that follow.
-    if (e == 0)
+    if (e == 0) {
       with_solids = overlap_with_solids(spheres, solids);
+      with_solids.reduce(domain.communicator());
+    }
   }
   judge_overlap(of_pairs, "a particle overlaps another", parameters.faults, problems);
   judge_overlap(with_solids, "a particle overlaps a wall or solid", parameters.faults, problems);

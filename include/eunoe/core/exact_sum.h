@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <mpi.h>
 #include <vector>
 
@@ -33,7 +34,9 @@ public:
   ///@}
 
   /// Adds up the sums of all ranks; collective.
-  void reduce(MPI_Comm comm);
+  void reduce(MPI_Comm comm) { reduce({this}, comm); }
+  /// The same for several at once.
+  static void reduce(std::initializer_list<ExactSum *> sums, MPI_Comm comm);
 
 private:
   /// The largest double has its highest bit at place 2097; two digits more hold carries.
