@@ -6,102 +6,9 @@
 
 #include "announcements.h"
 #include "judgements.h"
+#include "parts.h"
 
 namespace eunoe {
-
-namespace {
-
-/// Null for a general case.
-std::unique_ptr<Process> make_process(const Parameters &parameters)
-{
-  return parameters.process() != nullptr ? parameters.process()->make(parameters) : nullptr;
-}
-
-/// Null for a process, which makes its own.
-std::unique_ptr<Insertion> make_insertion(const Parameters &parameters, MPI_Comm comm, Log &log)
-{
-  if (parameters.process_name != "none")
-    return nullptr;
-  const InsertionSection &method = parameters.insertion.chosen();
-  method.announce(parameters.insertion, parameters.physics, log);
-  return method.make(parameters.insertion, parameters.physics, comm);
-}
-
-/// The mesh, with a word before it if its making takes long.
-Background background_of(const Parameters &parameters, Log &log)
-{
-  Background background = {parameters.mesh, parameters.refinement, parameters.grid_motion.make()};
-  background.needs_cells =
-      (parameters.process_name == "none" && parameters.insertion.chosen().needs_cells()) ||
-      std::any_of(parameters.observables.begin(), parameters.observables.end(),
-                  [](const auto &named) { return named.second->needs_cells(); });
-  announce_mesh(background, log);
-  return background;
-}
-
-std::vector<std::unique_ptr<Load>> make_loads(const Parameters &parameters)
-{
-  std::vector<std::unique_ptr<Load>> loads;
-  for (const auto &[name, section] : parameters.loads)
-    if (auto load = section->make(parameters.physics))
-      loads.push_back(std::move(load));
-  return loads;
-}
-
-double largest_diameter(const Parameters &parameters, const Inserter &inserter)
-{
-  return inserter.get_method() != nullptr ? inserter.get_method()->largest_diameter()
-                                          : parameters.physics.largest_diameter();
-}
-
-/// Skins of contact searches (m).
-struct Skins
-{
-  double wanted;  ///< by the input
-  double least;   ///< that a run can do with
-  double contact; ///< distance of two centres up to which particles act on each other
-
-  Skins(const Parameters &parameters, const Inserter &inserter)
-  {
-    constexpr double least_share = 0.01;
-    const double largest = largest_diameter(parameters, inserter);
-    wanted = parameters.detection.skin(largest);
-    least = std::min(wanted, least_share * largest);
-    contact = largest + parameters.contact_model(largest).range();
-  }
-
-  /// The skin in a domain: smaller than wanted where a period is so short that a pair would be
-  /// found on both sides.
-  double in(const PeriodicBox &box) const
-  {
-    double skin = wanted;
-    for (unsigned int d = 0; d < 3; ++d)
-      if (box.is_periodic(d))
-        skin = std::min(skin, std::max(least, 0.5 * box.length[d] - contact));
-    return skin;
-  }
-};
-
-double skin(const Parameters &parameters, const Inserter &inserter, const Domain &domain)
-{
-  return Skins(parameters, inserter).in(domain.periods());
-}
-
-ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter,
-                           Process *const process, Sleeper &sleeper)
-{
-  ParticleFields fields;
-  if (process != nullptr)
-    process->add_fields(fields);
-  sleeper.add_fields(fields);
-  const double largest = largest_diameter(parameters, inserter);
-  ContactModel pairs = parameters.contact_model(largest), walls = parameters.wall_model(largest);
-  pairs.widen(walls.history_size());
-  walls.widen(pairs.history_size());
-  return {std::move(pairs), std::move(walls), make_loads(parameters), fields, sleeper.get().flag()};
-}
-
-} // namespace
 
 Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
     : parameters(input.of_run()), process(make_process(parameters)),
@@ -112,15 +19,15 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       clock(parameters.control.time_step, parameters.control.n_steps()),
       sleeper(parameters.sparse_contacts, norm(parameters.physics.gravity), clock.time_step()),
       system(domain, physics_of(parameters, inserter, process.get(), sleeper),
-             skin(parameters, inserter, domain), largest_diameter(parameters, inserter),
+             skin_of(parameters, inserter, domain), largest_diameter(parameters, inserter),
              progress.timers),
       integrator(parameters.integration.make()),
-      criterion(parameters.detection, skin(parameters, inserter, domain), comm),
+      criterion(parameters.detection, skin_of(parameters, inserter, domain), comm),
       balancer(parameters.load_balancing),
       // Without a search two bodies must not come closer by more than the skin, so each may move by
       // half of it.
       guard(parameters.faults, domain, system.contact_model().get_materials(),
-            0.5 * skin(parameters, inserter, domain), clock.time_step()),
+            0.5 * skin_of(parameters, inserter, domain), clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {
