@@ -55,6 +55,7 @@ VARIANTS = {
     "awake": Variant("without sleep", {SLEEP: "false"}),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
 }
+BASE_VARIANTS = {variant.base for variant in VARIANTS.values()}
 
 
 @dataclass(frozen=True)
@@ -105,8 +106,9 @@ class Case:
 
     @property
     def is_base(self) -> bool:
-        """Whether others are compared with this case, so that it is looked at closely."""
-        return self.is_plain or self.group in BASES
+        """Whether this is a case that others are compared with, of any property set, so that it is looked at
+        closely."""
+        return self.is_plain or (self.title == VARIANTS[self.variant].title and self.variant in BASE_VARIANTS)
 
     @property
     def input_file(self) -> str:
@@ -155,7 +157,6 @@ CASES = (
     *_series("PS3", 1., 1),
     *_series("PS1", 2., 1),
 )
-BASES = {case.base for case in CASES}
 
 
 def chosen(words: list[str]) -> list[Case]:
