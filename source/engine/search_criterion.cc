@@ -32,15 +32,17 @@ void ContactDetectionParameters::check(const ParameterCheck &check) const
                 "Give a value above 1, for example 1.1.");
 }
 
-void SearchCriterion::ask(const unsigned long long step, const Travel &travel)
+void SearchCriterion::ask(const unsigned long long step, const Travel &travel,
+                          const double near_share)
 {
-  largest.fill(std::numeric_limits<double>::infinity());
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  largest = {unknown, unknown, near_share};
   const bool is_constant = parameters.method == "constant";
   if (is_constant && step % parameters.frequency != 0)
     return;
   // Whether MPI_MAX keeps a NaN depends on the MPI library.
   if (!is_constant && !std::isnan(travel.moved2))
-    largest = {std::sqrt(travel.moved2), std::sqrt(travel.step2)};
+    largest = {std::sqrt(travel.moved2), std::sqrt(travel.step2), near_share};
   MPI_Iallreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE,
                  MPI_MAX, comm, &answer);
 }

@@ -177,7 +177,7 @@ void Simulation::advance()
   // Sleepers keep the displacement from before their sleep. NaN stays NaN.
   if (travel.moved2 < system.particles.sleepers_moved2)
     travel.moved2 = system.particles.sleepers_moved2;
-  criterion.ask(clock.step(), travel);
+  criterion.ask(clock.step(), travel, system.near_share());
   const bool look_is_due = sleeper.is_look_due(clock, solids.list());
   if (!look_is_due) {
     // Done while the answers of all ranks arrive; wasted if these demand a search.
@@ -185,7 +185,7 @@ void Simulation::advance()
     system.update_ghosts();
   }
   const bool searches = criterion.is_due(solids);
-  system.note_step(criterion.largest_step());
+  system.note_step(criterion.largest_step(), criterion.largest_near_share());
   if (searches)
     search();
   if (look_is_due || (sleeper.is_enabled() && searches))

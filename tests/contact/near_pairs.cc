@@ -86,7 +86,7 @@ EUNOE_MPI_TEST()
   double longest = 0.;
   for (unsigned int step = 0; step < 400; ++step) {
     // Something is left out of account for a while, as after an insertion.
-    near.near.note_step(move(p, step), 2. * radius);
+    near.near.note_step(move(p, step), 2. * radius, near.near.share());
     all.near.forget();
     if (step % 150 == 149)
       near.near.forget();
@@ -111,10 +111,10 @@ EUNOE_MPI_TEST()
   check("the same contacts are known", memory);
 
   NearPairs unknown;
-  unknown.note_step(std::numeric_limits<double>::infinity(), radius);
+  unknown.note_step(std::numeric_limits<double>::infinity(), radius, unknown.share());
   check("a list lasts for no step if steps are not known", unknown.begin() == 0.);
-  unknown.note_step(0., radius);
+  unknown.note_step(0., radius, unknown.share());
   check("and for ever at rest", unknown.begin() == 0. && !unknown.is_due());
-  unknown.note_step(0.4 * radius, radius);
+  unknown.note_step(0.4 * radius, radius, unknown.share());
   check("but not when something is fast", unknown.is_due());
 }

@@ -26,8 +26,24 @@ bool is_due(const ContactDetectionParameters &parameters, double moved, double s
   MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   SearchCriterion criterion(parameters, skin, MPI_COMM_WORLD);
-  criterion.ask(step, {rank + 1 == n_ranks ? moved * moved : 0.});
+  criterion.ask(step, {rank + 1 == n_ranks ? moved * moved : 0.}, 0.);
   return criterion.is_due(solids);
+}
+
+/// Whether ranks that would list near pairs at different steps are told the same.
+bool is_share_common()
+{
+  int n_ranks, rank;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const ContactDetectionParameters parameters;
+  SearchCriterion criterion(parameters, skin, MPI_COMM_WORLD);
+  criterion.ask(1, {0.}, 1. / (1. + rank));
+  criterion.is_due(MovingSolids());
+  const bool first = criterion.largest_near_share() == 1.;
+  criterion.ask(2, {0.}, 1. + rank);
+  criterion.is_due(MovingSolids());
+  return first && criterion.largest_near_share() == n_ranks;
 }
 
 } // namespace
@@ -45,6 +61,7 @@ EUNOE_MPI_TEST()
   check("a solid alone", !is_due(parameters, 0., 0.79) && is_due(parameters, 0., 0.81));
   check("a slower solid is none of the two", !is_due(parameters, 0.39, 0.3));
   check("no number", is_due(parameters, std::numeric_limits<double>::quiet_NaN(), 0.));
+  check("near pairs are listed at the same steps on all ranks", is_share_common());
   parameters.frequency = 10;
   check("dynamic looks at every step", is_due(parameters, 1., 1., 9));
   parameters.method = "constant";

@@ -34,11 +34,13 @@ public:
   /// Every particle has gone by at most @p step since the last call (m), infinite if that is not
   /// known.
   /// @param skin separation up to which the list has pairs (m)
-  void note_step(const double step, const double skin)
+  /// @param share see `share`; the same on all ranks, so that they make their lists at the same
+  ///              steps and none waits for another's
+  void note_step(const double step, const double skin, const double share)
   {
     constexpr double most_steps = 200.;
     left -= 2. * step;
-    const double n_steps = std::min(most_steps, std::floor(std::sqrt(share() * skin / step)));
+    const double n_steps = std::min(most_steps, std::floor(std::sqrt(share * skin / step)));
     wanted = n_steps >= 1. ? 2. * n_steps * step : 0.;
   }
 
@@ -47,6 +49,10 @@ public:
   /// Whether so many of the pairs are within reach that it costs less to compute all than to sort
   /// them out.
   bool is_dense() const { return dense; }
+
+  /// Looking at all pairs once in n steps costs as much a step as what n steps add to the margin if
+  /// n^2 is this share of skin over step.
+  double share() const { return dense ? share_if_dense : share_if_not; }
 
   /// Begins a list.
   /// @return the separation up to which a pair belongs to it (m)
@@ -101,10 +107,6 @@ public:
   bool is_of_other_pairs = true;
 
 private:
-  /// Looking at all pairs once in n steps costs as much a step as what n steps add to the margin if
-  /// n^2 is this share of skin over step.
-  double share() const { return dense ? share_if_dense : share_if_not; }
-
   /// From how many pairs of the last list were within reach.
   void judge_density()
   {

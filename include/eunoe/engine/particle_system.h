@@ -67,8 +67,11 @@ public:
   bool search_again(const std::vector<Solid> &solids, double moved,
                     const std::vector<std::size_t> &lost);
 
+  /// How seldom this rank would list its near pairs.
+  double near_share() const { return pairs.near.share(); }
   /// Particles have gone by at most @p step (m), infinite if that is not known.
-  void note_step(double step) { pairs.near.note_step(step, skin); }
+  /// @param share largest `near_share` of a rank
+  void note_step(double step, double share) { pairs.near.note_step(step, skin, share); }
 
   /// What is wrong with this rank's particles.
   Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const

@@ -46,13 +46,16 @@ public:
 
   /// Asks how far particles have gone on any rank; collective.
   /// @param travel on this rank
-  void ask(unsigned long long step, const Travel &travel);
+  /// @param near_share of this rank, see `NearPairs`
+  void ask(unsigned long long step, const Travel &travel, double near_share);
 
   /// Of a particle since the last search, on any rank, once all have answered (m); infinite if it
   /// is not known.
   double largest_displacement() const { return largest[0]; }
   /// Of a particle in this step, likewise.
   double largest_step() const { return largest[1]; }
+  /// The largest of all ranks' shares; this rank's where nothing was asked.
+  double largest_near_share() const { return largest[2]; }
 
   /// Whether a search is due, once all ranks have answered; collective.
   /// @param solids which have moved, too
@@ -62,7 +65,8 @@ private:
   const ContactDetectionParameters &parameters;
   const double allowed;
   MPI_Comm comm;
-  std::array<double, 2> largest = {}; ///< since the last search and in this step, on any rank (m)
+  /// Since the last search and in this step (m), and the share, on any rank.
+  std::array<double, 3> largest = {};
   MPI_Request answer = MPI_REQUEST_NULL;
 };
 
