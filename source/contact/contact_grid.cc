@@ -42,10 +42,7 @@ public:
                                             std::int32_t *j) const
   {
     const double ax = x[a], ay = y[a], az = z[a], radius_a = radius[a] + reach;
-    const std::int32_t row_a = rows[a];
-    const ParticleId id_a = id[a];
-    const bool a_is_owned = row_a < n_owned;
-    std::int32_t n = 0;
+    std::int32_t n_near = 0;
     for (std::int32_t first = run.begin; first < run.end; first += batch) {
       alignas(64) double excess[batch];
       const double *const bx = &x[first], *const by = &y[first], *const bz = &z[first],
@@ -58,16 +55,23 @@ public:
         const double near = radius_a + br[k];
         excess[k] = dx * dx + dy * dy + dz * dz - near * near;
       }
-      // Without branches, which could not be foretold.
+      // Without branches, which could not be foretold; few are near, so the rest waits.
       const std::int32_t count = std::min(batch, run.end - first);
       for (std::int32_t k = 0; k < count; ++k) {
-        const std::int32_t row = rows[first + k];
-        const bool is_lower = id[first + k] < id_a;
-        i[n] = is_lower ? row : row_a;
-        j[n] = is_lower ? row_a : row;
-        n += static_cast<std::int32_t>(excess[k] < 0.) &
-             (static_cast<std::int32_t>(a_is_owned) | static_cast<std::int32_t>(row < n_owned));
+        i[n_near] = first + k;
+        n_near += static_cast<std::int32_t>(excess[k] < 0.);
       }
+    }
+    const std::int32_t row_a = rows[a];
+    const ParticleId id_a = id[a];
+    const bool a_is_owned = row_a < n_owned;
+    std::int32_t n = 0;
+    for (std::int32_t k = 0; k < n_near; ++k) {
+      const std::int32_t b = i[k], row = rows[b];
+      const bool is_lower = id[b] < id_a;
+      i[n] = is_lower ? row : row_a;
+      j[n] = is_lower ? row_a : row;
+      n += static_cast<std::int32_t>(a_is_owned) | static_cast<std::int32_t>(row < n_owned);
     }
     return n;
   }
