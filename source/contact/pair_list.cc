@@ -1,5 +1,7 @@
 #include <eunoe/contact/pair_list.h>
 
+#include <algorithm>
+
 namespace eunoe {
 
 void PairList::move_memory_to_pool(const bool but_near)
@@ -12,10 +14,34 @@ void PairList::move_memory_to_pool(const bool but_near)
       record[k] = memory.move_to_pool(record[k]);
 }
 
+void PairList::shift_lanes()
+{
+  // Near pairs are in the order of the list, so no contact overtakes another: those that go down do
+  // so from the first on, those that go up from the last on, and none lands on one that has yet to
+  // go.
+  ContactLanes &lanes = memory.lanes;
+  lanes.resize(std::max(near.size(), lanes.size()));
+  const auto shift = [&](const std::size_t lane, const bool down) {
+    std::int32_t &one = record[near.places[lane]];
+    const auto to = static_cast<std::int32_t>(lane);
+    if (one == ContactMemory::none || (down ? one <= to : one >= to))
+      return;
+    lanes.move(one, lane);
+    one = to;
+  };
+  for (std::size_t lane = 0; lane < near.size(); ++lane)
+    shift(lane, true);
+  for (std::size_t lane = near.size(); lane-- > 0;)
+    shift(lane, false);
+  lanes.resize(near.size());
+}
+
 void PairList::lay_out_memory()
 {
   const bool dense = near.is_dense();
-  if (dense || !memory.lanes.empty()) {
+  if (dense && !near.is_of_other_pairs && !memory.lanes.empty() && !memory.has_pooled())
+    shift_lanes();
+  else if (dense || !memory.lanes.empty()) {
     memory.begin_move(dense ? near.size() : 0);
     // Pairs that are near no more are those of a list that is new, or whose particles sleep now.
     if (!dense || near.is_of_other_pairs)

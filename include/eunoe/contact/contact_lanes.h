@@ -18,11 +18,23 @@ public:
   void assign(const std::size_t n_pairs, const unsigned int n_history)
   {
     n_components = n_history;
+    values.clear();
+    // Room that is never used takes no memory, while a vector that grows is there twice.
+    values.reserve((n_pairs + n_pairs / 2) * n_components);
+    resize(n_pairs);
+  }
+
+  /// Changes the number of lanes; those that stay keep what they have.
+  void resize(const std::size_t n_pairs)
+  {
     const std::size_t n_blocks = (n_pairs + PairBlock::size - 1) / PairBlock::size;
-    values.assign(n_blocks * PairBlock::size * n_components, 0.);
+    values.resize(n_blocks * PairBlock::size * n_components);
   }
 
   bool empty() const { return values.empty(); }
+
+  /// Number of lanes, in whole blocks.
+  std::size_t size() const { return n_components > 0 ? values.size() / n_components : 0; }
 
   PairBlock::Lanes *block(const std::size_t b)
   {
@@ -49,6 +61,14 @@ public:
     double *const to = values.data() + place(lane);
     for (unsigned int h = 0; h < n_components; ++h)
       to[h * PairBlock::size] = from[h];
+  }
+
+  void move(const std::size_t from_lane, const std::size_t to_lane)
+  {
+    const double *const from = values.data() + place(from_lane);
+    double *const to = values.data() + place(to_lane);
+    for (unsigned int h = 0; h < n_components; ++h)
+      to[h * PairBlock::size] = from[h * PairBlock::size];
   }
 
   void clear(const std::size_t lane)

@@ -98,6 +98,9 @@ struct PairList
   void note_reach(std::size_t block, std::uint64_t bits);
 
 private:
+  /// Moves memory to the lanes of a new list of near pairs within the lanes, where none is in the
+  /// pool and all pairs with a contact are near.
+  void shift_lanes();
   /// @param but_near whether the records of near pairs stay where they are
   void move_memory_to_pool(bool but_near);
 };

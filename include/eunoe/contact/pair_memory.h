@@ -50,6 +50,8 @@ public:
     std::copy_n(values, length, pool[record - first_of_pool]);
   }
 
+  bool has_pooled() const { return pool.n_living() > 0; }
+
   /// Makes new lanes, of zeros; until `end_move` the old ones are still there, from which records
   /// can be moved.
   void begin_move(const std::size_t n_lanes)
