@@ -126,7 +126,10 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
                              const LoadBalancingParameters *balance)
 {
   store.migrate();
-  store.adapt();
+  if (balance != nullptr || ++unadapted >= between_adaptations) {
+    store.adapt();
+    unadapted = 0;
+  }
   if (balance != nullptr) {
     store.repartition(*balance);
     ++balances;
@@ -218,6 +221,7 @@ ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
   for (const NewParticle &particle : delivery.particles)
     first_new = std::min(first_new, particle.id);
   store.insert(std::move(delivery.particles), extra_defaults, std::move(origins));
+  unadapted = between_adaptations;
   rebuild(solids, nullptr);
 
   MPI_Allreduce(MPI_IN_PLACE, &first_new, 1, MPI_UINT32_T, MPI_MIN, domain.communicator());

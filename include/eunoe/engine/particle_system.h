@@ -196,8 +196,8 @@ private:
   const ParticlePhysics physics;
   const ContactModel &model;
   const double skin, largest_diameter;
-  /// Distance from where the last `search` found them up to which the ghosts suffice (m); larger:
-  /// more ghosts, fewer of the expensive searches.
+  /// Distance from where the last `search` found them up to which the ghosts suffice (m): half a
+  /// diameter, from two to four skins. Larger: more ghosts, fewer of the expensive searches.
   const double largest_drift;
   double drift = 0.; ///< at most so far has a particle moved from there (m)
   Ledger ledger;
@@ -213,6 +213,9 @@ private:
   const std::vector<double> extra_defaults; ///< extra doubles of a new particle
   std::size_t pairs_with_room = 0;          ///< for whose contacts there is room in the memory
   unsigned long long searches = 0, searches_in_place = 0, balances = 0;
+  /// Particles that stay go by less than a cell between so many of the expensive searches.
+  static constexpr unsigned int between_adaptations = 4;
+  unsigned int unadapted = 0; ///< expensive searches since the mesh has followed the particles
 };
 
 } // namespace eunoe
