@@ -42,6 +42,7 @@ COMMANDS = {
         "heap-size": ("studies.heap_size", "how a heap's angle depends on the size of its disc"),
         "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
         "sleep-proofs": ("studies.sleep_proofs", "whether sleeping particles change what creeps or flows"),
+        "measure": ("discovery.measure", "measures particles of another program or a scan, for a study"),
         "suite": ("discovery.suite", "makes a blind suite of hidden truths for eunoe-discovery, and studies it"),
         "score": ("discovery.score", "compares the answers of such a suite with the truths"),
     },
