@@ -43,6 +43,8 @@ COMMANDS = {
         "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
         "sleep-proofs": ("studies.sleep_proofs", "whether sleeping particles change what creeps or flows"),
         "measure": ("discovery.measure", "measures particles of another program or a scan, for a study"),
+        "fingerprints": ("discovery.fingerprints", "how well recorded runs tell effects apart"),
+        "foreign-heaps": ("discovery.foreign_heaps", "makes heaps with LIGGGHTS or LAMMPS, as data of studies"),
         "suite": ("discovery.suite", "makes a blind suite of hidden truths for eunoe-discovery, and studies it"),
         "score": ("discovery.score", "compares the answers of such a suite with the truths"),
     },

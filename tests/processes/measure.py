@@ -88,7 +88,8 @@ def check_spreading(folder: Path) -> None:
     assert {key for key in own if key[0] in ("surface_height", "surface_roughness", "mean_diameter", "solid_fraction")
             or key in (("mass", str(last)), ("particles", str(last)))} == set(again), again
     for key, value in again.items():
-        assert abs(value - own[key]) <= 1e-9 * abs(own[key]), (key, value, own[key])
+        # When a run weighs, in the first step after the time for it, the plate has begun its next stroke.
+        assert abs(value - own[key]) <= 1e-6 * abs(own[key]), (key, value, own[key])
     layers = sorted(folder.glob("*_layers*.vtu"))
     layers = [file for file in layers if "solids" not in file.name]
     assert len(layers) == last + 1, layers

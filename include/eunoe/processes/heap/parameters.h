@@ -27,7 +27,7 @@ struct HeapParameters : public ProcessSection
   double rest_duration = 5e-3;
   double longest_wait = 0.5;
 
-  unsigned int n_views = 16, n_bins = 100, n_rings = 5, n_density_layers = 3;
+  unsigned int n_views = 16, n_bins = 100, n_rings = 5, n_density_layers = 2;
   std::string measured_profile;
   bool picture = true;
 
