@@ -11,7 +11,7 @@ fi
 
 contrib/install_dependencies.sh
 echo "Building (a few minutes the first time)"
-contrib/build.sh Release eunoe-particles
+contrib/build.sh Release eunoe-particles eunoe-discovery
 launch=(mpirun -np "$ranks")
 if [ "$(id -u)" -eq 0 ]; then
   launch+=(--allow-run-as-root)

@@ -10,7 +10,8 @@ from xml.etree import ElementTree
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+from vtkmodules.vtkIOLegacy import vtkDataSetReader
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
 
 class VtkError(Exception):
@@ -66,6 +67,24 @@ def read_vtu(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
     data = grid.GetPointData()
     arrays = {data.GetArrayName(k): vtk_to_numpy(data.GetArray(k)) for k in range(data.GetNumberOfArrays())}
     return {"points": vtk_to_numpy(grid.GetPoints().GetData()), **arrays}
+
+
+def read_points(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
+    """The same of points in any file of VTK: .vtu, .vtp, or the older .vtk."""
+    if path.suffix == ".vtu":
+        return read_vtu(path, names)
+    reader = vtkXMLPolyDataReader() if path.suffix == ".vtp" else vtkDataSetReader()
+    reader.SetFileName(str(path))
+    if isinstance(reader, vtkDataSetReader):
+        reader.ReadAllScalarsOn()
+        reader.ReadAllFieldsOn()
+    complaint = _complaint(reader.Update) if path.is_file() else "no file"
+    data = reader.GetOutput()
+    if complaint or data is None or data.GetNumberOfPoints() == 0:
+        raise VtkError(f"{path.name} cannot be read: it is missing, not complete, or has no points.")
+    points = np.array([data.GetPoint(k) for k in range(data.GetNumberOfPoints())])
+    arrays = data.GetPointData()
+    return {"points": points, **{name: vtk_to_numpy(arrays.GetArray(name)) for name in names if arrays.HasArray(name)}}
 
 
 def points_of_pieces(path: Path) -> list[int]:

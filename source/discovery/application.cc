@@ -27,7 +27,7 @@ const ProgramText program = {
 
 struct ExtraArguments
 {
-  bool list_observables = false, list_effects = false;
+  bool list_observables = false, list_effects = false, verdict_exit_code = false;
   std::string truth_file;
 };
 
@@ -136,7 +136,9 @@ void write_page(const StudyInput &study, MPI_Comm comm, Log &log)
                 study.parameters.output_path + " where Python has Matplotlib.");
 }
 
-int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
+/// @param tells_verdict whether the exit code is that of the verdict. MPI's launchers take every
+/// code but 0 for a failure.
+int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
   StudyFolder folder(p.output_path, comm);
@@ -156,7 +158,7 @@ int make_study(const StudyInput &study, MPI_Comm comm, Log &log)
     write_answer(study, discovery, *simulator, folder);
     write_page(study, comm, log);
     print_answer(discovery, folder, log);
-    return exit_code(discovery.verdict);
+    return tells_verdict ? exit_code(discovery.verdict) : exit_success;
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Start the study again to go on.");
     return exit_stopped;
@@ -224,7 +226,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
     throw RefusedInput(error);
   }
   if (!makes_data)
-    return make_study(study, comm, log);
+    return make_study(study, arguments.verdict_exit_code, comm, log);
   try {
     stop_request::listen();
     make_synthetic_data(study.parameters, study.factors, comm, log);
@@ -247,6 +249,10 @@ int run_discovery(int argc, char **argv, MPI_Comm comm)
           "instead of a study, make measured data of the hidden truth in this file, which is a "
           "study with a subsection 'twin'",
           nullptr, &arguments.truth_file},
+         {"verdict-exit-code",
+          "end with the verdict's code: 0 none, 10 named, 11 tie, 12 off catalogue, 13 "
+          "underpowered",
+          &arguments.verdict_exit_code},
          {"list-observables", "list what processes measure, and exit", &arguments.list_observables},
          {"list-effects", "list the effects of the catalogue, or of the study, and exit",
           &arguments.list_effects}});

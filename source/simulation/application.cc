@@ -1,7 +1,10 @@
 #include <eunoe/core/exit_code.h>
 #include <eunoe/core/files.h>
 #include <eunoe/simulation/command_line.h>
+#include <eunoe/simulation/given_particles.h>
 #include <eunoe/simulation/simulation.h>
+
+#include <boost/algorithm/string.hpp>
 
 namespace eunoe {
 
@@ -28,7 +31,38 @@ void print_check(const RunEstimate &estimate, const double time_step, const std:
                : "The case can be run. " + count_of_warnings(n_warnings) + ": see above.");
 }
 
-int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
+/// What only this program is asked for.
+struct ExtraArguments
+{
+  std::string dump, measure;
+};
+
+/// Prints what the case's process measures of particles in files.
+void measure(const Parameters &parameters, const std::string &files, MPI_Comm comm, Log &log)
+{
+  const ProcessSection *const process = parameters.process();
+  if (process == nullptr)
+    throw UserError(
+        "--measure: the case has no process, so that nothing says what is measured. Set "
+        "the entry 'process'.");
+  std::vector<std::string> names;
+  boost::split(names, files, boost::is_any_of(","));
+  std::vector<std::vector<GivenParticle>> moments;
+  for (std::string &name : names) {
+    boost::trim(name);
+    moments.push_back(read_given_particles(name, parameters.physics.types[0].density, comm));
+  }
+  std::string table;
+  try {
+    table = table_of(process->measure(parameters, moments), process->observables());
+  } catch (const UserError &error) {
+    throw UserError(files + ": " + error.what());
+  }
+  boost::trim_right(table);
+  log.line(table);
+}
+
+int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
 {
   if (const auto code =
           answer(line, program, !line.print_parameters && !line.describe_parameters, comm))
@@ -52,6 +86,10 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     }
     if (!problems.empty())
       throw UserError(problems);
+    if (!arguments.measure.empty()) {
+      measure(parameters, arguments.measure, comm, log);
+      return exit_success;
+    }
     for (const Problem &warning : problems.warnings())
       log.warning(warning.text());
     // Building the parts finds what reading alone cannot; it writes nothing.
@@ -70,8 +108,8 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
     throw RefusedInput(error);
   }
   const bool complete = simulation->run();
-  if (!dump.empty())
-    simulation->dump(dump);
+  if (!arguments.dump.empty())
+    simulation->dump(arguments.dump);
   return complete ? exit_success : exit_stopped;
 }
 
@@ -80,19 +118,26 @@ int run(const CommandLine &line, const std::string &dump, MPI_Comm comm)
 int run_particles(int argc, char **argv, MPI_Comm comm)
 {
   return guarded(comm, [&] {
-    std::string dump, seed;
+    ExtraArguments arguments;
+    std::string seed;
     CommandLine line = parse_command_line(
         argc, argv, program,
         {{"dump",
           "at the end, write the complete state to this file, which is the same on any number of "
           "ranks",
-          nullptr, &dump},
+          nullptr, &arguments.dump},
+         {"measure",
+          "instead of a run, print what the case's process measures of the particles in this table "
+          "(columns x, y, z, diameter), which are another program's or a scan's; for several "
+          "layers "
+          "a list of files with commas between",
+          nullptr, &arguments.measure},
          {"seed",
           "seed of all random numbers, as the entry 'seed' in subsection 'simulation control'",
           nullptr, &seed}});
     if (!seed.empty())
       line.overrides.push_back("simulation control/seed = " + seed);
-    return run(line, dump, comm);
+    return run(line, arguments, comm);
   });
 }
 

@@ -1,7 +1,26 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/simulation/measurement.h>
 
+#include <cstdio>
+#include <map>
+
 namespace eunoe {
+
+std::string table_of(const std::vector<Measurement> &measurements,
+                     const std::vector<ObservableDescription> &descriptions)
+{
+  std::map<std::string, std::string> units;
+  for (const ObservableDescription &description : descriptions)
+    units[description.name] = description.unit;
+  std::string text = "observable,index,value,unit\n";
+  for (const Measurement &m : measurements) {
+    char value[32];
+    std::snprintf(value, sizeof value, "%.17g", m.value);
+    text += m.observable + "," + std::to_string(m.index) + "," + value + "," + units[m.observable] +
+            "\n";
+  }
+  return text;
+}
 
 nlohmann::ordered_json to_json(const std::vector<Measurement> &measurements)
 {

@@ -2,9 +2,6 @@
 
 #include <eunoe/simulation/simulation.h>
 
-#include <cstdio>
-#include <map>
-
 namespace eunoe {
 
 namespace {
@@ -62,17 +59,7 @@ void Simulation::write_measurements()
   const std::vector<Measurement> all = measurements();
   if (all.empty())
     return;
-  std::map<std::string, std::string> units;
-  for (const ObservableDescription &description : described_observables())
-    units[description.name] = description.unit;
-  std::string text = "observable,index,value,unit\n";
-  for (const Measurement &m : all) {
-    char value[32];
-    std::snprintf(value, sizeof value, "%.17g", m.value);
-    text += m.observable + "," + std::to_string(m.index) + "," + value + "," + units[m.observable] +
-            "\n";
-  }
-  outputs.folder.write("measurements.csv", text);
+  outputs.folder.write("measurements.csv", table_of(all, described_observables()));
 }
 
 } // namespace eunoe

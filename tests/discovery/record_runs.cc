@@ -1,9 +1,13 @@
 // Records simulations of a study's experiments as one table, from which the recorded suite draws:
 // the base model with many seeds, and each effect and nuisance at a few amplitudes with fewer.
-// Round after round adds one seed of everything, and the table is written after each, so that it
-// can be cut short at any time; runs are kept in the study's cache, and the same command goes on.
-//   record-runs study.prm table.txt [rounds] [sets of the base model a round]
+// Round after round adds one seed of everything, and the table is written after each forty runs, so
+// that it can be cut short at any time; runs are kept in the study's cache, and the same command
+// goes on.
+//   record-runs study.prm table.txt [rounds] [sets of the base model a round] [amplitudes]
+// The last is a file that gives amplitudes of factors, in scales from their null values: lines with
+// a name and numbers behind it; '#' begins a comment.
 
+#include <eunoe/core/files.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
@@ -17,7 +21,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
 
 namespace {
 
@@ -37,11 +41,38 @@ std::vector<double> levels(const Factor &factor)
                                             : std::vector<double>{-0.2, -0.7, -2.};
 }
 
-std::vector<Amplitudes> wanted_amplitudes(const std::vector<Factor> &factors)
+using Levels = std::map<std::string, std::vector<double>>;
+
+Levels read_levels(const std::string &path, const std::vector<Factor> &factors)
+{
+  Levels result;
+  std::istringstream lines(read_file(path, MPI_COMM_WORLD));
+  unsigned int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::string name;
+    if (!(words >> name))
+      continue;
+    std::vector<double> &numbers = result[name];
+    for (double level; words >> level;)
+      numbers.push_back(level);
+    if (numbers.empty() || !words.eof() ||
+        std::none_of(factors.begin(), factors.end(),
+                     [&](const Factor &factor) { return factor.name == name; }))
+      throw UserError(
+          path + ", line " + std::to_string(number) +
+          ": give the name of an effect or nuisance of the study and numbers behind it.");
+  }
+  return result;
+}
+
+std::vector<Amplitudes> wanted_amplitudes(const std::vector<Factor> &factors, const Levels &given)
 {
   std::vector<Amplitudes> result;
   for (const Factor &factor : factors)
-    for (const double level : levels(factor)) {
+    for (const double level : given.count(factor.name) > 0 ? given.at(factor.name) : levels(factor))
+    {
       const double amplitude =
           std::clamp(factor.null_value + level * factor.scale, factor.lower, factor.upper);
       result.push_back({{factor.name, amplitude}});
@@ -103,7 +134,7 @@ void write_table(const std::string &path, const StudyInput &study, DemSimulator 
 }
 
 void record(const std::string &study_file, const std::string &table, const unsigned int rounds,
-            const unsigned int base_sets)
+            const unsigned int base_sets, const std::string &levels_file)
 {
   Problems problems;
   const StudyInput study = read_study(study_file, {}, false, MPI_COMM_WORLD, problems);
@@ -113,11 +144,19 @@ void record(const std::string &study_file, const std::string &table, const unsig
   DemSimulator simulator(study.experiments, study.factors, study.parameters.cache_folder(), 1,
                          MPI_COMM_WORLD, log);
   simulator.find_data_points(1);
-  const std::vector<Amplitudes> others = wanted_amplitudes(study.plain_factors());
+  const std::vector<Amplitudes> others = wanted_amplitudes(
+      study.plain_factors(),
+      levels_file.empty() ? Levels() : read_levels(levels_file, study.plain_factors()));
   std::vector<RunRequest> requests;
+  std::size_t n_written = 0;
   const auto add = [&](const Amplitudes &amplitudes, std::uint32_t seed) {
     for (const Experiment &experiment : study.experiments)
       requests.push_back({experiment.name(), amplitudes, seed});
+    constexpr std::size_t runs_between_tables = 40;
+    if (requests.size() < n_written + runs_between_tables)
+      return;
+    write_table(table, study, simulator, requests);
+    n_written = requests.size();
   };
   for (unsigned int round = 0; round < rounds; ++round) {
     for (unsigned int k = 0; k < base_sets; ++k)
@@ -138,10 +177,11 @@ int main(int argc, char **argv)
   int code = 0;
   try {
     if (argc < 3)
-      throw UserError("Usage: record-runs study.prm table.txt [rounds] [base sets a round]");
+      throw UserError("Usage: record-runs study.prm table.txt [rounds] [base sets a round] "
+                      "[amplitudes]");
     stop_request::listen();
     record(argv[1], argv[2], argc > 3 ? static_cast<unsigned int>(std::atoi(argv[3])) : 4,
-           argc > 4 ? static_cast<unsigned int>(std::atoi(argv[4])) : 10);
+           argc > 4 ? static_cast<unsigned int>(std::atoi(argv[4])) : 10, argc > 5 ? argv[5] : "");
   } catch (const UserError &error) {
     std::fprintf(stderr, "%s\n", error.what());
     code = 2;

@@ -25,7 +25,8 @@ from eunoe.tables import read_rows as read
 HERE = Path(__file__).resolve().parent
 
 DISC, N_VIEWS = 0.6e-3, 16
-TABLES = ("heap.csv", "heap_map.pgm", "heap_profile.csv", "state.dump")
+N_RINGS, N_LAYERS = 6, 3
+TABLES = ("heap.csv", "heap_map.pgm", "heap_profile.csv", "measurements.csv", "state.dump")
 
 
 def command(program: str, folder: Path, ranks: int, *settings: str) -> list[str]:
@@ -79,6 +80,25 @@ def outline_area(points: np.ndarray, radius: np.ndarray, direction: float) -> fl
     return float(heights.sum() * (places[1] - places[0]))
 
 
+def check_measurements(folder: Path, points: np.ndarray, radius: np.ndarray) -> None:
+    """Rings and layers as the input asks for them; the solid fraction is that of random points in the middle."""
+    with open(folder / "measurements.csv", encoding="utf-8") as file:
+        rows = [line.split(",") for line in file.read().splitlines()[1:]]
+    profile = [float(value) for name, _, value, _ in rows if name == "profile"]
+    density = [float(value) for name, _, value, _ in rows if name == "solid_fraction"]
+    assert len(profile) == N_RINGS and len(density) == N_LAYERS, (profile, density)
+    random = np.random.default_rng(1)
+    thickness = DISC / 2. * math.tan(math.radians(37.5)) / N_LAYERS
+    for layer, value in enumerate(density):
+        off_axis, turn = DISC / 4. * np.sqrt(random.uniform(size=10000)), random.uniform(0., 2. * math.pi, 10000)
+        places = np.column_stack((off_axis * np.cos(turn), thickness * (layer + random.uniform(size=10000)),
+                                  off_axis * np.sin(turn)))
+        squares = ((places[:, None, :] - points[None, :, :])**2).sum(axis=2)
+        solid = float((squares < radius**2).any(axis=1).mean())
+        # Five deviations of the share of random points, and the overlaps, which count twice.
+        assert abs(value - solid) < 0.03, (layer, value, solid)
+
+
 def check_results(folder: Path) -> None:
     *views, mean = read(folder / "heap.csv")
     results = summary(folder)
@@ -91,6 +111,7 @@ def check_results(folder: Path) -> None:
     if results["heap_mass_clinging"] > 0.:
         on_disc &= points[:, 1] < 1.1 * mean["height"]
     assert results["heap_particles_on_disc"] == np.count_nonzero(on_disc)
+    check_measurements(folder, points[on_disc], radius[on_disc])
     mass = float(particles["mass"][on_disc].sum(dtype=float))
     assert math.isclose(mean["mass_on_disc"], mass, rel_tol=1e-5)
     assert math.isclose(results["inserted_mass"], results["heap_mass_on_disc"]

@@ -21,7 +21,7 @@ from pathlib import Path
 from eunoe.launch import Failure, overrides, parser
 
 from .case import FIRST_SEED, TIERS, Case, make_cases
-from .program import VERDICTS, Program, Stopped
+from .program import Program, Stopped
 from .strength import Strengths
 
 TRUTH = """include {study}
@@ -94,7 +94,7 @@ class Suite:
         if sealed.exists():
             sealed.rename(away)
         try:
-            self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log", VERDICTS)
+            self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log")
         except RuntimeError as error:
             print(f"  {error}")
             shutil.rmtree(target, ignore_errors=True)

@@ -1,6 +1,8 @@
 #ifndef eunoe_simulation_measurement_h
 #define eunoe_simulation_measurement_h
 
+#include <eunoe/core/vec3.h>
+
 #include <nlohmann/json_fwd.hpp>
 
 #include <string>
@@ -21,6 +23,17 @@ struct ObservableDescription
 {
   std::string name, unit, index_meaning, text;
 };
+
+/// A particle that was not simulated here: of another program, or of a scan. SI units.
+struct GivenParticle
+{
+  Vec3 centre;
+  double radius, mass;
+};
+
+/// Measurements as a table: `observable,index,value,unit`.
+std::string table_of(const std::vector<Measurement> &measurements,
+                     const std::vector<ObservableDescription> &descriptions);
 
 /// Measurements for a checkpoint, and their return. Throws a std::invalid_argument for what is
 /// none.

@@ -2,6 +2,7 @@
 #define eunoe_simulation_process_h
 
 #include <eunoe/core/parameter_section.h>
+#include <eunoe/core/problems.h>
 #include <eunoe/core/registry.h>
 #include <eunoe/simulation/measurement.h>
 #include <eunoe/state/particle_field.h>
@@ -105,6 +106,16 @@ public:
 
   /// What the process measures.
   virtual std::vector<ObservableDescription> observables() const { return {}; }
+
+  /// What the process measures of particles that were not simulated here, in its own frame, as far
+  /// as their places tell it. Throws a UserError that says why they cannot be measured.
+  /// @param moments the particles at every moment at which the process measures, or at the last one
+  virtual std::vector<Measurement> measure(
+      const Parameters & /*parameters*/,
+      const std::vector<std::vector<GivenParticle>> & /*moments*/) const
+  {
+    throw UserError("This process cannot measure particles of others.");
+  }
 };
 
 using ProcessRegistry = Registry<std::unique_ptr<ProcessSection>>;

@@ -67,6 +67,11 @@ Apparatus::Apparatus(const HeapParameters &p, const PhysicalProperties &physics)
   y_top = std::max(loose_height(), p.gap + 3. * settled_height) + 2. * clearance();
 }
 
+double Apparatus::expected_heap() const
+{
+  return 0.5 * p.disc_diameter * std::tan(expected_angle * M_PI / 180.);
+}
+
 double Apparatus::loose_height() const
 {
   return p.gap + pitch * static_cast<double>((n_particles + layer.size() - 1) / layer.size());

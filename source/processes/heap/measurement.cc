@@ -1,4 +1,5 @@
 #include <eunoe/processes/heap/measurement.h>
+#include <eunoe/processes/solid_fraction.h>
 
 #include <limits>
 
@@ -10,6 +11,10 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Columns of the outlines, in parts of the smallest diameter.
 constexpr double column_width = 0.1;
+
+/// Radius of the middle in which the solid fraction is measured, in parts of the disc's: the
+/// surface of a cone over it is at half of its height and above.
+constexpr double middle_share = 0.5;
 
 struct MeanAndSpread
 {
@@ -29,27 +34,82 @@ MeanAndSpread statistics(const std::vector<double> &values)
   return result;
 }
 
+/// What the shape of a heap tells.
+class Shape
+{
+public:
+  Shape(const HeapParameters &p, const Apparatus &apparatus, const SizeDistribution &sizes)
+      : views(p.disc_diameter, 2. * sizes.largest(), p.n_views, p.n_bins,
+              column_width * sizes.smallest()),
+        density(Footprint::disc(middle_share * 0.5 * p.disc_diameter), 0.,
+                apparatus.expected_heap() / p.n_density_layers, p.n_density_layers)
+  {
+  }
+
+  void add(const Vec3 &centre, const double radius, const double mass)
+  {
+    on_disc.count(mass);
+    views.add(centre, radius);
+    density.add(centre, radius);
+  }
+
+  void reduce(MPI_Comm comm)
+  {
+    views.reduce(comm);
+    density.reduce(comm);
+    on_disc = on_disc.global(comm);
+  }
+
+  /// The keys of summary.json.
+  nlohmann::ordered_json keys() const
+  {
+    std::vector<double> areas, angles, heights;
+    for (unsigned int view = 0; view < views.n_views(); ++view) {
+      areas.push_back(views.area(view));
+      angles.push_back(views.base_angle(areas.back()));
+      heights.push_back(views.height(view));
+    }
+    const MeanAndSpread angle = statistics(angles);
+    return {{"heap_particles_on_disc", on_disc.number},
+            {"heap_mass_on_disc", on_disc.mass.value()},
+            {"heap_base_angle", angle.mean},
+            {"heap_base_angle_spread", angle.spread},
+            {"heap_projected_area", statistics(areas).mean},
+            {"heap_height", statistics(heights).mean}};
+  }
+
+  /// Profile and solid fractions.
+  void append_to(std::vector<Measurement> &measured, const unsigned int n_rings) const
+  {
+    const std::vector<double> rings = views.rings(n_rings);
+    for (unsigned int ring = 0; ring < n_rings; ++ring)
+      measured.push_back({"profile", static_cast<int>(ring), rings[ring]});
+    for (unsigned int layer = 0; layer < density.n_layers(); ++layer)
+      measured.push_back({"solid_fraction", static_cast<int>(layer), density(layer)});
+  }
+
+  Silhouettes views;
+
+private:
+  SolidFraction density;
+  Tally on_disc;
+};
+
 /// Writes heap.csv: a row per view, then a row of means without a view's number.
-void write_views(Simulation &simulation, const Silhouettes &views, nlohmann::ordered_json &found)
+void write_views(Simulation &simulation, const Silhouettes &views,
+                 const nlohmann::ordered_json &found)
 {
   const auto file = simulation.output_folder().table(
       "heap.csv", {"view", "direction", "projected_area", "base_angle", "height",
                    "base_angle_spread", "mass_on_disc", "mass_drained"});
-  std::vector<double> areas, angles, heights;
   for (unsigned int view = 0; view < views.n_views(); ++view) {
-    areas.push_back(views.area(view));
-    angles.push_back(views.base_angle(areas.back()));
-    heights.push_back(views.height(view));
-    file->write({static_cast<double>(view), views.direction(view) * 180. / M_PI, areas.back(),
-                 angles.back(), heights.back(), nothing, nothing, nothing});
+    const double area = views.area(view);
+    file->write({static_cast<double>(view), views.direction(view) * 180. / M_PI, area,
+                 views.base_angle(area), views.height(view), nothing, nothing, nothing});
   }
-  const MeanAndSpread angle = statistics(angles);
-  found["heap_base_angle"] = angle.mean;
-  found["heap_base_angle_spread"] = angle.spread;
-  found["heap_projected_area"] = statistics(areas).mean;
-  found["heap_height"] = statistics(heights).mean;
-  file->write({nothing, nothing, found["heap_projected_area"], angle.mean, found["heap_height"],
-               angle.spread, found["heap_mass_on_disc"], found["heap_mass_drained"]});
+  file->write({nothing, nothing, found["heap_projected_area"], found["heap_base_angle"],
+               found["heap_height"], found["heap_base_angle_spread"], found["heap_mass_on_disc"],
+               found["heap_mass_drained"]});
 }
 
 /// Writes heap_profile.csv, and compares it with a measured profile if there is one.
@@ -94,43 +154,60 @@ Findings measure(Simulation &simulation, const HeapParameters &parameters,
                  const Apparatus &apparatus, const double tube_height)
 {
   const auto sizes = simulation.get_parameters().physics.types[0].sizes.make();
-  Silhouettes views(parameters.disc_diameter, 2. * sizes->largest(), parameters.n_views,
-                    parameters.n_bins, column_width * sizes->smallest());
+  Shape shape(parameters, apparatus, *sizes);
   const ParticleArrays &p = simulation.complete_step();
-  Tally on_disc, clinging, drained;
+  Tally clinging, drained;
   for (std::size_t row = 0; row < p.n_owned; ++row) {
     const Vec3 x = p.position[row].vec();
     const double radius = p.radius(row);
-    const bool is_on =
-        apparatus.is_on_disc(x, radius) && !apparatus.clings_to_tube(x.y, radius, tube_height);
-    (is_on ? on_disc : clinging).count(p.mass(row));
-    if (is_on)
-      views.add(x, radius);
+    if (apparatus.is_on_disc(x, radius) && !apparatus.clings_to_tube(x.y, radius, tube_height))
+      shape.add(x, radius, p.mass(row));
+    else
+      clinging.count(p.mass(row));
   }
   const MPI_Comm comm = simulation.communicator();
-  views.reduce(comm);
+  shape.reduce(comm);
   for (const Tally &outlet : simulation.get_ledger().through_outlet) {
     drained.number += outlet.number;
     drained.mass += outlet.mass;
   }
-  on_disc = on_disc.global(comm);
-  clinging = clinging.global(comm);
 
   Findings findings;
   nlohmann::ordered_json &found = findings.keys;
-  found["heap_particles_on_disc"] = on_disc.number;
-  found["heap_mass_on_disc"] = on_disc.mass.value();
+  found = shape.keys();
   found["heap_mass_drained"] = drained.global(comm).mass.value();
-  found["heap_mass_clinging"] = clinging.mass.value();
-  write_views(simulation, views, found);
-  write_profile(simulation, views, parameters.measured_profile, found);
-  simulation.output_folder().write("heap_map.pgm", views.map());
+  found["heap_mass_clinging"] = clinging.global(comm).mass.value();
+  write_views(simulation, shape.views, found);
+  write_profile(simulation, shape.views, parameters.measured_profile, found);
+  simulation.output_folder().write("heap_map.pgm", shape.views.map());
   for (const ObservableDescription &single : single_numbers())
     findings.measured.push_back({single.name, 0, found.at("heap_" + single.name)});
-  const std::vector<double> rings = views.rings(n_rings);
-  for (unsigned int ring = 0; ring < n_rings; ++ring)
-    findings.measured.push_back({"profile", static_cast<int>(ring), rings[ring]});
+  shape.append_to(findings.measured, parameters.n_rings);
   return findings;
+}
+
+std::vector<Measurement> measure(const HeapParameters &parameters,
+                                 const PhysicalProperties &physics,
+                                 const std::vector<GivenParticle> &particles)
+{
+  const Apparatus apparatus(parameters, physics);
+  Shape shape(parameters, apparatus, *physics.types[0].sizes.make());
+  for (const GivenParticle &particle : particles)
+    if (apparatus.is_on_disc(particle.centre, particle.radius))
+      shape.add(particle.centre, particle.radius, particle.mass);
+  const nlohmann::ordered_json found = shape.keys();
+  if (found.at("heap_particles_on_disc") == 0)
+    throw UserError(
+        "None of the " + std::to_string(particles.size()) +
+        " particles lies on the disc, whose face is the plane y = 0 and whose radius is " +
+        format(0.5 * parameters.disc_diameter) +
+        " m around the origin. Give their places in this frame, in metres.");
+  std::vector<Measurement> measured;
+  for (const ObservableDescription &single : single_numbers())
+    if (found.contains("heap_" + single.name))
+      measured.push_back({single.name, 0, found.at("heap_" + single.name)});
+  shape.append_to(measured, parameters.n_rings);
+  return measured;
 }
 
 std::vector<ObservableDescription> observables()
@@ -138,6 +215,8 @@ std::vector<ObservableDescription> observables()
   std::vector<ObservableDescription> all = single_numbers();
   all.push_back({"profile", "m", "ring, from the axis to the edge",
                  "mean height of the outline over all views and both sides"});
+  all.push_back({"solid_fraction", "1", "layer, from the disc up",
+                 "share of solid material around the axis, up to half of the disc's radius"});
   return all;
 }
 

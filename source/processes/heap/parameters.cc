@@ -70,6 +70,12 @@ void HeapParameters::declare(dealii::ParameterHandler &prm)
                    "seen.");
   declare::between(prm, "profile bins", n_bins, 10, 10000,
                    "Number of bins of the mean profile across the disc's diameter.");
+  declare::between(prm, "profile rings", n_rings, 1, 1000,
+                   "Number of rings of equal width between the axis and the disc's edge in which "
+                   "the profile is a measurement for comparisons with data.");
+  declare::between(prm, "density layers", n_density_layers, 1, 1000,
+                   "Number of layers between the disc and the top of a heap with a base angle of "
+                   "37.5 degrees in which the solid fraction around the axis is measured.");
   declare::entry(prm, "measured profile", measured_profile,
                  "File with a measured profile to compare with: a table with the columns 'x' and "
                  "'height' (m), x from the centre of the disc; empty: none.");

@@ -82,6 +82,15 @@ std::unique_ptr<Process> HeapParameters::make(const Parameters &parameters) cons
   return std::make_unique<Heap>(*this, parameters.physics);
 }
 
+std::vector<Measurement> HeapParameters::measure(
+    const Parameters &parameters, const std::vector<std::vector<GivenParticle>> &moments) const
+{
+  if (moments.size() != 1)
+    throw UserError("A heap is measured once, and there are " + std::to_string(moments.size()) +
+                    " files of particles. Give one.");
+  return heap::measure(*this, parameters.physics, moments.front());
+}
+
 std::vector<ObservableDescription> HeapParameters::observables() const
 {
   return heap::observables();

@@ -1,9 +1,9 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/layer_log.h>
+#include <eunoe/processes/powder_spreading/plate_measurement.h>
 
 #include <cmath>
-#include <limits>
 
 namespace eunoe::spreading {
 
@@ -11,9 +11,6 @@ namespace {
 
 /// The column that is no measurement.
 const std::string wall_clock = "wall_seconds";
-
-/// Columns of the surface's heights, in parts of the smallest diameter.
-constexpr double column_width = 0.25;
 
 } // namespace
 
@@ -30,7 +27,7 @@ LayerLog::Fields LayerLog::add_fields(ParticleFields &fields)
 
 LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters,
                    const Apparatus &apparatus, const Fields &fields)
-    : apparatus(apparatus), fields(fields),
+    : parameters(parameters), apparatus(apparatus), fields(fields),
       full_layer(apparatus.plate_area() * parameters.layer_thickness),
       file(simulation.output_folder().table(
           "layers.csv",
@@ -40,7 +37,7 @@ LayerLog::LayerLog(Simulation &simulation, const SpreadingParameters &parameters
                                                    "_layers")),
       solid_pictures(simulation.output_folder().pictures(
           simulation.get_parameters().control.output_name + "_layers_solids")),
-      draws(parameters.layer_pictures), n_bins(parameters.profile_bins), last_wall_time(MPI_Wtime())
+      draws(parameters.layer_pictures), last_wall_time(MPI_Wtime())
 {
 }
 
@@ -113,11 +110,11 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   ExactSum removed = last_present;
   removed -= on_plate.kept.mass;
 
-  const double nothing = std::numeric_limits<double>::quiet_NaN();
   // By volume: the layers may be of powders of different densities.
   const double volume = on_plate.volume.value();
   if (layer == 1)
     first_volume = volume;
+  const RelativeDensities densities(layer, full_layer, volume, last_volume, first_volume);
   const OutletTotals out = outlet_totals(simulation);
   ExactSum to_gap = out.gap, to_collector = out.collector;
   to_gap -= last_out.gap;
@@ -126,8 +123,8 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   record(layer, simulation.time(),
          {{"mass", present.mass.value()},
           {"particles", static_cast<double>(present.number)},
-          {"LRD", layer >= 1 ? (volume - last_volume) / full_layer : nothing},
-          {"CRD", layer >= 2 ? (volume - first_volume) / (full_layer * (layer - 1)) : nothing},
+          {"LRD", densities.layer},
+          {"CRD", densities.cumulative},
           {"mass_removed", removed.value()},
           {"mass_to_gap", to_gap.value()},
           {"mass_to_collector", to_collector.value()},
@@ -163,22 +160,13 @@ void LayerLog::record(const unsigned int layer, const double time,
 
 void LayerLog::take_profile(Simulation &simulation, const double plate_height)
 {
-  double smallest = std::numeric_limits<double>::max();
-  for (const ParticleType &type : simulation.get_parameters().physics.types)
-    smallest = std::min(smallest, type.sizes.make()->smallest());
-  PlateProfile profile({apparatus.x_plate, apparatus.x_plate_end, apparatus.depth,
-                        simulation.get_domain().periods().is_periodic(2), plate_height},
-                       n_bins, column_width * smallest);
+  PlateMeasurement plate(parameters, apparatus, simulation.get_parameters().physics,
+                         simulation.get_domain().periods().is_periodic(2), plate_height);
   const ParticleArrays &p = simulation.complete_step();
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    profile.add(p.position[row].vec(), p.radius(row), p.mass(row));
-  profile.reduce(simulation.communicator());
-  for (unsigned int bin = 0; bin < n_bins; ++bin)
-    measured.push_back({"surface_height", static_cast<int>(bin), profile.height(bin)});
-  measured.push_back({"surface_roughness", 0, profile.roughness()});
-  for (unsigned int bin = 0; bin < n_bins; ++bin)
-    if (std::isfinite(profile.mean_diameter(bin)))
-      measured.push_back({"mean_diameter", static_cast<int>(bin), profile.mean_diameter(bin)});
+    plate.add(p.position[row].vec(), p.radius(row), p.mass(row));
+  plate.reduce(simulation.communicator());
+  plate.append_to(measured);
 }
 
 std::vector<ObservableDescription> LayerLog::observables()
@@ -199,7 +187,9 @@ std::vector<ObservableDescription> LayerLog::observables()
        "mean height of the surface after the last layer, over the level of the transfer plate"},
       {"surface_roughness", "m", "",
        "standard deviation of the surface's height after the last layer"},
-      {"mean_diameter", "m", bin, "mean diameter by mass of all powder on the plate at the end"}};
+      {"mean_diameter", "m", bin, "mean diameter by mass of all powder on the plate at the end"},
+      {"solid_fraction", "1", "layer of the nominal thickness, from the plate up",
+       "share of solid material over the plate at the end"}};
 }
 
 nlohmann::ordered_json LayerLog::save() const

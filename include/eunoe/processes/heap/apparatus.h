@@ -48,6 +48,8 @@ public:
 
   /// Height over the powder in the tube at which the rising tube stops.
   double clearance() const { return 4. * largest_diameter; }
+  /// Height of a heap that has the paper's angle.
+  double expected_heap() const;
   /// Top of the loose powder.
   double loose_height() const;
 

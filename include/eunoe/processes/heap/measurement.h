@@ -30,13 +30,16 @@ struct Findings
   std::vector<Measurement> measured;
 };
 
-/// Number of rings between axis and edge in which the profile is a measurement.
-constexpr unsigned int n_rings = 5;
-
 /// Measures the heap, now: writes heap.csv, heap_profile.csv and heap_map.pgm; collective.
 /// @param tube_height of the tube's lower end (m)
 Findings measure(Simulation &simulation, const HeapParameters &parameters,
                  const Apparatus &apparatus, double tube_height);
+
+/// The same measurements of a heap that was not simulated here, but for the mass that was drained.
+/// Throws a UserError if there is nothing on the disc.
+std::vector<Measurement> measure(const HeapParameters &parameters,
+                                 const PhysicalProperties &physics,
+                                 const std::vector<GivenParticle> &particles);
 
 /// What measure() finds.
 std::vector<ObservableDescription> observables();

@@ -27,7 +27,7 @@ struct HeapParameters : public ProcessSection
   double rest_duration = 5e-3;
   double longest_wait = 0.5;
 
-  unsigned int n_views = 16, n_bins = 100;
+  unsigned int n_views = 16, n_bins = 100, n_rings = 5, n_density_layers = 2;
   std::string measured_profile;
   bool picture = true;
 
@@ -38,6 +38,9 @@ struct HeapParameters : public ProcessSection
   RunEstimate estimate(const Parameters &parameters) const override;
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
   std::vector<ObservableDescription> observables() const override;
+  std::vector<Measurement> measure(
+      const Parameters &parameters,
+      const std::vector<std::vector<GivenParticle>> &moments) const override;
 };
 
 } // namespace eunoe::heap

@@ -2,7 +2,6 @@
 #define eunoe_processes_powder_spreading_layer_log_h
 
 #include <eunoe/processes/powder_spreading/apparatus.h>
-#include <eunoe/processes/powder_spreading/plate_profile.h>
 #include <eunoe/simulation/simulation.h>
 
 namespace eunoe::spreading {
@@ -61,13 +60,13 @@ private:
   void record(unsigned int layer, double time,
               const std::vector<std::pair<std::string, double>> &row);
 
+  const SpreadingParameters &parameters;
   const Apparatus &apparatus;
   const Fields fields;
   const double full_layer; ///< volume of a layer (m3)
   const std::shared_ptr<CsvFile> file;
   const std::shared_ptr<PictureSeries> pictures, solid_pictures;
   const bool draws;
-  const unsigned int n_bins;
   std::vector<Measurement> measured;
   ExactSum last_present;                      ///< mass (kg)
   double last_volume = 0., first_volume = 0.; ///< of solid material on the plate (m3)

@@ -69,6 +69,9 @@ struct SpreadingParameters : public ProcessSection
   double fastest_solid() const override;
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
   std::vector<ObservableDescription> observables() const override;
+  std::vector<Measurement> measure(
+      const Parameters &parameters,
+      const std::vector<std::vector<GivenParticle>> &moments) const override;
 
   double mean_clearance() const { return clearance + clearance_offset; }
   /// Stroke of the measuring plate.

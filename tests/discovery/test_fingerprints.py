@@ -1,0 +1,67 @@
+"""Distances of fingerprints whose directions are known: scatter of unit variance, and two effects at an angle
+of 60 degrees, of which one is seen in another observable too.
+
+Exit code 77, which skips the test, if numpy is missing.
+"""
+
+import math
+import sys
+import tempfile
+from pathlib import Path
+
+try:
+    import numpy as np
+    from eunoe.discovery import fingerprints
+except ImportError:
+    sys.exit(77)
+from eunoe.launch import Failure
+
+STRENGTH = 8.
+
+
+def table() -> str:
+    random = np.random.default_rng(1)
+    lines = ["# a table", "factor a effect 0 1 0 2 above 0", "cells heap 0 height:0 height:1 density:0"]
+
+    def add(effect: str, amplitude: float, mean: tuple[float, float, float], n: int) -> None:
+        for seed in range(n):
+            values = mean + random.normal(size=3) * (1., 3., 0.1) + (5., 0., 0.)
+            lines.append(f"heap {effect} {amplitude} {seed} " + " ".join(f"{value:.6f}" for value in values))
+    add("base", 0., (0., 0., 0.), 4000)
+    add("a", 0.5, (4., 0., 0.), 400)
+    add("a", 1., (8., 0., 0.), 400)
+    # Deviations of one run: 4 and 4 sqrt(3) along the heights, and 8 along the density.
+    add("b", 2., (4., 3. * 4. * math.sqrt(3.), 0.), 400)
+    add("c", 2., (8., 0., 0.8), 400)
+    return "\n".join([*lines, "heap b 2 400 failed"]) + "\n"
+
+
+def main() -> int:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "table.txt"
+        path.write_text(table(), encoding="utf-8")
+        recorded = fingerprints.read(path)
+    found = fingerprints.fingerprints(recorded, ["heap"], ["a", "b", "c"], set())
+    strengths = {effect: [round(f.strength, 1) for f in of] for effect, of in found.items()}
+    assert strengths["a"][0] / 4. - 1. < 0.03 and abs(strengths["a"][1] / 8. - 1.) < 0.03, strengths
+    head, *rows = fingerprints.distances(found, STRENGTH)
+    by_pair = {row[0]: (float(row[3]), float(row[4])) for row in rows}
+    for pair, cosine in (("a, b", 0.5), ("a, c", math.sqrt(0.5))):
+        assert abs(by_pair[pair][0] - cosine) < 0.03, (pair, by_pair)
+        assert abs(by_pair[pair][1] - STRENGTH * math.sqrt(1. - cosine**2)) < 0.2, (pair, by_pair)
+    assert rows[0][1] == "1, 2", rows[0]  # the amplitude that is nearest to the strength
+    # Without the density, c cannot be told from a.
+    blind = fingerprints.distances(fingerprints.fingerprints(recorded, ["heap"], ["a", "c"], {"density"}), STRENGTH)
+    assert float(blind[1][3]) > 0.999, blind
+    try:
+        fingerprints.fingerprints(recorded, ["heap"], ["d"], set())
+    except Failure as failure:
+        assert "no runs of 'd' in heap" in str(failure)
+    else:
+        raise AssertionError("an unknown effect was accepted")
+    print("ok")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,165 @@
+"""Particles of other programs are measured as a run measures its own: a heap's and a spreading's particles
+give the run's numbers again, dumps that LAMMPS and LIGGGHTS wrote are read rightly in any unit and frame, and
+bad files are refused with a sentence.
+
+Usage: measure.py path/to/eunoe-particles folder
+Exit code 77, which skips the test, if numpy or VTK is missing.
+"""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+try:
+    import numpy as np
+    from eunoe.vtk_files import read_vtu
+    from eunoe.discovery.particle_files import read_particles
+except ImportError:
+    sys.exit(77)
+from eunoe.launch import overrides
+from eunoe.repository import ROOT
+
+HERE = Path(__file__).resolve().parent
+HEAP, SPREADING = HERE.parent / "heap" / "tiny.prm", HERE.parent / "spreading" / "tiny.prm"
+# What the files of LAMMPS and LIGGGHTS beside this one hold: places and diameters (m), in any order.
+GRAINS = np.array([[0., 4e-5, 0., 8e-5], [8e-5, 3e-5, 1e-5, 6e-5], [-2e-4, 5e-5, 1e-4, 1e-4],
+                   [2e-5, 1.2e-4, -1e-5, 9e-5], [4e-4, -6e-4, 0., 9e-5]])
+
+
+def tool(*words: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, str(ROOT / "contrib" / "tools"), "measure", "--program", PROGRAM, *words],
+                          capture_output=True, text=True, check=False)
+
+
+def measured(*words: str) -> dict[tuple[str, str], float]:
+    done = tool(*words)
+    assert done.returncode == 0, done.stderr
+    rows = [line.split(",") for line in done.stdout.splitlines()]
+    assert rows[0] == ["observable", "index", "value", "unit"], rows[0]
+    return {(name, index): float(value) for name, index, value, _ in rows[1:]}
+
+
+def run(case: Path, folder: Path, *settings: str) -> dict[tuple[str, str], float]:
+    """Runs a case; what it measured."""
+    subprocess.run([PROGRAM, str(case), "--quiet", *overrides(
+        [f"simulation control/output path = {folder}", "post-processing/final state/calculation = true", *settings])],
+        check=True)
+    lines = (folder / "measurements.csv").read_text(encoding="utf-8").splitlines()[1:]
+    return {(name, index): float(value) for name, index, value, _ in (line.split(",") for line in lines)}
+
+
+def check_heap(folder: Path) -> None:
+    own = run(HEAP, folder)
+    again = measured(str(HEAP), str(folder / "particles.csv"))
+    assert set(own) - set(again) == {("mass_drained", "0")}, set(own) ^ set(again)
+    for key, value in again.items():
+        # The mass follows from the diameter again.
+        assert value == own[key] or (key[0] == "mass_on_disc" and abs(value / own[key] - 1.) < 1e-12), (key, value)
+    # The picture has floats; the heap turned, moved and in millimetres is the same heap.
+    picture = measured(str(HEAP), str(folder / "heap_heap.pvd"))
+    assert len(read_vtu(next(folder.glob("heap_heap*.vtu")), [])["points"]) == len(read_particles(folder / "particles.csv"))
+    rows = read_particles(folder / "particles.csv")
+    turned = np.column_stack((rows[:, 0] * 1e3 + 5., -rows[:, 2] * 1e3, rows[:, 1] * 1e3 + 1., rows[:, 3] * 1e3))
+    np.savetxt(folder / "turned.csv", turned, delimiter=",", header="x,y,z,d", comments="", fmt="%.17g")
+    moved = measured(str(HEAP), str(folder / "turned.csv"), "--up", "z", "--origin", "5", "0", "1", "--scale", "1e-3")
+    for other, tolerance in ((picture, 1e-5), (moved, 1e-9)):
+        assert set(other) == set(again)
+        for key, value in other.items():
+            scale = abs(again[key]) + (1e-3 if key[0] in ("base_angle_spread", "solid_fraction") else 0.)
+            assert abs(value - again[key]) <= tolerance * scale * 30., (key, value, again[key])
+
+
+def check_study_table(folder: Path) -> None:
+    files = [str(folder / "particles.csv")] * 2 + [str(folder / "turned.csv")]
+    done = tool(str(HEAP), "--experiment", "pile", "--held-out", "--only", "height", files[0], files[1])
+    assert done.returncode == 0, done.stderr
+    head, row = done.stdout.split()
+    assert head == "experiment,observable,index,value,std,repeats,use"
+    assert row.startswith("pile,height,0,") and row.endswith(",0,2,held-out"), row
+    done = tool(str(HEAP), "--only", "beauty", files[0])
+    assert done.returncode == 1 and "does not measure 'beauty'" in done.stderr, done.stderr
+
+
+def check_spreading(folder: Path) -> None:
+    own = run(SPREADING, folder, "powder spreading/layer pictures = true")
+    again = measured(str(SPREADING), str(folder / "particles.csv"))
+    last = max(int(index) for name, index in own if name == "mass")
+    assert {key for key in own if key[0] in ("surface_height", "surface_roughness", "mean_diameter", "solid_fraction")
+            or key in (("mass", str(last)), ("particles", str(last)))} == set(again), again
+    for key, value in again.items():
+        # When a run weighs, in the first step after the time for it, the plate has begun its next stroke.
+        assert abs(value - own[key]) <= 1e-6 * abs(own[key]), (key, value, own[key])
+    layers = sorted(folder.glob("*_layers*.vtu"))
+    layers = [file for file in layers if "solids" not in file.name]
+    assert len(layers) == last + 1, layers
+    weighed = measured(str(SPREADING), ",".join(map(str, layers)))
+    for name, first in (("mass", 0), ("particles", 0), ("LRD", 1), ("CRD", 2)):
+        for layer in range(first, last + 1):
+            value, wanted = weighed[name, str(layer)], own[name, str(layer)]
+            assert abs(value - wanted) <= 1e-5 * abs(wanted) + 1e-12, (name, layer, value, wanted)
+    done = tool(str(SPREADING), ",".join(map(str, layers[:-1])) if len(layers) > 2 else ",".join([str(layers[0])] * 9))
+    assert done.returncode == 1 and "one for each layer" in done.stderr, done.stderr
+
+
+def check_others() -> None:
+    for name in ("lammps.dump", "liggghts.dump", "liggghts.vtk"):
+        rows = read_particles(HERE / name)
+        rows = rows[np.lexsort((rows[:, 0], rows[:, 3]))]
+        wanted = GRAINS[np.lexsort((GRAINS[:, 0], GRAINS[:, 3]))]
+        assert np.abs(rows - wanted).max() < 2e-9, f"{name}:\n{rows}"
+    found = measured(str(HEAP), str(HERE / "liggghts.dump"))
+    # The highest sphere is seen in every view; the sphere below the disc counts for nothing.
+    assert abs(found["height", "0"] - 165e-6) < 1e-6, found
+    volume = np.pi / 6. * (GRAINS[:4, 3]**3).sum()
+    density = 4386.
+    assert abs(found["mass_on_disc", "0"] / (density * volume) - 1.) < 1e-6, found
+    first = read_particles(HERE / "liggghts.dump", 0)
+    assert (first[:, :3] != read_particles(HERE / "liggghts.dump", -1)[:, :3]).any(), "the snapshots are alike"
+
+
+def check_refusals(folder: Path) -> None:
+    text = (HERE / "liggghts.dump").read_text(encoding="utf-8")
+    cut = len(text.splitlines()) - 2
+    for name, content, sentence in (
+            ("cut.dump", "\n".join(text.splitlines()[:cut]), f"cut.dump:{cut + 1}: the file ends within a snapshot."),
+            ("words.dump", text.replace("4.5e-05", "wide"), "words.dump:10: this is no particle with 9 numbers."),
+            ("blind.dump", text.replace("radius", "v_r"), "the dump has no radii. Write"),
+            ("points.dump", text.replace(" x y z ", " a b c "), "the dump has no places. Write"),
+            ("columns.csv", "x,y,depth\n1,2,3\n", "columns.csv:1: the head has no column 'z'"),
+            ("words.csv", "x,y,z,d\n1,2,3,4\n1,2,3\n", "words.csv:3: this is no row of 4 numbers"),
+            ("flat.csv", "x,y,z,d\n0,0,0,0\n", "particle 1 has no finite place or no positive size"),
+            ("far.csv", "x,y,z,d\n1,1,1,1e-4\n", "far.csv: None of the 1 particles lies on the disc"),
+            ("empty.vtu", "nothing", "cannot be read"),
+            ("empty.csv", "", "it is empty")):
+        (folder / name).write_text(content, encoding="utf-8")
+        done = tool(str(HEAP), str(folder / name))
+        assert done.returncode == 1 and sentence in done.stderr and len(done.stderr.splitlines()) == 1, (name, done.stderr)
+        assert "Traceback" not in done.stderr
+    done = tool(str(HEAP), str(folder / "missing.csv"))
+    assert done.returncode == 2 and "missing.csv cannot be used" in done.stderr, done.stderr
+    for words, sentence in ((["--measure", str(folder / "columns.csv")], "the header has no column 'z'"),
+                            (["--measure", str(folder / "missing.csv")], "missing.csv")):
+        done = subprocess.run([PROGRAM, str(HEAP), *words], capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and sentence in done.stderr, (words, done.stderr)
+    done = subprocess.run([PROGRAM, str(ROOT / "prm" / "examples" / "bouncing_sphere.prm"), "--measure", "no.csv"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and "has no process" in done.stderr, done.stderr
+
+
+def main() -> int:
+    folder = Path(sys.argv[2])
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    check_others()
+    check_refusals(folder)
+    check_heap(folder / "heap")
+    check_study_table(folder / "heap")
+    check_spreading(folder / "spreading")
+    print("ok")
+    return 0
+
+
+if __name__ == "__main__":
+    PROGRAM = str(Path(sys.argv[1]).resolve())
+    sys.exit(main())
