@@ -126,9 +126,12 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
                              const LoadBalancingParameters *balance)
 {
   store.migrate();
-  if (balance != nullptr || ++unadapted >= between_adaptations) {
+  // Cells are about two diameters wide, so that the number of particles in them has hardly changed
+  // before. What has come is anywhere.
+  unadapted += drift;
+  if (balance != nullptr || !(unadapted < 2. * largest_diameter)) {
     store.adapt();
-    unadapted = 0;
+    unadapted = 0.;
   }
   if (balance != nullptr) {
     store.repartition(*balance);
@@ -221,7 +224,7 @@ ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
   for (const NewParticle &particle : delivery.particles)
     first_new = std::min(first_new, particle.id);
   store.insert(std::move(delivery.particles), extra_defaults, std::move(origins));
-  unadapted = between_adaptations;
+  unadapted = std::numeric_limits<double>::infinity();
   rebuild(solids, nullptr);
 
   MPI_Allreduce(MPI_IN_PLACE, &first_new, 1, MPI_UINT32_T, MPI_MIN, domain.communicator());

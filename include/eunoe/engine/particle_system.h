@@ -213,9 +213,8 @@ private:
   const std::vector<double> extra_defaults; ///< extra doubles of a new particle
   std::size_t pairs_with_room = 0;          ///< for whose contacts there is room in the memory
   unsigned long long searches = 0, searches_in_place = 0, balances = 0;
-  /// Particles that stay go by less than a cell between so many of the expensive searches.
-  static constexpr unsigned int between_adaptations = 4;
-  unsigned int unadapted = 0; ///< expensive searches since the mesh has followed the particles
+  /// At most so far has a particle moved since the mesh followed the particles (m).
+  double unadapted = 0.;
 };
 
 } // namespace eunoe
