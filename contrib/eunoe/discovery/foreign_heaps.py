@@ -5,8 +5,9 @@ Usage: contrib/tools foreign-heaps folder [--engine liggghts|lammps] [--repeats 
 
 The case is read by eunoe-particles: it gives apparatus, powder and contacts, and the options change the true
 coefficients. Each repetition draws its own sizes and places. The folder gets the dumps of the heaps and
-measured.csv. What is there is not made again. Cohesion is that of the other program: in LIGGGHTS an energy density (J/m3)
-of SJKR, in LAMMPS a surface energy (J/m2) of DMT. In LAMMPS the spring of rolling resistance has a
+measured.csv. Heaps that are there are not made again; a folder with heaps of other coefficients is refused.
+Cohesion is that of the other program: in LIGGGHTS an energy density (J/m3) of SJKR, in LAMMPS a surface energy
+(J/m2) of DMT. In LAMMPS the spring of rolling resistance has a
 constant stiffness, and a heap creeps; its decks are compared without rolling resistance.
 """
 
@@ -24,6 +25,7 @@ from pathlib import Path
 import numpy as np
 
 from eunoe.launch import Failure, output_of, overrides, parser
+from eunoe.prm_file import parse_prm
 from eunoe.repository import CASES, PROGRAM, ROOT
 
 from .measure import HEAD, measure, measured_rows
@@ -54,32 +56,36 @@ class Model:
 def model_of(case: Path, program: str, settings: list[str]) -> Model:
     """The entries of a case with all its includes and defaults, by "subsection/entry"."""
     printed = output_of([program, str(case), *overrides(settings), "--print-parameters"], Path.cwd())
-    entries, path = {}, []
-    for line in printed.splitlines():
-        line = line.split("#")[0].strip()
-        if line.startswith("subsection "):
-            path.append(line[len("subsection "):].strip())
-        elif line == "end":
-            path.pop()
-        elif line.startswith("set "):
-            name, _, value = line[4:].partition("=")
-            entries["/".join([*path, name.strip()])] = value.strip()
-    return Model(entries)
+    return Model(parse_prm(printed).flat())
 
 
 TYPE = "lagrangian physical properties/particle type 0/"
 WALL = "lagrangian physical properties/"
 
 
-def diameters(model: Model, n: int, random: np.random.Generator) -> np.ndarray:
-    """Sizes by the classes of a custom distribution."""
-    if model.text(TYPE + "size distribution type") != "custom":
-        raise Failure("foreign-heaps draws sizes of 'size distribution type = custom' only. Give a case with it.")
-    classes = model.numbers(TYPE + "custom distribution diameters values")
-    shares = model.numbers(TYPE + "custom distribution diameters probabilities")
-    if model.text(TYPE + "distribution weighting basis") == "volume":
-        shares = shares / classes**3
-    return random.choice(classes, n, p=shares / shares.sum())
+@dataclass
+class Classes:
+    """Diameters of a custom distribution (m), and their shares by number."""
+
+    diameters: np.ndarray
+    shares: np.ndarray
+
+    @classmethod
+    def of(cls, model: Model) -> Classes:
+        if model.text(TYPE + "size distribution type") != "custom":
+            raise Failure("foreign-heaps draws sizes of 'size distribution type = custom' only. Give a case with it.")
+        found = model.numbers(TYPE + "custom distribution diameters values")
+        shares = model.numbers(TYPE + "custom distribution diameters probabilities")
+        if model.text(TYPE + "distribution weighting basis") == "volume":
+            shares = shares / found**3
+        return cls(found, shares / shares.sum())
+
+    def draw(self, n: int, random: np.random.Generator) -> np.ndarray:
+        return random.choice(self.diameters, n, p=self.shares)
+
+    @property
+    def mean_volume(self) -> float:
+        return math.pi / 6. * float((self.shares * self.diameters**3).sum())
 
 
 @dataclass
@@ -90,6 +96,7 @@ class Apparatus:
     disc: float
     facets: int
     largest: float
+    classes: Classes
     n: int
     layer: np.ndarray  # places in x and z of a layer of loose particles
 
@@ -97,19 +104,15 @@ class Apparatus:
     def of(cls, model: Model) -> Apparatus:
         tube, disc = model.number("heap/tube inner diameter"), model.number("heap/disc diameter")
         facets = int(model.number("heap/facets"))
-        classes = model.numbers(TYPE + "custom distribution diameters values")
-        shares = model.numbers(TYPE + "custom distribution diameters probabilities")
-        if model.text(TYPE + "distribution weighting basis") == "volume":
-            shares = shares / classes**3
-        volume = math.pi / 6. * float((shares * classes**3).sum() / shares.sum())
-        largest = float(classes.max())
+        classes = Classes.of(model)
+        largest = float(classes.diameters.max())
         heap = math.pi / 3. * (disc / 2.)**3 * math.tan(ANGLE) * SOLID
-        n = round(model.number("heap/fill ratio") * heap / volume)
+        n = round(model.number("heap/fill ratio") * heap / classes.mean_volume)
         pitch = PITCH * largest
         reach = tube / 2. * math.cos(math.pi / facets) - largest / 2. - SHIFT * largest
         k = int(reach / pitch)
         layer = np.array([(i, j) for i in range(-k, k + 1) for j in range(-k, k + 1) if math.hypot(i, j) * pitch <= reach])
-        return cls(tube, disc, facets, largest, n, layer * pitch)
+        return cls(tube, disc, facets, largest, classes, n, layer * pitch)
 
     @property
     def top(self) -> float:
@@ -155,7 +158,7 @@ def write_stl(path: Path, triangles: list[list[tuple[float, float, float]]]) -> 
 
 def write_particles(path: Path, apparatus: Apparatus, model: Model, seed: int, style: str) -> None:
     random = np.random.default_rng(seed)
-    d, x = diameters(model, apparatus.n, random), apparatus.places(random)
+    d, x = apparatus.classes.draw(apparatus.n, random), apparatus.places(random)
     half, low = apparatus.disc / 2. + 8. * apparatus.largest, -(RIM + 4.) * apparatus.largest
     high = 4. * apparatus.top + 8. * apparatus.largest
     with open(path, "w", encoding="utf-8") as file:
@@ -224,6 +227,18 @@ def make_heap(seed: int, model: Model, apparatus: Apparatus, options: argparse.N
     return target
 
 
+def occupy(folder: Path, truth: dict[str, object]) -> None:
+    """Notes what the heaps of a folder are of; a folder with heaps of another truth is refused."""
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "truth.json"
+    if file.exists():
+        old = json.loads(file.read_text(encoding="utf-8"))
+        other = [name for name, value in truth.items() if old.get(name) != value]
+        if other:
+            raise Failure(f"{folder} has heaps with another {', '.join(other)}. Give another folder.")
+    file.write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
+
+
 def parse(words: list[str]) -> argparse.Namespace:
     arguments = parser(__doc__)
     arguments.add_argument("folder", type=Path)
@@ -247,11 +262,10 @@ def parse(words: list[str]) -> argparse.Namespace:
 
 def main(words: list[str]) -> int:
     options = parse(words)
-    options.folder.mkdir(parents=True, exist_ok=True)
     model = model_of(options.case, options.program, options.set)
     apparatus = Apparatus.of(model)
-    truth = {"engine": options.engine, "friction": options.friction, "rolling": options.rolling,
-             "cohesion": options.cohesion, "repeats": options.repeats, "first seed": options.first_seed}
+    occupy(options.folder, {"engine": options.engine, "case": options.case.name, "set": options.set,
+                            **{name: getattr(options, name) for name in ("friction", "rolling", "cohesion", "filling", "rest")}})
     repeats = []
     for seed in range(options.first_seed, options.first_seed + options.repeats):
         rows = read_particles(make_heap(seed, model, apparatus, options))
@@ -261,5 +275,4 @@ def main(words: list[str]) -> int:
     if len(repeats) > 1:
         table = [f"# place: heaps made by {options.engine}", HEAD, *measured_rows(repeats, options)]
         (options.folder / "measured.csv").write_text("\n".join(table) + "\n", encoding="utf-8")
-    (options.folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     return 0
