@@ -43,7 +43,7 @@ def main() -> int:
         recorded = fingerprints.read(path)
     found = fingerprints.fingerprints(recorded, ["heap"], ["a", "b", "c"], set())
     strengths = {effect: [round(f.strength, 1) for f in of] for effect, of in found.items()}
-    assert strengths["a"][0] / 4. - 1. < 0.03 and abs(strengths["a"][1] / 8. - 1.) < 0.03, strengths
+    assert abs(strengths["a"][0] / 4. - 1.) < 0.05 and abs(strengths["a"][1] / 8. - 1.) < 0.03, strengths
     head, *rows = fingerprints.distances(found, STRENGTH)
     by_pair = {row[0]: (float(row[3]), float(row[4])) for row in rows}
     for pair, cosine in (("a, b", 0.5), ("a, c", math.sqrt(0.5))):
