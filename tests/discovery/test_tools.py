@@ -18,8 +18,10 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
+from eunoe.discovery.foreign_heaps import occupy
 from eunoe.discovery.outcomes import read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
+from eunoe.launch import Failure
 from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
 from eunoe.report.discovery_results import Study
@@ -151,6 +153,15 @@ class StrengthOfAnEffect(InFolder):
         self.assertAlmostEqual(found / (4. / length * 1e-4), 1., delta=0.35)
         self.assertIsNone(strengths.amplitude("cohesion", 1000.))
         self.assertIsNone(strengths.amplitude("cohesion", -4.))
+
+
+class HeapsOfOtherPrograms(InFolder):
+    def test_a_folder_has_heaps_of_one_truth(self) -> None:
+        heaps = self.folder / "heaps"
+        occupy(heaps, {"friction": 0.3, "rolling": None})
+        occupy(heaps, {"friction": 0.3, "rolling": None})
+        with self.assertRaisesRegex(Failure, "heaps has heaps with another friction. Give another folder"):
+            occupy(heaps, {"friction": 0.4, "rolling": None})
 
 
 class Scores(InFolder):
