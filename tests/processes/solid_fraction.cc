@@ -91,10 +91,31 @@ void examine_sphere()
   check_relative("half of a sphere", half[0] + half[1] + half[2], 0.5 * all, 1e-3);
 }
 
+/// In a layer so thin that it cuts a disc out of the sphere, what a disc has of it is a lens of two
+/// circles, whose area is known: with equal radii and a distance of one of them, and where the
+/// smaller circle's centre lies beyond the common chord.
+void examine_lens()
+{
+  const auto area = [](double radius, double distance) {
+    constexpr double thickness = 1e-3;
+    SolidFraction one(Footprint::disc(radius), -0.5 * thickness, thickness, 1);
+    if (is_mine(0))
+      one.add({distance, 0., 0.}, 1.);
+    one.reduce(MPI_COMM_WORLD);
+    return one(0) * M_PI * radius * radius;
+  };
+  check_relative("lens of equal circles", area(1., 1.), 2. * M_PI / 3. - 0.5 * std::sqrt(3.), 1e-5);
+  // Two sectors less the kite of the centres and the ends of the chord.
+  const double b = 2., d = 1.5, x = (d * d + 1. - b * b) / (2. * d), y = std::sqrt(1. - x * x);
+  check_relative("lens of a small circle in a large one", area(b, d),
+                 std::acos(x) + b * b * std::acos((d - x) / b) - d * y, 1e-5);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
 {
   examine_crystal();
   examine_sphere();
+  examine_lens();
 }
