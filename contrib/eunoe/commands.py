@@ -35,6 +35,7 @@ COMMANDS = {
         "predict-scaling": ("scaling.predict", "predicts what a case takes on many ranks"),
     },
     "Studies": {
+        "cheap-heaps": ("studies.cheap_heaps", "whether larger steps, softer grains or sleep change a heap"),
         "cheap-layers": ("studies.cheap_layers", "whether larger steps, softer grains or sleep change the layers"),
         "feedstock": ("studies.feedstock", "what the feedstock does to the layers"),
         "forgetting": ("studies.forgetting", "what a packing loses when its contacts forget"),
