@@ -15,6 +15,7 @@ build=(
   libboost-program-options-dev # command line
   nlohmann-json3-dev           # summary.json
   libeigen3-dev                # linear algebra of discovery
+  libsqlite3-dev               # discovery's table of runs
   zlib1g-dev                   # compression of pictures
 )
 report=(

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 
 namespace eunoe::discovery {
@@ -27,7 +28,7 @@ const ProgramText program = {
 
 struct ExtraArguments
 {
-  bool list_observables = false, list_effects = false, verdict_exit_code = false;
+  bool list_observables = false, list_effects = false, plan = false, verdict_exit_code = false;
   std::string truth_file;
 };
 
@@ -67,18 +68,16 @@ void refuse_if_any(const Problems &problems)
     throw UserError(problems);
 }
 
-/// Makes the simulator of a study: runs its base models once, and checks that they give all data
-/// points of the measured data.
-std::unique_ptr<DemSimulator> open_simulator(const StudyInput &study, MPI_Comm comm, Log &log)
+/// Runs the base models of a study once, and checks that they give all data points of the measured
+/// data.
+void check_base_models(const StudyInput &study, DemSimulator &simulator)
 {
   const StudyParameters &p = study.parameters;
-  auto simulator = std::make_unique<DemSimulator>(study.experiments, study.factors,
-                                                  p.cache_folder(), p.ranks_per_run, comm, log);
-  // A seed that the stages use as well.
-  simulator->find_data_points(100000 * p.options.seed + 1);
+  // A seed that the study uses as well.
+  simulator.find_data_points(100000 * p.options.seed + 1);
   std::map<std::string, std::vector<DataPoint>> points;
   for (const Experiment &experiment : study.experiments)
-    points[experiment.name()] = simulator->data_points(experiment.name());
+    points[experiment.name()] = simulator.data_points(experiment.name());
   Problems problems;
   check_data_points(study.data, points, p.measured_data, problems);
   refuse_if_any(problems);
@@ -86,8 +85,7 @@ std::unique_ptr<DemSimulator> open_simulator(const StudyInput &study, MPI_Comm c
   for (const auto *list : {&study.data.fit, &study.data.held_out})
     for (const MeasuredPoint &row : *list)
       required.push_back(row.point);
-  simulator->require(required);
-  return simulator;
+  simulator.require(required);
 }
 
 /// Refuses a study whose folders cannot be written to, before it spends hours on runs.
@@ -100,7 +98,8 @@ void refuse_folders(const StudyParameters &p, const bool makes_data, MPI_Comm co
   MPI_Comm_rank(comm, &rank);
   for (const auto &[entry, folder] :
        {std::pair<std::string, std::string>("output path", p.output_path),
-        std::pair<std::string, std::string>("cache path", p.cache_folder())})
+        std::pair<std::string, std::string>(
+            "table of runs", std::filesystem::path("./" + p.table_file()).parent_path().string())})
   {
     const std::string obstacle = broadcast(rank == 0 ? obstacle_to_folder(folder) : "", comm);
     if (!obstacle.empty())
@@ -142,20 +141,24 @@ int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm,
 {
   const StudyParameters &p = study.parameters;
   StudyFolder folder(p.output_path, comm);
-  std::unique_ptr<DemSimulator> simulator;
   try {
-    if (folder.open(study.identity()))
+    DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
+                           log);
+    const auto began = folder.open(study.identity(), simulator.last_row());
+    if (began) {
       log.line("Going on with the study in " + p.output_path);
+      simulator.hide_rows_after(*began);
+    }
     folder.write("used.prm", p.as_input_file());
     stop_request::listen();
-    simulator = open_simulator(study, comm, log);
+    check_base_models(study, simulator);
     StudyOptions options = p.options;
     options.further_experiments = further_experiments(study);
     const Discovery discovery =
-        discover(options, study.data, study.plain_factors(), *simulator, folder, log);
+        discover(options, study.data, study.plain_factors(), simulator, log);
     // Nuisances stay at their null values, as in the model that was validated.
     write_models(study, discovery.model_after, folder);
-    write_answer(study, discovery, *simulator, folder);
+    write_answer(study, discovery, simulator, folder);
     write_page(study, comm, log);
     print_answer(discovery, folder, log);
     return tells_verdict ? exit_code(discovery.verdict) : exit_success;
@@ -163,6 +166,35 @@ int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm,
     log.line("Stopped as asked. Start the study again to go on.");
     return exit_stopped;
   }
+}
+
+/// Tells which measurements would say most about which effect is missing.
+int make_plan(const StudyInput &study, MPI_Comm comm, Log &log)
+{
+  const StudyParameters &p = study.parameters;
+  try {
+    stop_request::listen();
+    DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
+                           log);
+    simulator.find_data_points(100000 * p.options.seed + 1);
+    std::vector<std::string> names;
+    std::map<std::string, double> cost;
+    for (const Experiment &experiment : study.experiments) {
+      names.push_back(experiment.name());
+      cost[experiment.name()] = experiment.estimate().core_seconds();
+    }
+    log.line("Information that a measurement with four repeats is expected to give about which "
+             "effect is missing, in bits, and core-seconds of one run:");
+    for (const auto &row : plan(p.options, names, study.plain_factors(), simulator, log))
+      log.line("  " + format(row.at("information").get<double>()) + " of " +
+               format(row.at("of").get<double>()) + ": " + row.at("experiment").get<std::string>() +
+               ", " + row.at("observable").get<std::string>() + " (" +
+               format_roughly(cost[row.at("experiment").get<std::string>()]) + ")");
+  } catch (const Interrupted &) {
+    log.line("Stopped as asked. Give the same command again to go on.");
+    return exit_stopped;
+  }
+  return exit_success;
 }
 
 /// Prints what can be told without reading a whole study.
@@ -213,7 +245,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
       list_effects(study.factors, log);
       return exit_success;
     }
-    if (!makes_data)
+    if (!makes_data && !arguments.plan)
       read_data(study, comm, problems);
     refuse_if_any(problems);
     refuse_folders(study.parameters, makes_data, comm);
@@ -225,6 +257,8 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
   } catch (const UserError &error) {
     throw RefusedInput(error);
   }
+  if (arguments.plan)
+    return make_plan(study, comm, log);
   if (!makes_data)
     return make_study(study, arguments.verdict_exit_code, comm, log);
   try {
@@ -249,6 +283,10 @@ int run_discovery(int argc, char **argv, MPI_Comm comm)
           "instead of a study, make measured data of the hidden truth in this file, which is a "
           "study with a subsection 'twin'",
           nullptr, &arguments.truth_file},
+         {"plan",
+          "say which experiments and observables are expected to tell most about which effect is "
+          "missing; runs the base model and all effects, and needs no measured data",
+          &arguments.plan},
          {"verdict-exit-code",
           "end with the verdict's code: 0 none, 10 named, 11 tie, 12 off catalogue, 13 "
           "underpowered",

@@ -64,16 +64,107 @@ std::string named_files(const std::string &input)
 } // namespace
 
 DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
-                           const std::vector<Effect> &factors, const std::string &cache_folder,
+                           const std::vector<Effect> &factors, const std::string &table_file,
                            const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
-    : experiments(experiments), factors(factors), cache(cache_folder, comm),
+    : experiments(experiments), factors(factors), table(table_file, comm),
       queue(comm, ranks_per_run), comm(comm), log(log)
 {
-  cache.open();
+  table.open();
+  earlier = table.rows();
+  for (const RunTable::Row &row : earlier)
+    if (row.engine == engine_digest())
+      records[row.key] = row.record;
+}
+
+/// Whether simulations that another engine has made have the same results now.
+bool DemSimulator::gives_the_same(const std::vector<const RunTable::Row *> &samples)
+{
+  std::vector<Case> cases;
+  for (const RunTable::Row *const row : samples)
+    cases.push_back(make_case(row->request));
+  simulate_all(cases);
+  return std::all_of(samples.begin(), samples.end(), [this](const RunTable::Row *row) {
+    return text_of(records.at(row->key).measurements) == text_of(row->record.measurements);
+  });
+}
+
+void DemSimulator::adopt_earlier_runs()
+{
+  constexpr std::size_t n_samples = 3;
+  std::map<std::string, std::vector<const RunTable::Row *>> others;
+  for (const RunTable::Row &row : earlier)
+    if (row.engine != engine_digest() && records.count(row.key) == 0 && row.record.failure.empty())
+      others[row.engine].push_back(&row);
+  for (auto &[engine, rows] : others) {
+    // Runs with effects first: they use more of the engine.
+    std::stable_sort(rows.begin(), rows.end(), [](const auto *a, const auto *b) {
+      return a->request.amplitudes.size() > b->request.amplitudes.size();
+    });
+    std::vector<const RunTable::Row *> samples;
+    for (const RunTable::Row *const row : rows)
+      if (samples.size() < n_samples && is_of_study(row->request) &&
+          make_case(row->request).key == row->key)
+        samples.push_back(row);
+    if (samples.empty())
+      continue;
+    const bool same = gives_the_same(samples);
+    log.line(std::to_string(rows.size()) + " runs of an earlier version of the engine are " +
+             (same ? "used: " : "not used: ") + std::to_string(samples.size()) +
+             " of them, run again, gave " + (same ? "the same bits." : "other results."));
+    if (!same)
+      continue;
+    table.adopt(engine, engine_digest());
+    for (const RunTable::Row &row : earlier)
+      if (row.engine == engine)
+        records.emplace(row.key, row.record);
+  }
+}
+
+bool DemSimulator::is_of_study(const RunRequest &request) const
+{
+  return std::any_of(experiments.begin(), experiments.end(),
+                     [&](const Experiment &e) { return e.name() == request.experiment; }) &&
+         std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
+           return std::any_of(factors.begin(), factors.end(),
+                              [&](const Effect &e) { return e.factor.name == a.first; });
+         });
+}
+
+bool DemSimulator::concerns(const std::string &experiment,
+                            const std::vector<std::string> &effects) const
+{
+  const std::string &process = find(experiment).process_name();
+  return effects.empty() || std::any_of(factors.begin(), factors.end(), [&](const Effect &e) {
+           return e.concerns(process) &&
+                  std::find(effects.begin(), effects.end(), e.factor.name) != effects.end();
+         });
+}
+
+std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::string &experiment)
+{
+  std::vector<std::pair<RunRequest, RunResult>> result;
+  for (const RunTable::Row &row : earlier) {
+    if (row.request.experiment != experiment || row.number > last_known ||
+        records.count(row.key) == 0 || !is_of_study(row.request))
+      continue;
+    const std::string text = text_of(row.request);
+    if (keys.count(text) == 0) {
+      // The case may have changed since, or belong to another study.
+      if (make_case(row.request).key != row.key)
+        continue;
+      keys[text] = row.key;
+      ++cached;
+      add_to_ledger(row.request, row.key, true);
+    }
+    if (keys.at(text) == row.key)
+      result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
+  }
+  return result;
 }
 
 void DemSimulator::find_data_points(const std::uint32_t seed)
 {
+  adopt_earlier_runs();
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
     requests.push_back({experiment.name(), {}, seed});
@@ -105,6 +196,7 @@ DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
 {
   Case one;
   one.experiment = &find(request.experiment);
+  one.request = request;
   std::string input;
   try {
     one.overrides = one.experiment->overrides(factors, request.amplitudes);
@@ -122,9 +214,9 @@ DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
   one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
   if (one.problem.empty()) {
     const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
-    one.key = sha256(std::string(engine_digest()) + files + input);
+    one.key = sha256(files + input);
   } else
-    one.key = sha256(std::string(engine_digest()) + one.problem + text_of(request));
+    one.key = sha256(one.problem + text_of(request));
   return one;
 }
 
@@ -178,7 +270,7 @@ RunRecord DemSimulator::simulate(const Case &one)
   return record;
 }
 
-void DemSimulator::simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases)
+void DemSimulator::simulate_all(const std::vector<Case> &cases)
 {
   const double begin = MPI_Wtime();
   const int n = static_cast<int>(cases.size());
@@ -186,11 +278,11 @@ void DemSimulator::simulate_all(const std::vector<std::pair<Case, nlohmann::orde
   std::string error;
   bool interrupted = false;
   const auto one_case = [&](const int k) {
-    const RunRecord record = simulate(cases[k].first);
+    const RunRecord record = simulate(cases[k]);
     if (queue.is_leader()) {
-      mine.push_back({cases[k].first.key, to_json(record)});
+      mine.push_back({cases[k].key, to_json(record)});
       try {
-        cache.store(cases[k].first.key, record, cases[k].second);
+        table.store({0, cases[k].key, engine_digest(), cases[k].request, record});
       } catch (const UserError &failure) {
         error = failure.what();
       }
@@ -265,18 +357,12 @@ std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests
       unknown[text_of(request)] = {make_case(request), request};
       order.push_back(text_of(request));
     }
-  std::set<std::string> wanted;
-  for (const auto &[text, item] : unknown)
-    wanted.insert(item.first.key);
-  const std::map<std::string, RunRecord> kept = cache.load(wanted);
-  records.insert(kept.begin(), kept.end());
-
-  std::vector<std::pair<Case, nlohmann::ordered_json>> missing;
+  std::vector<Case> missing;
   std::set<std::string> begun;
   for (const std::string &text : order) {
-    const auto &[one, request] = unknown.at(text);
+    const Case &one = unknown.at(text).first;
     if (records.count(one.key) == 0 && begun.insert(one.key).second)
-      missing.emplace_back(one, description(request));
+      missing.push_back(one);
   }
   if (!missing.empty())
     simulate_all(missing);

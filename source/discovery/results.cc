@@ -101,19 +101,17 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                              {"unit", o.unit},
                              {"index", o.index_meaning},
                              {"text", o.text}});
-  // The order of the values in the runs that the stages list.
-  auto &points = answer["cells"];
-  for (const Experiment &experiment : study.experiments)
-    for (const DataPoint &point : simulator.data_points(experiment.name()))
-      points[experiment.name()].push_back({point.observable, point.index});
   double core_seconds = 0.;
   for (const auto &run : simulator.ledger())
     core_seconds += run.at("core_seconds").get<double>();
   answer["simulations"] = {{"made_now", simulator.n_runs()},
-                           {"from_cache", simulator.n_cached()},
+                           {"from_table", simulator.n_cached()},
                            {"core_hours", core_seconds / 3600.}};
   answer["ledger"] = simulator.ledger();
   folder.write("discovery.json", answer.dump(1) + "\n");
+  for (const std::string name :
+       {"candidates", "envelopes", "decisive", "effects", "models", "learning curve"})
+    folder.write_csv(boost::replace_all_copy(name, " ", "_") + ".csv", answer[name]);
 }
 
 std::string page_command(const std::string &folder)
@@ -163,33 +161,29 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
       });
     };
     const auto n_points = count_points(study.data.fit) + count_points(study.data.held_out);
-    const double leaders = std::min<double>(options.n_leaders, n_effects);
     const double n_nuisances = n_factors - n_effects;
-    // A second look, and a second validation, need more runs.
-    const double looks = options.second_look ? 2.5 : 1., validations = 3.;
-    const double of_base = options.null_runs + 2. * options.screen_runs * n_effects +
-                           2. * options.nuisance_runs * n_nuisances;
-    const double of_leaders = options.confirm_rounds * options.confirm_runs * leaders +
-                              options.fit_runs * options.max_effects;
+    // First runs; the rest of the budget goes where it is expected to tell most.
+    constexpr double levels = 4., replicates = 2., models = 4.;
     const double n =
-        experiment.is_held_out()
-            ? validations * (2. * options.validate_runs + options.nuisance_runs * n_nuisances)
-        : n_points == 0 ? 0.
-                        : looks * of_base + of_leaders;
+        experiment.is_held_out() ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
+        : n_points == 0          ? 0.
+                                 : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
+                              levels * replicates * n_effects;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
              (experiment.is_held_out() ? ", held out" : "") + "): " +
              format_count(static_cast<double>(n_points), "measured cell", "measured cells") +
-             "; at most about " + format_count(n, "run", "runs") + " of " +
+             "; first about " + format_count(n, "run", "runs") + " of " +
              format_count(estimate.particles, "particle", "particles") + " and " +
              format_count(estimate.steps, "step", "steps") + ", " +
              format_roughly(estimate.core_seconds()) + " core-seconds each");
     runs += n;
     core_hours += hours;
   }
-  if (options.budget > 0 && runs > static_cast<double>(options.budget)) {
-    core_hours *= static_cast<double>(options.budget) / runs;
+  // What is left of the budget is spent as the first runs were.
+  if (options.budget > 0) {
+    core_hours *= static_cast<double>(options.budget) / std::max(1., runs);
     runs = static_cast<double>(options.budget);
   }
   std::string names;

@@ -28,7 +28,7 @@ std::optional<nlohmann::ordered_json> read_json(const std::string &file, MPI_Com
   try {
     return nlohmann::ordered_json::parse(read_file(file, comm));
   } catch (const nlohmann::json::exception &) {
-    throw UserError(file + " is damaged. Remove it; the runs are kept in the cache.");
+    throw UserError(file + " is damaged. Remove it; the runs are kept in their table.");
   }
 }
 
@@ -39,8 +39,10 @@ std::string StudyFolder::file(const std::string &name) const
   return (fs::path(path) / name).lexically_normal().string();
 }
 
-bool StudyFolder::open(const std::map<std::string, std::string> &identity)
+std::optional<std::int64_t> StudyFolder::open(const std::map<std::string, std::string> &identity,
+                                              const std::int64_t last_row)
 {
+  const std::string began = "last row of the table at the start";
   create_folder(path, comm);
   lock = std::make_unique<RunLock>(file("running.lock"), "The folder " + path,
                                    "Wait until it ends, or choose another 'output path'.", comm);
@@ -48,44 +50,31 @@ bool StudyFolder::open(const std::map<std::string, std::string> &identity)
   for (const auto &[name, text] : identity)
     mine[name] = sha256(text);
   const auto before = read_json(file(identity_file), comm);
-  if (before) {
-    std::vector<std::string> differ;
-    for (const auto &[name, digest] : mine.items())
-      if (!before->contains(name) || before->at(name) != digest)
-        differ.push_back(name);
-    for (const auto &[name, digest] : before->items())
-      if (!mine.contains(name))
-        differ.push_back(name);
-    if (!differ.empty())
-      throw UserError(
-          "The folder " + path +
-          " holds another study; what differs: " + boost::join(differ, ", ") +
-          ". Choose another 'output path', or remove the folder. (With the same 'cache path' "
-          "no run is made twice.)");
-    return true;
+  if (!before) {
+    mine[began] = last_row;
+    write(identity_file, mine.dump(1) + "\n");
+    return std::nullopt;
   }
-  create_folder(path + "/stages", comm);
-  write(identity_file, mine.dump(1) + "\n");
-  return false;
+  std::vector<std::string> differ;
+  for (const auto &[name, digest] : mine.items())
+    if (!before->contains(name) || before->at(name) != digest)
+      differ.push_back(name);
+  for (const auto &[name, digest] : before->items())
+    if (!mine.contains(name) && name != began)
+      differ.push_back(name);
+  if (!differ.empty())
+    throw UserError("The folder " + path +
+                    " holds another study; what differs: " + boost::join(differ, ", ") +
+                    ". Choose another 'output path', or remove the folder. (With the same 'table "
+                    "of runs' no run is made twice.)");
+  return before->value(began, std::int64_t(0));
 }
 
-std::optional<nlohmann::ordered_json> StudyFolder::load(const std::string &stage)
+void StudyFolder::write_csv(const std::string &name, const nlohmann::ordered_json &list) const
 {
-  auto table = read_json(file("stages/" + stage + ".json"), comm);
-  // The simulator's cache remembers runs, with the engine that made them.
-  if (table && table->contains("runs"))
-    table->at("runs") = nlohmann::ordered_json::array();
-  return table;
-}
-
-void StudyFolder::save(const std::string &stage, const nlohmann::ordered_json &table)
-{
-  write("stages/" + stage + ".json", table.dump(1) + "\n");
-  for (const auto &[name, list] : table.at("table").items()) {
-    const std::string csv = as_csv(list);
-    if (!csv.empty())
-      write("stages/" + stage + "_" + boost::replace_all_copy(name, " ", "_") + ".csv", csv);
-  }
+  const std::string csv = as_csv(list);
+  if (!csv.empty())
+    write(name, csv);
 }
 
 void StudyFolder::write(const std::string &name, const std::string &text) const

@@ -29,8 +29,8 @@ std::map<std::string, std::string> StudyInput::identity() const
   parts["engine"] = engine_digest();
   parts["measured data"] = data_text;
   // Paths and the use of ranks do not change results.
-  static const std::set<std::string> places = {"output path",   "cache path", "ranks per run",
-                                               "measured data", "write page", "effect folders",
+  static const std::set<std::string> places = {"output path",   "table of runs", "ranks per run",
+                                               "measured data", "write page",    "effect folders",
                                                "case file"};
   for (const auto &[place, value] : values_in(parameters.as_input_file()))
     if (places.count(place.second) == 0)

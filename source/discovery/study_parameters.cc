@@ -51,43 +51,26 @@ void declare_nuisance(dealii::ParameterHandler &prm, NuisanceParameters &nuisanc
                         "Standard deviation of the amplitude.");
 }
 
-void declare_stages(dealii::ParameterHandler &prm, StudyOptions &options)
+void declare_options(dealii::ParameterHandler &prm, StudyOptions &options)
 {
   declare::between(prm, "level", options.level, 1e-4, 0.5,
                    "Accepted probability that something is said to be missing while nothing is.");
-  declare::count(prm, "budget of runs", options.budget, "Most simulations of a study; 0: no limit.",
-                 0);
+  declare::count(
+      prm, "budget of runs", options.budget,
+      "Most simulations that a study asks for; 0: no limit. It stops before when more of "
+      "them no longer change the answer.",
+      0);
   declare::count(prm, "null runs", options.null_runs,
-                 "null: runs of the base model of every experiment.", 8);
+                 "First runs of the base model of every experiment.", 8);
   declare::count(prm, "nuisance runs", options.nuisance_runs,
-                 "null: runs on either side of each nuisance.", 2);
-  declare::count(prm, "screen runs", options.screen_runs,
-                 "screen: runs at each of the two amplitudes of an effect.", 1);
-  declare::entry(prm, "second look", options.second_look,
-                 "null and screen: whether two and a half times as many runs are made where the "
-                 "first leave in doubt if anything is missing.");
-  declare::count(prm, "confirm runs", options.confirm_runs,
-                 "confirm: further runs for each leading effect, in each round.", 1);
-  declare::count(prm, "confirm rounds", options.confirm_rounds, "confirm: most rounds.", 0);
-  declare::count(prm, "leading effects", options.n_leaders,
-                 "confirm: most effects that a round looks at.", 1);
-  declare::count(prm, "fit runs", options.fit_runs, "fit: runs at the fitted amplitudes.", 1);
+                 "First runs on either side of each nuisance.", 2);
   declare::count(prm, "validate runs", options.validate_runs,
-                 "validate: runs of each held-out experiment, before and after each.", 3);
-  declare::count(prm, "maximum number of effects", options.max_effects,
-                 "Most effects that are named together.", 1);
+                 "Runs of each held-out experiment for each model that is tested.", 3);
   declare::count(prm, "seed", options.seed, "Seed of the study, from which those of its runs come.",
                  0);
   declare::not_negative(prm, "model tolerance", options.model_tolerance,
                         "Relative deviation that is forgiven to every value of the base model, for "
                         "what its step or depth leaves out.");
-  declare::entry(prm, "common random numbers", options.common_random_numbers,
-                 "Whether effects are compared with the base model at equal seeds where that "
-                 "pays.");
-  declare::entry(prm, "confirm", options.confirm, "Whether leading effects get more runs.");
-  declare::entry(prm, "bootstrap", options.bootstrap,
-                 "Whether thresholds take into account that the scatter is estimated; false "
-                 "for comparison only.");
 }
 
 void declare_synthetic_data(dealii::ParameterHandler &prm, SyntheticDataParameters &synthetic)
@@ -180,17 +163,17 @@ void StudyParameters::declare(dealii::ParameterHandler &prm, const bool with_syn
   declare::entry(prm, "output path", output_path,
                  "Folder of all results; created if missing, and gone on with if it holds the "
                  "same study.");
-  declare::entry(prm, "cache path", cache_path,
-                 "Folder in which simulations are kept; several studies may share it. Empty: "
-                 "the output path with '_cache' behind it, so that deleting the results loses "
-                 "no simulation.");
+  declare::entry(prm, "table of runs", table_of_runs,
+                 "SQLite file in which all simulations are kept; several studies may share it. "
+                 "Empty: the output path with '_runs.sqlite' behind it, so that deleting the "
+                 "results loses no simulation.");
   declare::list(prm, "effects", effects, ',',
                 "Effects that may be missing: 'all' of the catalogue, or names.");
   declare::list(prm, "excluded effects", excluded_effects, ',', "Effects that are left out.");
   declare::list(prm, "effect folders", effect_folders, ',',
                 "Folders of effects, one file each; empty: the catalogue that comes with the "
                 "program, which may also be named 'standard' beside others.");
-  declare_stages(prm, options);
+  declare_options(prm, options);
   declare::count(prm, "ranks per run", ranks_per_run, "MPI ranks that share a simulation.", 1);
   declare::entry(prm, "write page", write_page,
                  "Whether discovery.html is written; needs Python with Matplotlib.");
@@ -226,17 +209,17 @@ std::string StudyParameters::description()
   return describe_entries(prm, repeated_sections());
 }
 
-std::string StudyParameters::cache_folder() const
+std::string StudyParameters::table_file() const
 {
-  if (!cache_path.empty())
-    return cache_path;
+  if (!table_of_runs.empty())
+    return table_of_runs;
   std::filesystem::path path = std::filesystem::path(output_path).lexically_normal();
   if (!path.has_filename())
     path = path.parent_path(); // a slash at the end
   // "." and ".." have no name to put something behind.
   const std::string name = path.filename().string();
-  return name.empty() || name == "." || name == ".." ? (path / "cache").string()
-                                                     : path.string() + "_cache";
+  return name.empty() || name == "." || name == ".." ? (path / "runs.sqlite").string()
+                                                     : path.string() + "_runs.sqlite";
 }
 
 void StudyParameters::check(const ParameterCheck &check) const

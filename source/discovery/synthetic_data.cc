@@ -217,8 +217,8 @@ void make_synthetic_data(const StudyParameters &study, const std::vector<Effect>
   std::vector<Effect> changes = factors;
   changes.push_back(make_time_step_change());
   const std::vector<Experiment> experiments = experiments_of(study, comm);
-  DemSimulator simulator(experiments, changes, sealed_file + ".cache", study.ranks_per_run, comm,
-                         log);
+  DemSimulator simulator(experiments, changes, sealed_file + ".runs.sqlite", study.ranks_per_run,
+                         comm, log);
   MeasuredData data = measure_truth(synthetic, experiments, truth.amplitudes, simulator, normal);
   const std::string sealed_text = truth.sealed.dump(1) + "\n";
   data.header["made by"] = "eunoe-discovery --make-twin";

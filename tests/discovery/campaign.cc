@@ -1,7 +1,8 @@
-// A campaign of simulations: the same results on any number of ranks, each run made once, kept on
-// disk and found again; runs that fail; seeds; null values; a stop in the middle.
+// A campaign of simulations: the same results on any number of ranks, each run made once, kept in
+// a table and found again, also by another version of the engine if it gives the same bits; runs
+// that fail; seeds; null values.
 
-#include <eunoe/core/files.h>
+#include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/study_input.h>
 
@@ -16,7 +17,7 @@ using namespace test;
 using namespace eunoe::discovery;
 
 const std::string folder = DISCOVERY_TESTS;
-const std::string cache = "campaign_cache", cache_alone = "campaign_cache_alone";
+const std::string table = "campaign.sqlite", table_alone = "campaign_alone.sqlite";
 
 /// One row per run; the row of a failed run is empty.
 Numbers numbers(const std::vector<RunResult> &results)
@@ -85,7 +86,7 @@ void check_effects(const Simulator &simulator, const std::vector<RunResult> &res
 
 std::vector<RunResult> run_first(const Setting &setting, Log &log)
 {
-  DemSimulator simulator(setting.experiments, setting.effects, cache, 1, setting.comm, log);
+  DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
   simulator.find_data_points(1);
   print("cells: " + std::to_string(simulator.data_points("box").size()));
   const std::vector<RunResult> first = simulator.run(requests);
@@ -100,7 +101,7 @@ std::vector<RunResult> run_first(const Setting &setting, Log &log)
     if (ranks == MPI_COMM_WORLD)
       return numbers(first);
     Log own_log(ranks, true);
-    DemSimulator alone(setting.experiments, setting.effects, cache_alone, 1, ranks, own_log);
+    DemSimulator alone(setting.experiments, setting.effects, table_alone, 1, ranks, own_log);
     alone.find_data_points(1);
     return numbers(alone.run(requests));
   });
@@ -117,35 +118,53 @@ std::vector<RunResult> run_first(const Setting &setting, Log &log)
   return first;
 }
 
-/// Another simulator finds all in the cache; then one run of it is damaged.
-void run_from_cache(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+/// Another simulator finds all in the table.
+void run_from_table(const Setting &setting, const std::vector<RunResult> &first, Log &log)
 {
-  DemSimulator simulator(setting.experiments, setting.effects, cache, 2, setting.comm, log);
+  DemSimulator simulator(setting.experiments, setting.effects, table, 2, setting.comm, log);
   simulator.find_data_points(1);
   check("kept results are the same", simulator.run(requests) == first);
   check_runs("nothing is made again", simulator, 0);
-  check("all came from the cache", simulator.n_cached() == 8);
-  if (is_first_rank()) {
-    std::size_t n = 0;
-    for (const auto &entry : std::filesystem::recursive_directory_iterator(cache))
-      n += entry.is_regular_file() ? 1 : 0;
-    print(std::to_string(n) + " files");
-    // A damaged file does not count as a result.
-    write_file(cache + "/" + simulator.ledger()[0].at("key").get<std::string>().substr(0, 2) + "/" +
-                   simulator.ledger()[0].at("key").get<std::string>() + ".json",
-               "{\"key\": 1");
-  }
-  MPI_Barrier(setting.comm);
-}
-
-void run_after_damage(const Setting &setting, const std::vector<RunResult> &first, Log &log)
-{
-  DemSimulator simulator(setting.experiments, setting.effects, cache, 2, setting.comm, log);
-  simulator.find_data_points(1);
-  check_runs("what is damaged is made again", simulator, 1);
-  check("with the same result", simulator.run(requests) == first);
+  check("all came from the table", simulator.n_cached() == 8);
+  const auto known = simulator.known("box");
+  check("a study is told what is known",
+        known.size() == 6 && known[0].second == first[0] && simulator.known("gentle").size() == 2,
+        std::to_string(known.size()));
+  DemSimulator begun(setting.experiments, setting.effects, table, 2, setting.comm, log);
+  begun.find_data_points(1);
+  begun.hide_rows_after(3);
+  check("but not what was made after its start",
+        begun.known("box").size() + begun.known("gentle").size() == 3);
   simulator.require({{"box", "drift", 0}});
   check("a required cell that is there", simulator.run({requests[0]})[0].has_value());
+  check("an effect that the process can have", simulator.concerns("box", {"tilt"}));
+}
+
+/// Rows of another engine are used if samples of them give the same bits.
+void run_after_a_change(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+{
+  RunTable rows(table, setting.comm);
+  rows.adopt(engine_digest(), "another engine");
+  {
+    DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
+    simulator.find_data_points(1);
+    check_runs("samples are run again", simulator, 3);
+    check("the rest is adopted", simulator.run(requests) == first && simulator.n_runs() == 3);
+  }
+  rows.adopt(engine_digest(), "another engine");
+  for (RunTable::Row row : rows.rows()) {
+    row.engine = "an engine with other results";
+    for (Measurement &m : row.record.measurements)
+      m.value *= 1. + 1e-15;
+    if (is_first_rank() && row.engine != "another engine")
+      rows.store(row);
+  }
+  MPI_Barrier(setting.comm);
+  const std::size_t n = rows.rows().size();
+  DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
+  simulator.find_data_points(1);
+  check("of two engines the one with the same bits is adopted", simulator.run(requests) == first);
+  check("rows are never lost", rows.rows().size() >= n);
 }
 
 } // namespace
@@ -155,12 +174,12 @@ EUNOE_MPI_TEST()
   const MPI_Comm comm = MPI_COMM_WORLD;
   Log log(comm, true);
   if (is_first_rank())
-    for (const std::string &old : {cache, cache_alone})
-      std::filesystem::remove_all(old);
+    for (const std::string &old : {table, table_alone})
+      std::filesystem::remove(old);
   MPI_Barrier(comm);
 
   const Setting setting = read_setting(comm);
   const std::vector<RunResult> first = run_first(setting, log);
-  run_from_cache(setting, first, log);
-  run_after_damage(setting, first, log);
+  run_from_table(setting, first, log);
+  run_after_a_change(setting, first, log);
 }

@@ -35,8 +35,17 @@ public:
     for (const RunRequest &request : requests) {
       ++made;
       results.push_back(outcome(request));
+      if (remembers)
+        memory[request.experiment].emplace_back(request, results.back());
     }
     return results;
+  }
+
+  /// From now on runs are known to later studies, as from a table of runs.
+  void remember() { remembers = true; }
+  std::vector<std::pair<RunRequest, RunResult>> known(const std::string &experiment) override
+  {
+    return memory[experiment];
   }
 
   std::uint64_t n_runs() const override { return made; }
@@ -167,6 +176,8 @@ private:
   }
 
   std::uint64_t made = 0;
+  bool remembers = false;
+  std::map<std::string, std::vector<std::pair<RunRequest, RunResult>>> memory;
 };
 
 /// Size of differences between models if covariance, nuisances and fingerprints are known exactly:

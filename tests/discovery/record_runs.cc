@@ -141,7 +141,7 @@ void record(const std::string &study_file, const std::string &table, const unsig
   if (!problems.empty())
     throw UserError(problems);
   Log log(MPI_COMM_WORLD, false);
-  DemSimulator simulator(study.experiments, study.factors, study.parameters.cache_folder(), 1,
+  DemSimulator simulator(study.experiments, study.factors, study.parameters.table_file(), 1,
                          MPI_COMM_WORLD, log);
   simulator.find_data_points(1);
   const std::vector<Amplitudes> others = wanted_amplitudes(

@@ -51,6 +51,29 @@ public:
     return result;
   }
 
+  bool concerns(const std::string &experiment,
+                const std::vector<std::string> &effects) const override
+  {
+    return effects.empty() || std::any_of(effects.begin(), effects.end(), [&](const auto &name) {
+             return all_pieces.at(name).at(experiment).size() > 1;
+           });
+  }
+
+  /// Covariance of the values of one run of the base model.
+  Eigen::MatrixXd covariance(const std::string &experiment) const
+  {
+    return half.at(experiment) * half.at(experiment).transpose();
+  }
+
+  /// Scatter of runs over that of the base model's.
+  double growth(const std::string &experiment, const Amplitudes &amplitudes) const
+  {
+    double product = 1.;
+    for (const auto &[name, amplitude] : amplitudes)
+      product *= at(experiment, name, amplitude).growth;
+    return product;
+  }
+
   /// Variance of the recorded means that are the truth here, over the squared change by a factor at
   /// an amplitude: how much of a fingerprint is noise (Mahalanobis, independent of the amplitude as
   /// far as the response is in proportion).
@@ -96,12 +119,15 @@ private:
     Chaos &own = chaos[experiment];
     own.mean = rows.colwise().mean().transpose();
     own.rows = centred(rows) * std::sqrt(static_cast<double>(n) / static_cast<double>(n - 1));
+    // In units of each data point's own scatter, as they have different ones.
+    own.deviation = (own.rows.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
+    const auto scale = own.deviation.asDiagonal();
     const Covariance covariance =
-        shrunk_covariance(centred(rows), static_cast<double>(n - 1),
+        shrunk_covariance(centred(rows) * scale.inverse(), static_cast<double>(n - 1),
                           std::vector<int>(static_cast<std::size_t>(rows.cols()), 0));
     own.own_share = covariance.shrinkage;
-    own.deviation = covariance.matrix.diagonal().cwiseSqrt();
-    half[experiment] = Eigen::LLT<Eigen::MatrixXd>(covariance.matrix).matrixL();
+    half[experiment] =
+        scale * Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(covariance.matrix).matrixL());
   }
 
   void make_pieces(const RecordedTable &table, const std::string &experiment, const Factor &factor)
@@ -196,20 +222,18 @@ private:
   {
     const Chaos &own = chaos.at(experiment);
     std::string text;
-    double growth = 1.;
     for (const auto &[name, amplitude] : amplitudes)
-      if (all_pieces.at(name).at(experiment).size() > 1) {
+      if (all_pieces.at(name).at(experiment).size() > 1)
         text += name + std::to_string(amplitude);
-        growth *= at(experiment, name, amplitude).growth;
-      }
     RandomStream random(run_seed, hash(experiment + "|" + text) + 31u * seed);
     const auto row =
         static_cast<Eigen::Index>(random.index(static_cast<std::size_t>(own.rows.rows())));
     const Eigen::VectorXd noise =
         own.deviation.cwiseProduct(random.normals(1, own.mean.size()).row(0).transpose());
     return mean(experiment, amplitudes) +
-           growth * (std::sqrt(1. - own.own_share) * own.rows.row(row).transpose() +
-                     std::sqrt(own.own_share) * noise);
+           growth(experiment, amplitudes) *
+               (std::sqrt(1. - own.own_share) * own.rows.row(row).transpose() +
+                std::sqrt(own.own_share) * noise);
   }
 
   const std::uint32_t seed;

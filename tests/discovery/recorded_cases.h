@@ -15,18 +15,32 @@ struct RecordedStudy
   Discovery discovery;
 };
 
-/// A truth of any strength; its data are drawn like the simulator's runs, with other seeds.
+/// A truth of any strength, and data that are drawn like the simulator's runs, with other seeds.
+struct DrawnCase
+{
+  DrawnCase(const RecordedTable &table, const StudyKind &kind, std::uint32_t seed)
+      : simulator(table, seed)
+  {
+    RandomStream random(seed, 98);
+    one = draw_case(simulator, kind, table.fit, seed, random);
+    repeats = 3 + static_cast<unsigned int>(random.index(4));
+    find_resolution(simulator, table.fit, repeats, one);
+    instrument = 0.4 * random.uniform();
+    data = simulator.measure(table.fit, table.held_out, one.truth, repeats, instrument, seed);
+  }
+
+  RecordedSimulator simulator;
+  SuiteCase one;
+  unsigned int repeats = 1;
+  double instrument = 0.;
+  MeasuredData data;
+};
+
 inline RecordedStudy interpolated_study(const RecordedTable &table, const StudyKind &kind,
                                         std::uint32_t seed, const StudyOptions &options)
 {
-  RandomStream random(seed, 98);
-  RecordedSimulator simulator(table, seed);
-  SuiteCase one = draw_case(simulator, kind, table.fit, seed, random);
-  const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  find_resolution(simulator, table.fit, repeats, one);
-  const MeasuredData data = simulator.measure(table.fit, table.held_out, one.truth, repeats,
-                                              0.4 * random.uniform(), seed);
-  return {one, study_of(one, simulator, data, options)};
+  DrawnCase drawn(table, kind, seed);
+  return {drawn.one, study_of(drawn.one, drawn.simulator, drawn.data, options)};
 }
 
 /// Means and deviations of recorded runs of one experiment as data.

@@ -2,13 +2,13 @@
 // JSON per study.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
-// (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER; simulated
-// (studies whose data are recorded simulations, instead of truths at any amplitude); describe (what
-// the table holds, and no study); table=FILE.
+// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
+// are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
+// and no study); ideal (how often an observer who knows all fingerprints names single effects
+// rightly, and no study); table=FILE.
 
+#include "ideal_observer.h"
 #include "recorded_cases.h"
-#include "seed_correlation.h"
 
 #include <mpi.h>
 
@@ -20,11 +20,8 @@ void describe(const RecordedTable &table)
 {
   const RecordedSimulator simulator(table, 1);
   for (const auto &[experiment, points] : table.points) {
-    const SeedCorrelation seeds(table, experiment);
-    std::printf("%s: %zu cells, %zu runs of the base model, correlation of equal seeds %.3f "
-                "(by chance %.3f)\n",
-                experiment.c_str(), points.size(), table.of(experiment, "base").size(),
-                seeds.mean(), seeds.scatter());
+    std::printf("%s: %zu cells, %zu runs of the base model\n", experiment.c_str(), points.size(),
+                table.of(experiment, "base").size());
   }
   std::printf("%zu runs, %u failed\n", table.runs.size(), table.n_failed);
   for (const Factor &factor : table.factors) {
@@ -40,15 +37,37 @@ void describe(const RecordedTable &table)
   }
 }
 
+/// How often the ideal observer names the right effect, on the data of the studies with the same
+/// seeds.
+void observe(const RecordedTable &table, const SuiteOptions &options)
+{
+  for (const StudyKind &kind : standard_kinds()) {
+    if (kind.kind != "single" || !options.wants(kind))
+      continue;
+    unsigned int right = 0;
+    for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
+      const DrawnCase drawn(table, kind, options.first_seed + k);
+      const IdealObserver observer(drawn.simulator, drawn.data.fit, drawn.repeats,
+                                   drawn.instrument);
+      right += drawn.one.strengths.count(observer.first_name()) > 0;
+    }
+    std::printf("strength %g: first name right in %u of %u\n", kind.strength, right,
+                options.n_seeds);
+    std::fflush(stdout);
+  }
+}
+
 void run(const SuiteOptions &options)
 {
   std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt";
-  bool simulated = false, only_describe = false;
+  bool simulated = false, only_describe = false, ideal = false;
   for (const std::string &option : options.others) {
     if (option == "simulated")
       simulated = true;
     else if (option == "describe")
       only_describe = true;
+    else if (option == "ideal")
+      ideal = true;
     else if (option.rfind("table=", 0) == 0)
       path = option.substr(6);
     else
@@ -57,6 +76,8 @@ void run(const SuiteOptions &options)
   const RecordedTable table(path);
   if (only_describe)
     return describe(table);
+  if (ideal)
+    return observe(table, options);
   for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
     const std::uint32_t seed = options.first_seed + k;
     if (simulated) {

@@ -1,9 +1,9 @@
 // The parts of discovery's statistics against closed formulas.
 
+#include <eunoe/discovery/inference/twins.h>
 #include <eunoe/discovery/statistics/covariance.h>
 #include <eunoe/discovery/statistics/data_noise.h>
-#include <eunoe/discovery/statistics/emulator.h>
-#include <eunoe/discovery/statistics/misfit.h>
+#include <eunoe/discovery/statistics/gaussian_process.h>
 #include <eunoe/discovery/statistics/modes.h>
 
 #include "synthetic.h"
@@ -71,105 +71,77 @@ void covariances()
         shrunk_covariance(few, 11., two).matrix.topRightCorner(15, 15).norm() == 0.);
 }
 
-void misfits()
+/// A base model that runs have told exactly, without nuisances.
+LinearBase known_base(Eigen::Index n_values, double value)
 {
-  const Eigen::MatrixXd replicate_covariance = chain(8, 0.6), other = 0.3 * chain(8, 0.1);
-  const Misfit misfit(replicate_covariance, other);
-  RandomStream random(5, 1);
-  const Eigen::VectorXd d = random.normals(8, 1);
-  const double h = 0.2;
-  const Eigen::MatrixXd sum = other + h * replicate_covariance;
-  check("Mahalanobis distance",
-        std::abs(misfit.distance(misfit.coordinates(d), h) - d.dot(sum.inverse() * d)) < 1e-9);
-  check("log determinant",
-        std::abs(misfit.log_determinant(h) - misfit.log_determinant(0.5) -
-                 std::log(sum.determinant()) +
-                 std::log((other + 0.5 * replicate_covariance).determinant())) < 1e-9);
-  // With many degrees of freedom the deviance is that of a normal distribution.
-  check("deviance", std::abs(misfit.deviance(12., 1.5) - 13.5) < 1e-5);
+  return {Eigen::MatrixXd::Constant(1, n_values, value), Eigen::MatrixXd::Constant(1, 1, 1e-3)};
 }
 
-Slopes same_slopes(const double square)
+GaussianProcess process_of(const std::vector<double> &amplitudes, double power, double factor,
+                           double replicates)
 {
-  return {Eigen::VectorXd::Constant(1, square), Eigen::VectorXd::Constant(1, square)};
-}
-
-void emulators()
-{
-  // A straight response with exact values, at 0, 1 and 2, and replicates.
-  const Eigen::VectorXd origin = Eigen::VectorXd::Constant(3, 5.);
-  const Eigen::VectorXd slope = Eigen::VectorXd::LinSpaced(3, 1., 3.);
-  std::vector<Emulator::Run> runs;
-  for (const auto &[u, count] : {std::pair<double, int>(0., 10), {1., 4}, {2., 4}})
-    for (int k = 0; k < count; ++k)
-      runs.push_back({Eigen::VectorXd::Constant(1, u), origin + u * slope, 1.});
-  const Emulator emulator(runs, same_slopes(1e12));
-  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 1.3);
-  check("origin", (emulator.origin() - origin).norm() < 1e-6);
-  check("change", (emulator.change(at) - 1.3 * slope).norm() < 1e-6);
-  // Three levels and three terms: the mean at each level depends on its own runs only.
-  check("leverage of replicates",
-        std::abs(emulator.leverage(Eigen::VectorXd::Ones(1)) - 0.25) < 1e-6 &&
-            std::abs(emulator.leverage(Eigen::VectorXd::Zero(1)) - 0.1) < 1e-6);
-  check("range of amplitudes", emulator.upper(0) == 3. && emulator.lower(0) == 0.);
-}
-
-/// Runs at 0 and at some amplitudes, whose values grow more and more slowly.
-constexpr double power = 0.75;
-std::vector<Emulator::Run> saturating(const std::vector<double> &amplitudes)
-{
-  std::vector<Emulator::Run> runs;
-  const auto add = [&](double u, int count) {
-    for (int k = 0; k < count; ++k)
-      runs.push_back({Eigen::VectorXd::Constant(1, u),
-                      Eigen::VectorXd::Constant(2, 100. * std::pow(u, power)), 1.});
-  };
-  add(0., 10);
+  std::vector<GaussianProcess::Point> points;
   for (const double u : amplitudes)
-    add(u, 8);
-  return runs;
+    points.push_back({u, Eigen::VectorXd(0),
+                      Eigen::VectorXd::Constant(5, 5. + factor * std::pow(u, power)),
+                      1. / replicates});
+  return {points, known_base(5, 5.)};
 }
 
-void bent_responses()
+void gaussian_processes()
 {
-  // The square of the mean slope between 0 and 1.
-  const Slopes slope = same_slopes(100. * 100.);
-  const Eigen::VectorXd small = Eigen::VectorXd::Constant(1, 0.04);
-  const Emulator far(saturating({1., 2.}), slope), near(saturating({0.04, 1., 2.}), slope);
-  const double truth = 100. * std::pow(0.04, power);
-  const double miss = std::abs(far.change(small)(0) - truth);
-  check("what bends before the first amplitude is missed", miss > 2.);
-  check("and known to be doubtful", far.leverage(small) > std::pow(0.5 * miss, 2),
-        std::to_string(miss) + ", " + std::to_string(far.leverage(small)));
-  check("runs there mend it", std::abs(near.change(small)(0) - truth) < 1.,
-        std::to_string(near.change(small)(0)));
-  check("and are trusted", near.leverage(small) < 0.5);
-}
+  const GaussianProcess straight = process_of({0.5, 1., 2.}, 1., 10., 8.);
+  check("a straight response is followed", std::abs(straight.predict(1.5).mean(0) - 20.) < 0.5,
+        std::to_string(straight.predict(1.5).mean(0)));
+  check("the base model at the origin", std::abs(straight.predict(0.).mean(0) - 5.) < 0.05);
+  // Runs at one amplitude alone would leave 1/8; their neighbours help.
+  const double leverage = straight.predict(1.).leverage;
+  check("leverage of replicates", leverage > 0.03 && leverage < 0.126, std::to_string(leverage));
+  check("far from all runs less is known", straight.predict(8.).leverage > 2. * leverage);
 
-/// A tenth of the values respond, most of it at small amplitudes: an angle of repose to rolling
-/// resistance.
-void steep_responses()
-{
-  const auto value = [](double u) { return 45. * std::pow(u, 0.45); };
-  std::vector<Emulator::Run> runs;
-  for (const auto &[u, count] :
-       {std::pair<double, int>(0., 30), {0.22, 8}, {0.25, 16}, {0.3, 8}, {1., 2}, {2., 2}})
-    for (int k = 0; k < count; ++k) {
-      Eigen::VectorXd values = Eigen::VectorXd::Zero(10);
-      values(0) = value(u);
-      runs.push_back({Eigen::VectorXd::Constant(1, u), values, 1.});
-    }
-  const auto mean_square = [&](double u) {
-    return Eigen::VectorXd::Constant(1, std::pow(value(u) / u, 2) / 10.);
-  };
-  const Emulator emulator(runs, {mean_square(1.5), mean_square(0.22)});
-  for (const double u : {0.22, 0.25, 0.3, 1., 2.}) {
-    const double miss = emulator.change(Eigen::VectorXd::Constant(1, u))(0) - value(u);
-    check("follows the runs that are there", std::abs(miss) < 0.5, std::to_string(miss));
+  // Most of an angle of repose comes from the first bit of rolling resistance.
+  const GaussianProcess steep = process_of({0.05, 0.2, 1., 2.}, 0.45, 45., 4.);
+  for (const double u : {0.05, 0.1, 0.2, 0.5, 1., 2.}) {
+    const GaussianProcess::Prediction there = steep.predict(u);
+    const double miss = std::abs(there.mean(0) - 5. - 45. * std::pow(u, 0.45));
+    check("a steep response is followed", miss < 4. * std::sqrt(there.leverage) + 0.5,
+          std::to_string(u) + ": " + std::to_string(miss));
   }
-  check("what bends is not seen before them",
-        emulator.unseen_bends(Eigen::VectorXd::Constant(1, 0.2))(0) > 0. &&
-            emulator.unseen_bends(Eigen::VectorXd::Constant(1, 0.22))(0) == 0.);
+  const GaussianProcess nothing({}, known_base(5, 5.));
+  check("an effect without runs changes nothing", nothing.predict(1.).mean(0) == 5.);
+}
+
+void interactions()
+{
+  // The effect doubles the influence of a nuisance, which is 1 without it.
+  LinearBase base;
+  base.coefficients.resize(2, 30);
+  base.coefficients.row(0).setConstant(5.);
+  base.coefficients.row(1).setConstant(1.);
+  base.covariance = 1e-3 * Eigen::MatrixXd::Identity(2, 2);
+  std::vector<GaussianProcess::Point> points;
+  for (const double u : {0.5, 1., 1., 2.})
+    for (const double v : {-1.5, -0.5, 0.5, 1.5})
+      points.push_back({u, Eigen::VectorXd::Constant(1, v),
+                        Eigen::VectorXd::Constant(30, 5. + 3. * u + v * (1. + u)), 0.1});
+  const GaussianProcess process(points, base);
+  check("an influence that grows with the effect",
+        std::abs(process.predict(1.).gradient(0, 0) - 2.) < 0.3,
+        std::to_string(process.predict(1.).gradient(0, 0)));
+}
+
+void tails()
+{
+  RandomStream random(8, 1);
+  std::vector<double> draws;
+  for (int k = 0; k < 4000; ++k)
+    draws.push_back(-std::log(random.uniform()));
+  const Tail tail(draws);
+  check("p within the draws", std::abs(tail.p(1.) - std::exp(-1.)) < 0.03);
+  // An exponential tail goes on as it began, beyond all draws.
+  check("p beyond the draws", std::abs(std::log(tail.p(15.)) + 15.) < 1.5,
+        std::to_string(tail.p(15.)));
+  check("quantile", std::abs(tail.p(tail.quantile(0.05)) - 0.05) < 1e-6);
 }
 
 void modes_and_noise()
@@ -188,21 +160,28 @@ void modes_and_noise()
   // The instrument adds as much variance as the scatter has.
   const Eigen::MatrixXd replicate_covariance =
       Eigen::MatrixXd::Identity(modes.n_modes(), modes.n_modes());
-  const DataNoise noise = estimate_data_noise(
-      modes, replicate_covariance, Eigen::VectorXd::Ones(21),
-      {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)});
-  check("noise of the instrument", std::abs(noise.point_variance(0) - 2. / 40.) < 0.05 * 2. / 40. &&
-                                       std::abs(noise.modes(0, 0) - 2. / 40.) < 0.05 * 2. / 40.);
+  const auto profile = excess_variances(
+      modes, replicate_covariance,
+      {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)})[1];
+  check("noise of the instrument", std::abs(profile.mean() - 1.) < 0.15,
+        std::to_string(profile.mean()));
+  RandomStream random(4, 4);
+  double mean = 0.;
+  for (int k = 0; k < 4000; ++k)
+    mean += profile.draw(random) / 4000.;
+  check("draws of it", std::abs(mean - profile.mean()) < 0.03, std::to_string(mean));
 
   // An angle that hardly varies between runs says nothing about the profile's noise.
   Eigen::VectorXd deviation = Eigen::VectorXd::Ones(21);
   deviation(20) = 100.;
-  const DataNoise uneven =
-      estimate_data_noise(modes, replicate_covariance, Eigen::VectorXd::Ones(21),
-                          {deviation, Eigen::VectorXd::Constant(21, 5.)});
+  const auto uneven =
+      excess_variances(modes, replicate_covariance, {deviation, Eigen::VectorXd::Constant(21, 5.)});
   check("one observable without chaos",
-        std::abs(uneven.point_variance(0) - 1. / 5.) < 0.05 / 5. &&
-            std::abs(uneven.point_variance(20) - 1e4 / 5.) < 0.05 * 1e4 / 5.);
+        uneven[1].mean() < 0.2 && uneven[0].mean() > 5e3 && uneven[0].mean() < 4e4,
+        std::to_string(uneven[0].mean()) + ", " + std::to_string(uneven[1].mean()));
+  const auto declared =
+      excess_variances(modes, replicate_covariance, {deviation, Eigen::VectorXd::Ones(21)});
+  check("declared deviations are believed", std::abs(declared[0].mean() - 9999.) < 1e-6);
 }
 
 } // namespace
@@ -211,9 +190,8 @@ EUNOE_TEST()
 {
   normal_numbers();
   covariances();
-  misfits();
-  emulators();
-  bent_responses();
-  steep_responses();
+  gaussian_processes();
+  interactions();
+  tails();
   modes_and_noise();
 }

@@ -56,22 +56,14 @@ struct SuiteOptions
       n_seeds = static_cast<std::uint32_t>(std::atoi(argv[2]));
     for (int k = 3; k < argc; ++k) {
       const std::string option = argv[k];
-      if (option == "no-common-random-numbers")
-        study.common_random_numbers = false;
-      else if (option == "no-confirmation")
-        study.confirm = false;
-      else if (option == "no-second-look")
-        study.second_look = false;
-      else if (option == "chi-square")
-        study.bootstrap = false;
+      if (option.rfind("budget=", 0) == 0)
+        study.budget = std::stoul(option.substr(7));
       else if (option.rfind("only=", 0) == 0)
         only = option.substr(5);
       else if (option.rfind("null-runs=", 0) == 0)
         study.null_runs = static_cast<unsigned int>(std::stoul(option.substr(10)));
       else if (option.rfind("nuisance-runs=", 0) == 0)
         study.nuisance_runs = static_cast<unsigned int>(std::stoul(option.substr(14)));
-      else if (option.rfind("screen-runs=", 0) == 0)
-        study.screen_runs = static_cast<unsigned int>(std::stoul(option.substr(12)));
       else
         others.push_back(option);
     }
@@ -125,18 +117,6 @@ inline void find_resolution(const KnownSimulator &simulator, const std::vector<s
   one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
 }
 
-/// The likeliest sets of effects by the last stage that compared any.
-inline nlohmann::ordered_json likeliest_models(const nlohmann::ordered_json &stages)
-{
-  constexpr std::size_t most = 6;
-  nlohmann::ordered_json models = nlohmann::ordered_json::array();
-  if (stages.contains("iterate"))
-    for (const auto &row : stages["iterate"]["models"])
-      if (models.size() < most)
-        models.push_back(row);
-  return models;
-}
-
 /// A study's answer and the truth: a line that contrib/eunoe/discovery/score.py reads.
 inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 {
@@ -154,7 +134,6 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
   nlohmann::ordered_json candidates = nlohmann::ordered_json::array();
   for (const auto &row : c["candidates"])
     candidates.push_back({{"effect", row["effect"]}, {"confidence", row["confidence"]}});
-  const auto &screen = c["stages"]["screen"], &detect = c["stages"]["detect"];
   const nlohmann::ordered_json line = {
       {"case",
        {{"name", name},
@@ -169,15 +148,14 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"clearness of the truth", one.clearness},
         {"separation of the truth", one.separation},
         {"p of nothing missing", c["p of nothing missing"]},
-        {"p of distance", detect["p of distance"]},
-        {"p of largest deviation", detect["p of largest deviation"]},
-        {"p of largest gain", screen["p of largest gain"]},
         {"confidence off catalogue", c["confidence off catalogue"]},
         {"candidates", candidates},
         {"amplitudes", c["amplitudes"]},
         {"p of the fit", c["p of the fit"]},
         {"tie", c["tie"]},
-        {"models", likeliest_models(c["stages"])},
+        {"models", c["models"]},
+        {"calibration", c["calibration"]},
+        {"learning curve", c["learning curve"]},
         {"gaps", {{"fit", c["gaps"]["fit"]}, {"held-out", held_out}}},
         {"runs", c["runs"]}}}};
   std::printf("%s\n", line.dump().c_str());
@@ -186,13 +164,13 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 
 /// The study of a case; its seed is that of the case, so that no two studies share a run.
 inline Discovery study_of(const SuiteCase &one, KnownSimulator &simulator, const MeasuredData &data,
-                          const StudyOptions &options)
+                          StudyOptions options)
 {
+  options.seed = one.seed;
   Log log(MPI_COMM_SELF, true);
-  TransientStore store;
   const std::vector<Factor> factors =
       one.excluded.empty() ? simulator.factors() : simulator.factors_without(one.excluded.front());
-  return discover(options, data, factors, simulator, store, log);
+  return discover(options, data, factors, simulator, log);
 }
 
 } // namespace test

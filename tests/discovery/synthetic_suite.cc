@@ -2,8 +2,7 @@
 // JSON per study. It takes minutes to hours and is not part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; no-common-random-numbers, no-confirmation, chi-square, no-second-look
-// (ablations); null-runs=, nuisance-runs= and screen-runs=NUMBER;
+// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER;
 // no-nuisances, no-bend, even-chaos, no-swing (simpler simulators); steep (little of an effect
 // does most of it, as with cohesion and rolling resistance in a heap: truths lie far before the
 // amplitudes that are screened).

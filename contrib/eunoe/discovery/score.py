@@ -37,6 +37,11 @@ def page(scores: Scores, label: str, n: int) -> str:
     text += table(["confidence", "cases", "mean stated", "right"],
                   [[name, str(number), f"{stated:.2f}", f"{right:.2f}"]
                    for name, number, stated, right in scores.calibration])
+    if scores.learning:
+        text += "\n## First name right by the number of runs, strength 4 and more\n\n"
+        text += table(["runs", "right", "studies that go on"],
+                      [[str(runs), f"{100. * right / number:.0f} %, {right} of {number}", str(going)]
+                       for runs, number, right, going in scores.learning])
     return text
 
 

@@ -84,7 +84,7 @@ class Suite:
             return
         entries = [f"discovery/measured data = {folder / 'measured.csv'}",
                    f"discovery/output path = {target}",
-                   f"discovery/cache path = {self.folder / 'cache'}",
+                   f"discovery/table of runs = {self.folder / 'runs.sqlite'}",
                    f"discovery/seed = {case.study_seed}",
                    "discovery/write page = false", *settings]
         if case.excluded:

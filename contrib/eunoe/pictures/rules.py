@@ -29,7 +29,7 @@ REPORT = "{python} contrib/tools report {folder}/run --figures png"
 def _lesson(file: str, name: str, data: str = "measured.csv") -> str:
     """A command of the worked example, with data, results and the shared cache in the rule's folder."""
     option = "--make-twin " if file == "truth" else ""
-    settings = {"measured data": data, "output path": name, "cache path": "cache"}
+    settings = {"measured data": data, "output path": name, "table of runs": "runs.sqlite"}
     return (f"{{discovery}} {option}prm/discovery/paper_lesson/{file}.prm "
             + " ".join(f'--set "discovery/{entry} = {{folder}}/{path}"' for entry, path in settings.items())
             + (' --set "twin/sealed file = {folder}/truth.sealed.json"' if option else ""))

@@ -156,7 +156,7 @@ def fingerprint_figure(cells: list[tuple[str, str, int]], prints: list[Fingerpri
 
 def cosine_figure(study: Study) -> Figure:
     """How similar the changes by each two effects are."""
-    similarity = study.stage("screen")["similarity"]
+    similarity = study.content["similarity"]
     names = [name.replace("_", " ") for name in similarity["effects"]]
     matrix = np.array([[np.nan if value is None else value for value in row]
                        for row in similarity["cosines"]], dtype=float)
@@ -195,4 +195,37 @@ def gap_figure(study: Study) -> Figure:
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel("Gap (standard deviations of a run, root mean square over the cells)")
+    return figure
+
+
+def posterior_figure(study: Study) -> Figure:
+    """Posterior probability of each amplitude, with its interval."""
+    rows = study.content["amplitudes"]
+    figure, panels = _panels(len(rows), 1.7)
+    for axes, row in zip(panels, rows):
+        amplitudes, weights = np.array(row["posterior"], dtype=float).reshape(-1, 2).T
+        axes.plot(amplitudes, weights / max(weights.max(), 1e-300), color=style.BLUE, linewidth=1.2)
+        axes.axvspan(row["lower"], row["upper"], color=style.BLUE, alpha=0.2, linewidth=0.)
+        axes.axvline(row["amplitude"], color=style.INK, linewidth=0.8)
+        axes.set_title(row["effect"].replace("_", " "), fontsize=7.5)
+        axes.set_xlabel("amplitude" + ("" if row["unit"] == "1" else f" ({row['unit']})"), fontsize=7.5)
+        axes.set_yticks([])
+        axes.tick_params(labelsize=7)
+    return figure
+
+
+def learning_figure(study: Study) -> Figure:
+    """The answer's probability and the p-value of nothing missing by the number of runs."""
+    rows = study.content["learning curve"]
+    figure = Figure(figsize=(style.WIDTH, 2.), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    runs = [row["runs"] for row in rows]
+    left.plot(runs, [row["probability"] for row in rows], marker="o", markersize=3, color=style.BLUE)
+    left.set_ylim(0., 1.05)
+    left.set_ylabel("probability of the likeliest")
+    right.semilogy(runs, [max(row["p of nothing missing"], 1e-30) for row in rows], marker="o",
+                   markersize=3, color=style.GREEN)
+    right.set_ylabel("p of nothing missing")
+    for axes in (left, right):
+        axes.set_xlabel("runs")
     return figure

@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from .discovery_charts import (cosine_figure, envelope_figure, fingerprint_figure, gap_figure,
-                               ranking_figure)
+                               learning_figure, posterior_figure, ranking_figure)
 from .discovery_results import Study
 from .discovery_text import (TITLES, detectability_rows, gap_text, held_out_text, plain,
                              verdict_text)
@@ -26,10 +26,9 @@ def _add_fingerprints(page: Page, study: Study) -> None:
                           / max(envelopes[c]["base deviation"], 1e-300) for c in cells])
     page.heading("Fingerprints")
     page.figure(fingerprint_figure(cells, prints, deviation),
-                "What each effect changes, at the largest amplitude of the stage screen, and what was "
-                "measured (first row). All in standard deviations of one run of the base model; each "
+                "What each effect changes at the end of its range, and what was measured (first row). All in standard deviations of one run of the base model; each "
                 "column is a cell.")
-    if study.stage("screen").get("similarity", {}).get("effects"):
+    if study.content.get("similarity", {}).get("effects"):
         page.figure(cosine_figure(study),
                     "How alike the effects are in this study: cosine between their changes, in units "
                     "of the noise of the comparison. Two effects near 1 or -1 cannot be told apart by "
@@ -41,9 +40,22 @@ def _add_tie_breakers(page: Page, study: Study) -> None:
     if not rows:
         return
     page.heading("What would break the tie")
-    page.table(["Experiment", "Observable", "standard deviations apart", "repeats needed"],
-               [[row["experiment"], plain(row["observable"]), number(row["separation"], 2),
-                 number(row["repeats"]) if row.get("repeats") else "1"] for row in rows[:8]])
+    page.table(["Experiment", "Observable", "expected information (bit)", "standard deviations apart"],
+               [[row["experiment"] + (" (again)" if row["again"] else ""), plain(row["observable"]),
+                 f"{number(row['information'], 2)} of {number(row['of'], 2)}",
+                 number(row["separation"], 2)] for row in rows[:8]])
+
+
+def _add_decisive(page: Page, study: Study) -> None:
+    rows = study.content.get("decisive", [])
+    if not rows:
+        return
+    page.paragraph("The cells that decided: by how much each speaks for the likeliest model against the "
+                   "next one (logarithm of the ratio of likelihoods, cell by cell).")
+    page.table(["Experiment", "Observable", "index", "measured", "likeliest", "next", "speaks for it by"],
+               [[row["experiment"], plain(row["observable"]), str(row["index"]), number(row["measured"]),
+                 number(row["first"]), number(row["second"]), number(row["log likelihood ratio"], 2)]
+                for row in rows[:8]])
 
 
 def _changes(study: Study) -> dict[str, list[str]]:
@@ -63,7 +75,7 @@ def _add_origin(page: Page, study: Study) -> None:
     page.heading("Simulations")
     page.paragraph(f"{len(content['ledger'])} simulations, {len(failed)} of which failed, cost "
                    f"{duration(3600. * made['core_hours'])} of one core. In this start of the program "
-                   f"{made['made_now']} were made; the others came from the cache.")
+                   f"{made['made_now']} were made; the others came from the table of runs.")
     for note in content.get("notes", []):
         page.notice(note)
     if failed:
@@ -83,7 +95,7 @@ def discovery_report(study: Study) -> Page:
     experiments = sorted({c["experiment"] for c in study.content["envelopes"]})
     page = Page(TITLES.get(study.verdict, study.verdict),
                 f"{len(study.content['envelopes'])} measured cells of "
-                f"{', '.join(map(escape, experiments))}; {len(study.stage('screen').get('effects', []))} "
+                f"{', '.join(map(escape, experiments))}; {len(study.content.get('effects', []))} "
                 "effects looked for")
     for sentence in verdict_text(study):
         page.paragraph(sentence)
@@ -92,6 +104,10 @@ def discovery_report(study: Study) -> Page:
         page.heading("Which effect")
         page.figure(ranking_figure(study),
                     "How sure the study is of each effect. The last bar: that it is none of them.")
+    if study.content["amplitudes"]:
+        page.figure(posterior_figure(study), "What the data say of the amplitude: posterior probability, "
+                                             f"median and 95{SPACE}% interval.")
+    _add_decisive(page, study)
     _add_tie_breakers(page, study)
     page.heading("Where model and measurement differ")
     page.figure(envelope_figure(study, False),
@@ -102,7 +118,7 @@ def discovery_report(study: Study) -> Page:
         page.heading("How much is gained")
         page.figure(gap_figure(study),
                     "Distance between model and measurement, with the part that noise explains taken "
-                    f"off; lines: 95{SPACE}% intervals.")
+                    "off; below 0 noise explains more than there is.")
         if gap_text(study):
             page.paragraph(gap_text(study))
     if study.envelopes(True):
@@ -113,6 +129,9 @@ def discovery_report(study: Study) -> Page:
     page.paragraph("The smallest amplitude of each effect that this study would have detected with a "
                    f"probability of 80{SPACE}%, and the bounds within which the amplitude lies, were it "
                    "the only effect.")
-    page.table(["Effect", "detectable from", "bound", "p of the effect"], detectability_rows(study))
+    page.table(["Effect", "detectable from", "bound", "log Bayes factor"], detectability_rows(study))
+    if study.content.get("learning curve"):
+        page.heading("What more runs have changed")
+        page.figure(learning_figure(study), "The answer by the number of runs that it rests on.")
     _add_origin(page, study)
     return page

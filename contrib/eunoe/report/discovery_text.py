@@ -16,7 +16,7 @@ def _amount(value: float, unit: str) -> str:
 
 
 def _probability(value: float) -> str:
-    return "less than 0.001" if value < 0.001 else number(value, 2)
+    return number(value, 2) if value >= 0.001 else f"{value:.0e}"
 
 
 def plain(name: str) -> str:
@@ -56,16 +56,14 @@ def _tie(study: Study) -> list[str]:
                         for row in study.content["tie"])
     sentences = [f"Something is missing, and the data cannot say which of these it is: {members}."]
     breakers = study.content.get("measurements that would break the tie", [])
-    further = [row for row in breakers if row["experiment"] != "the same"]
-    repeats = [row for row in breakers if row["experiment"] == "the same" and row.get("repeats")]
-    if further and further[0]["separation"] > 0.:
-        best = further[0]
-        sentences.append(f"Measure {plain(best['observable'])} of experiment {best['experiment']}: it "
-                         f"would set them {number(best['separation'], 2)} standard deviations of one "
-                         "measurement apart.")
-    elif repeats:
-        sentences.append(f"Some {number(repeats[0]['repeats'])} repeats of the same measurement would "
-                         "set them apart.")
+    if breakers:
+        best = breakers[0]
+        what = "everything" if best["observable"] == "all" else plain(best["observable"])
+        again = " once more" if best["again"] else ""
+        sentences.append(f"What would tell most: {what} of experiment {best['experiment']}{again}; it is "
+                         f"expected to give {number(best['information'], 2)} of the "
+                         f"{number(best['of'], 2)} bits that are open, and sets the nearest two "
+                         f"{number(best['separation'], 2)} standard deviations apart.")
     return sentences
 
 
@@ -77,25 +75,24 @@ def _off_catalogue(study: Study) -> list[str]:
                  "explain how."]
     if alike:
         sentences.append("What is missing resembles " + ", ".join(alike) + ".")
-    if study.stage("validate").get("result", "").endswith("withdrawn"):
-        sentences.append("An effect had been named, but with it the gap on the held-out data did not "
-                         "shrink; the name is withdrawn.")
+    if study.content["gaps"].get("held-out", {}).get("result", "").endswith("withdrawn"):
+        sentences.append("An effect had been named, but with it the model does not describe the held-out "
+                         "data; the name is withdrawn.")
     return sentences
 
 
 def verdict_text(study: Study) -> list[str]:
     """Sentences that say what was found."""
     p = study.content["p of nothing missing"]
-    most = "at most " if study.content.get("p of nothing missing is a bound") and p >= 0.001 else ""
     chance = ("If nothing were missing, data as far off as these would be found with probability "
-              f"{most}{_probability(p)}.")
+              f"{_probability(p)}.")
     if study.verdict == "named":
         return [*_named(study), chance, _where(study)]
     if study.verdict == "tie":
         return [*_tie(study), chance, _where(study)]
     if study.verdict == "off catalogue":
         return [*_off_catalogue(study), chance, _where(study)]
-    rows = study.stage("screen").get("effects", [])
+    rows = study.content.get("effects", [])
     seen = sum(1 for row in rows if row.get("detectable"))
     if study.verdict == "none":
         return ["The measured data agree with the base model within the scatter of both. " + chance,
@@ -126,15 +123,23 @@ def held_out_text(study: Study) -> str:
     if table.get("result", "no held-out data") == "no held-out data":
         return ("No data were held out, so nothing tests the answer but the data that it was found "
                 "with.")
-    if "shrink" not in table or table["shrink"] is None:
+    if table.get("gap after") is None:
         return f"Held-out data: {table['result']}.{_members(table)}"
-    low, high = table["shrink interval"]
     chosen = "" if study.verdict != "tie" else (
         f" with {plain(study.content['tie'][0]['effects'])}, the likeliest by a little, added")
-    change = "shrinks" if table["shrink"] >= 0. else "grows"
-    return (f"On data that were held out, the gap {change} by {percent(abs(table['shrink']), 0)}{chosen} "
-            f"(95{SPACE}% interval of the shrink {percent(max(low, -9.99), 0)} to {percent(high, 0)}): "
-            f"{table['result']}.{_members(table)}")
+    change = "shrinks" if table["gap after"] <= table["gap before"] else "grows"
+    return (f"On data that were held out, the gap {change} from {number(table['gap before'], 2)} to "
+            f"{number(table['gap after'], 2)} standard deviations of a run{chosen} (below 0 where noise "
+            f"explains more than there is): {table['result']}.{_members(table)}{_refutable(table)}")
+
+
+def _refutable(table: dict) -> str:
+    """Which other models the held-out data would refute, if the answer is right."""
+    rows = [row for row in table.get("could have refuted", []) if row["would be refuted"] is not None]
+    if not rows:
+        return ""
+    each = ", ".join(f"{plain(row['effects'])} {percent(row['would be refuted'], 0)}" for row in rows)
+    return f" If the answer is right, these data refute with a probability of: {each}."
 
 
 def gap_text(study: Study) -> str:
@@ -151,7 +156,8 @@ def gap_text(study: Study) -> str:
 def detectability_rows(study: Study) -> list[list[str]]:
     """Effect, smallest amplitudes that would have been seen, and bounds of what can be there."""
     rows = []
-    for row in study.stage("screen").get("effects", []):
+    alone = {row["effect"]: row.get("log Bayes factor alone") for row in study.content["candidates"]}
+    for row in study.content.get("effects", []):
         unit = study.effects[row["effect"]]["unit"]
 
         def ends(below: str, above: str) -> str:
@@ -162,5 +168,5 @@ def detectability_rows(study: Study) -> list[list[str]]:
         rows.append([plain(row["effect"]),
                      ends("detectable below", "detectable above") if row["simulated"] else "not simulated",
                      ends("lower bound", "upper bound"),
-                     _probability(row["p"]) if "p" in row else "–"])
+                     number(alone[row["effect"]], 2) if alone.get(row["effect"]) is not None else "–"])
     return rows

@@ -3,7 +3,7 @@
 
 #include <eunoe/core/log.h>
 #include <eunoe/discovery/experiment.h>
-#include <eunoe/discovery/run_cache.h>
+#include <eunoe/discovery/run_table.h>
 #include <eunoe/discovery/work_queue.h>
 
 #include <nlohmann/json.hpp>
@@ -11,15 +11,15 @@
 namespace eunoe::discovery {
 
 /// Runs DEM simulations on groups of ranks, each simulation once, and keeps their results in a
-/// cache.
+/// table. What another version of the engine has left there is adopted if samples of it, run again,
+/// give the same bits.
 class DemSimulator : public Simulator
 {
 public:
   /// @param factors effects and nuisances that requests may name
-  /// @param cache_folder created if missing
+  /// @param table_file created if missing
   DemSimulator(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
-               const std::string &cache_folder, unsigned int ranks_per_run, MPI_Comm comm,
-               Log &log);
+               const std::string &table_file, unsigned int ranks_per_run, MPI_Comm comm, Log &log);
 
   /// Runs the base model of every experiment once, to see which data points it gives. Throws a
   /// UserError if one fails; collective. To be called before `data_points`.
@@ -29,13 +29,21 @@ public:
   /// data point that the base model gives, such a run has NaN.
   void require(const std::vector<DataPoint> &points) { required = {points.begin(), points.end()}; }
 
+  /// Number of the last row of the table when this simulator was made. Rows after `last` are not
+  /// offered by `known`, so that a study that goes on takes the same decisions again.
+  std::int64_t last_row() const { return earlier.empty() ? 0 : earlier.back().number; }
+  void hide_rows_after(std::int64_t last) { last_known = last; }
+
   const std::vector<DataPoint> &data_points(const std::string &experiment) const override;
   std::vector<RunResult> run(const std::vector<RunRequest> &requests) override;
+  bool concerns(const std::string &experiment,
+                const std::vector<std::string> &effects) const override;
+  std::vector<std::pair<RunRequest, RunResult>> known(const std::string &experiment) override;
   std::uint64_t n_runs() const override { return made; }
   std::uint64_t n_cached() const override { return cached; }
 
   /// All runs that were asked for, in the order of first asking: experiment, amplitudes, seed, key
-  /// in the cache, what it cost, and why it failed, if it did.
+  /// in the table, what it cost, and why it failed, if it did.
   const nlohmann::ordered_json &ledger() const { return runs; }
 
 private:
@@ -45,19 +53,25 @@ private:
     const Experiment *experiment;
     std::vector<std::string> overrides;
     std::string key, problem; ///< problem: why it cannot be run
+    RunRequest request;
   };
 
   const Experiment &find(const std::string &name) const;
+  bool is_of_study(const RunRequest &request) const;
   Case make_case(const RunRequest &request) const;
   RunRecord simulate(const Case &one);
   void serve_and_check_stop(unsigned long long step);
-  void simulate_all(const std::vector<std::pair<Case, nlohmann::ordered_json>> &cases);
+  void simulate_all(const std::vector<Case> &cases);
+  void adopt_earlier_runs();
+  bool gives_the_same(const std::vector<const RunTable::Row *> &samples);
   RunResult result(const RunRequest &request, const RunRecord &record) const;
   void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
-  RunCache cache;
+  RunTable table;
+  std::vector<RunTable::Row> earlier; ///< rows that were there at the start
+  std::int64_t last_known = std::numeric_limits<std::int64_t>::max();
   WorkQueue queue;
   MPI_Comm comm;
   Log &log;

@@ -14,8 +14,8 @@ namespace eunoe::discovery {
 /// Amplitudes of factors by name; a factor that is not named is at its null value.
 using Amplitudes = std::map<std::string, double>;
 
-/// A simulation to run. Runs with equal seeds begin with the same powder and packing (common random
-/// numbers), until chaos parts them.
+/// A simulation to run. Runs with equal seeds begin with the same powder and packing, until chaos
+/// parts them.
 struct RunRequest
 {
   std::string experiment;
@@ -27,7 +27,7 @@ struct RunRequest
 /// failed.
 using RunResult = std::optional<std::vector<double>>;
 
-/// Runs simulations, or returns the results of earlier ones. The stages of a study know simulations
+/// Runs simulations, or returns the results of earlier ones. A study knows simulations
 /// only through this interface, so that tests can give them models whose answer is known in closed
 /// form.
 class Simulator
@@ -39,11 +39,24 @@ public:
   virtual const std::vector<DataPoint> &data_points(const std::string &experiment) const = 0;
 
   /// Runs all that is asked; the order of results is that of the requests. Collective. A repeated
-  /// request costs nothing. Throws Interrupted (leaving what was run in the cache) if the program
+  /// request costs nothing. Throws Interrupted (leaving what was run in the table) if the program
   /// was asked to stop.
   virtual std::vector<RunResult> run(const std::vector<RunRequest> &requests) = 0;
 
-  /// Number of simulations that were run so far, and of requests that the cache answered.
+  /// Whether one of these effects can change an experiment; true without effects.
+  virtual bool concerns(const std::string & /*experiment*/,
+                        const std::vector<std::string> & /*effects*/) const
+  {
+    return true;
+  }
+
+  /// Results of earlier simulations of an experiment that need not be run again.
+  virtual std::vector<std::pair<RunRequest, RunResult>> known(const std::string & /*experiment*/)
+  {
+    return {};
+  }
+
+  /// Number of simulations that were run so far, and of requests that earlier ones answered.
   virtual std::uint64_t n_runs() const = 0;
   virtual std::uint64_t n_cached() const = 0;
 };

@@ -9,9 +9,8 @@
 
 namespace eunoe::discovery {
 
-/// The folder of a study's results. It also keeps the tables of the stages, so that a study that
-/// was killed continues.
-class StudyFolder : public StageStore
+/// The folder of a study's results.
+class StudyFolder
 {
 public:
   StudyFolder(const std::string &path, MPI_Comm comm) : path(path), comm(comm) {}
@@ -19,13 +18,13 @@ public:
   /// Creates the folder, or makes sure that it holds the same study. Throws a UserError on every
   /// rank, which says what differs; collective.
   /// @param identity all that decides the study: names, and for each a text whose hash is kept
-  /// @return whether the folder held the study before
-  bool open(const std::map<std::string, std::string> &identity);
+  /// @param first_row number of the last row that the table of runs has now
+  /// @return number of the last row that it had when the study began; nothing if it begins now
+  std::optional<std::int64_t> open(const std::map<std::string, std::string> &identity,
+                                   std::int64_t last_row);
 
-  std::optional<nlohmann::ordered_json> load(const std::string &stage) override;
-  /// Also writes every list in the member "table" that looks like a table as
-  /// "<stage>_<list>.csv".
-  void save(const std::string &stage, const nlohmann::ordered_json &table) override;
+  /// Writes a list that looks like a table as a file.
+  void write_csv(const std::string &name, const nlohmann::ordered_json &list) const;
 
   /// Writes a file on the first rank. Throws a UserError on every rank; collective.
   void write(const std::string &name, const std::string &text) const;

@@ -56,11 +56,11 @@ public:
   /// Where the results go.
   std::string output_file(const std::string &name) const { return output_path + "/" + name; }
 
-  /// Where simulations are kept.
-  std::string cache_folder() const;
+  /// File in which simulations are kept.
+  std::string table_file() const;
 
   std::string measured_data = "measured.csv", output_path = "./output";
-  std::string cache_path; ///< as written; empty: beside the output folder
+  std::string table_of_runs; ///< as written; empty: beside the output folder
   std::vector<std::string> effects = {"all"}, excluded_effects, effect_folders;
   StudyOptions options;
   unsigned int ranks_per_run = 1;

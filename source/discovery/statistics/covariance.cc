@@ -43,20 +43,13 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
   Covariance result;
   const double variance_sum = (fourth - products) * static_cast<double>(runs) / std::pow(dof, 3);
   result.shrinkage = squares > 0. ? std::clamp(variance_sum / squares, 0., 1.) : 1.;
-  const auto shrunk_by = [&](const double share) {
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
-    for (Eigen::Index i = 0; i < n; ++i)
-      for (Eigen::Index j = 0; j < n; ++j)
-        if (i == j)
-          matrix(i, i) = sigma(i) * sigma(i);
-        else if (block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)])
-          matrix(i, j) = (1. - share) * correlation(i, j) * sigma(i) * sigma(j);
-    return matrix;
-  };
-  result.matrix = shrunk_by(result.shrinkage);
-  constexpr double share_in_draws = 0.1;
-  result.unshrunk = shrunk_by(share_in_draws * result.shrinkage);
-  result.unshrunk.diagonal() *= 1. + 1e-6;
+  result.matrix = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (i == j)
+        result.matrix(i, i) = sigma(i) * sigma(i);
+      else if (block[static_cast<std::size_t>(i)] == block[static_cast<std::size_t>(j)])
+        result.matrix(i, j) = (1. - result.shrinkage) * correlation(i, j) * sigma(i) * sigma(j);
   // With correlations unshrunk and few runs the matrix could be singular.
   const double least = 0.02;
   if (result.shrinkage < least)

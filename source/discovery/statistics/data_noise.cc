@@ -7,27 +7,18 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Estimate of the ratio of variances from one observable, and its degrees of freedom.
+/// What one observable says of the ratio of variances.
 struct Witness
 {
-  double ratio, weight;
-  bool declared; ///< a single repeat: the deviation was not estimated from repeats
-
-  /// Where repeats vary far more than replicates, the cause is the instrument, or an observable
-  /// that hardly varies between replicates. Such a ratio is not shared with other observables.
-  bool stands_alone() const
-  {
-    constexpr double most = 10.;
-    return ratio > most;
-  }
+  double ratio, degrees_of_freedom;
 };
 
 Witness witness(const Modes::Group &group, const Eigen::MatrixXd &replicate_covariance,
-                const Eigen::VectorXd &replicate_variance, const Repeats &repeats)
+                const Repeats &repeats)
 {
   double ratio = 0., number = 0.;
   for (const Eigen::Index c : group.points) {
-    ratio += repeats.deviation(c) * repeats.deviation(c) / replicate_variance(c);
+    ratio += repeats.deviation(c) * repeats.deviation(c);
     number += repeats.number(c);
   }
   const auto n = static_cast<double>(group.points.size());
@@ -38,53 +29,71 @@ Witness witness(const Modes::Group &group, const Eigen::MatrixXd &replicate_cova
       squares += replicate_covariance(i, j) * replicate_covariance(i, j);
     }
   const double effective = std::max(1., trace * trace / squares);
-  const bool declared = number / n < 1.5;
-  return {ratio / n, std::max(0., number / n - 1.) * effective, declared};
+  // The deviation of a single repeat was not estimated from repeats.
+  constexpr double declared = 0.5;
+  const double dof = number / n - 1.;
+  return {ratio / n, dof < declared ? 0. : dof * effective};
 }
 
 } // namespace
 
-DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
-                              const Eigen::VectorXd &replicate_variance, const Repeats &repeats)
+ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freedom,
+                               const double expected)
 {
-  // Degrees of freedom of the priors: no noise of the instrument for all observables together, and
-  // their mean for a single one.
-  constexpr double weight_of_one = 4., weight_of_mean = 6.;
-  std::vector<Witness> witnesses;
-  double sum = weight_of_one, weight = weight_of_one;
-  for (const Modes::Group &group : modes.groups()) {
-    witnesses.push_back(witness(group, replicate_covariance, replicate_variance, repeats));
-    if (witnesses.back().stands_alone())
-      continue;
-    sum += witnesses.back().weight * witnesses.back().ratio;
-    weight += witnesses.back().weight;
+  if (degrees_of_freedom <= 0.) {
+    values = {std::max(0., ratio - 1.)};
+    below = {1.};
+    average = values[0];
+    return;
   }
+  constexpr double first = 0.01, last = 1e8, step = 1.3;
+  double sum = 0., highest = -1e300, before = 0.;
+  std::vector<double> logs;
+  for (double value = first; value < last; value *= step) {
+    // Each value stands for those since the last one.
+    logs.push_back(std::log(value - before) - value / expected -
+                   0.5 * degrees_of_freedom * (std::log1p(value) + ratio / (1. + value)));
+    values.push_back(value);
+    highest = std::max(highest, logs.back());
+    before = value;
+  }
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const double weight = std::exp(logs[k] - highest);
+    average += weight * values[k];
+    below.push_back(sum += weight);
+  }
+  average /= sum;
+  for (double &share : below)
+    share /= sum;
+}
 
-  DataNoise noise;
-  const Eigen::Index n = modes.n_points();
-  noise.ratio = Eigen::VectorXd::Ones(n);
-  noise.point_variance = Eigen::VectorXd::Zero(n);
-  Eigen::VectorXd instrument(n), share = Eigen::VectorXd::Zero(modes.n_modes());
-  for (std::size_t g = 0; g < witnesses.size(); ++g) {
-    const Witness &w = witnesses[g];
-    const double ratio =
-        w.declared || w.stands_alone()
-            ? std::max(1., w.ratio)
-            : (weight_of_mean * sum / weight + w.weight * w.ratio) / (weight_of_mean + w.weight);
-    double repeats_inverse = 0.;
-    for (const Eigen::Index c : modes.groups()[g].points) {
-      noise.ratio(c) = ratio;
-      instrument(c) = std::max(0., ratio - 1.) * replicate_variance(c) / repeats.number(c);
-      noise.point_variance(c) = ratio * replicate_variance(c) / repeats.number(c);
-      repeats_inverse += 1. / repeats.number(c);
-    }
-    repeats_inverse /= static_cast<double>(modes.groups()[g].points.size());
-    for (const Eigen::Index m : modes.groups()[g].modes)
-      share(m) = std::sqrt(std::min(1., ratio) * repeats_inverse);
+double ExcessVariance::draw(RandomStream &random) const
+{
+  const auto place = std::lower_bound(below.begin(), below.end(), random.uniform());
+  return values[static_cast<std::size_t>(std::min(place, below.end() - 1) - below.begin())];
+}
+
+std::vector<ExcessVariance> excess_variances(const Modes &modes,
+                                             const Eigen::MatrixXd &replicate_covariance,
+                                             const Repeats &repeats)
+{
+  // An instrument is chosen such that its noise is a small part of the scatter, as a rule.
+  constexpr double usual = 0.1, far = 10.;
+  std::vector<Witness> witnesses;
+  double sum = 0., weight = 1.;
+  for (const Modes::Group &group : modes.groups()) {
+    witnesses.push_back(witness(group, replicate_covariance, repeats));
+    // An observable that hardly varies between runs says nothing about the others.
+    if (witnesses.back().ratio > far)
+      continue;
+    sum += witnesses.back().degrees_of_freedom * (witnesses.back().ratio - 1.);
+    weight += witnesses.back().degrees_of_freedom;
   }
-  noise.modes = share.asDiagonal() * replicate_covariance * share.asDiagonal();
-  noise.modes += modes.basis() * instrument.asDiagonal() * modes.basis().transpose();
-  return noise;
+  const double common = usual + std::max(0., sum / weight);
+  std::vector<ExcessVariance> result;
+  for (const Witness &one : witnesses)
+    result.emplace_back(one.ratio, one.degrees_of_freedom, one.ratio > far ? one.ratio : common);
+  return result;
 }
 
 } // namespace eunoe::discovery

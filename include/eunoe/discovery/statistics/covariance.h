@@ -10,9 +10,6 @@ namespace eunoe::discovery {
 struct Covariance
 {
   Eigen::MatrixXd matrix;
-  /// The same with hardly any shrinkage, for bootstraps: draws with weaker correlations than
-  /// nature's would give thresholds with too many false alarms.
-  Eigen::MatrixXd unshrunk;
   double shrinkage = 0.; ///< weight of the target, in which all correlations are zero
 };
 

@@ -2,19 +2,12 @@
 #define eunoe_discovery_statistics_data_noise_h
 
 #include <eunoe/discovery/statistics/modes.h>
+#include <eunoe/discovery/statistics/random_stream.h>
+
+#include <Eigen/Dense>
+#include <vector>
 
 namespace eunoe::discovery {
-
-/// Noise of the measured means. Repeats of a measurement differ as replicates of a simulation do,
-/// with the same covariance, and by the noise of the instrument, which is independent at each data
-/// point. The instrument's share is estimated from the measured standard deviations: for each
-/// observable, shrunk towards the mean over all observables, because each comes from few repeats.
-struct DataNoise
-{
-  Eigen::MatrixXd modes;          ///< covariance of the means of all repeats
-  Eigen::VectorXd point_variance; ///< of the means, in units of modes.deviations() squared
-  Eigen::VectorXd ratio;          ///< per data point: variance of a repeat over that of a replicate
-};
 
 /// Standard deviations and numbers of the repeats of a measurement.
 struct Repeats
@@ -23,10 +16,30 @@ struct Repeats
   Eigen::VectorXd number;    ///< of repeats
 };
 
+/// Variance that the instrument adds to that between replicates, in units of the latter: its
+/// posterior, as few repeats tell it. Noise that is taken for too small counts most: what hardly
+/// varies between runs, such as the ratio of two observables, would seem to deviate by far.
+class ExcessVariance
+{
+public:
+  /// @param ratio of the variances of repeats and of replicates
+  /// @param degrees_of_freedom of the ratio; 0: it is known
+  /// @param expected mean of the prior
+  ExcessVariance(double ratio, double degrees_of_freedom, double expected);
+
+  double mean() const { return average; }
+  double draw(RandomStream &random) const;
+
+private:
+  std::vector<double> values, below; ///< and the probability of all up to each
+  double average = 0.;
+};
+
+/// The noise of the instrument in each of the modes' groups, that is in each observable.
 /// @param replicate_covariance of the modes of one replicate
-/// @param replicate_variance of each data point, in units of modes.deviations() squared
-DataNoise estimate_data_noise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
-                              const Eigen::VectorXd &replicate_variance, const Repeats &repeats);
+std::vector<ExcessVariance> excess_variances(const Modes &modes,
+                                             const Eigen::MatrixXd &replicate_covariance,
+                                             const Repeats &repeats);
 
 } // namespace eunoe::discovery
 

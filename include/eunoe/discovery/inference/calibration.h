@@ -1,0 +1,57 @@
+#ifndef eunoe_discovery_inference_calibration_h
+#define eunoe_discovery_inference_calibration_h
+
+#include <eunoe/discovery/inference/twins.h>
+
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// Posterior of one effect's amplitude: places in ascending order and the probability below each.
+class AmplitudePosterior
+{
+public:
+  /// @param log_weights of the places, up to a constant
+  AmplitudePosterior(const std::vector<Evidence::Place> &places,
+                     const std::vector<double> &log_weights);
+
+  /// Amplitude below which this much of the probability lies.
+  double quantile(double share) const;
+  /// Probability below an amplitude.
+  double below(double amplitude) const;
+  /// Amplitudes and their probabilities.
+  const std::vector<std::pair<double, double>> &weights() const { return sorted; }
+
+private:
+  std::vector<std::pair<double, double>> sorted;
+};
+
+/// The posterior of an effect's amplitude if it alone is missing, or beside others that have their
+/// best amplitudes.
+AmplitudePosterior amplitude_posterior(const Evidence &evidence, std::size_t effect,
+                                       const Eigen::VectorXd &data, const Model &model = {});
+
+/// What this study's own twins say of its probabilities and intervals (simulation-based
+/// calibration; Talts and others 2018): truths are drawn from the prior, and their data go through
+/// the same steps as the measured ones.
+struct Calibration
+{
+  unsigned int twins = 0;         ///< in which something was detected
+  double temperature = 1.;        ///< probabilities are raised to its inverse
+  double stated = 0., right = 0.; ///< mean probability of the first name; how often it was right
+  double tail = 0.025;  ///< share to cut off the posterior at either end for 95 % coverage
+  double coverage = 0.; ///< of intervals that cut off 2.5 % at either end
+};
+
+/// @param threshold of the log Bayes factor for a detection
+Calibration calibrate(const Evidence &evidence, double threshold, unsigned int draws,
+                      std::uint32_t seed);
+
+/// Smallest amplitude on a side of an effect that is detected in four of five twins; nothing if
+/// none in the range is.
+std::optional<double> detectable(const Evidence &evidence, std::size_t effect, bool above,
+                                 double threshold, std::uint32_t seed);
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,62 @@
+#ifndef eunoe_discovery_inference_decision_h
+#define eunoe_discovery_inference_decision_h
+
+#include <eunoe/discovery/inference/calibration.h>
+#include <eunoe/discovery/study.h>
+
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// All that is tuned in the decisions of a study; what it needs besides, its own twins give.
+struct DecisionRule
+{
+  /// Probability that the models of an answer must have together. Larger: fewer wrong names, more
+  /// ties.
+  double credible = 0.95;
+  /// A model that data lie this far from does not describe them. Smaller than the level of the
+  /// study, as many models are looked at.
+  double refuted = 0.01;
+  /// Where data lie this far from a model, "none of these" stays in the answer.
+  double doubtful = 0.05;
+  unsigned int null_draws = 400, twins = 300, predictive_draws = 400;
+
+  /// With fewer draws, for the rounds before the last.
+  DecisionRule quick() const
+  {
+    return {credible, refuted, doubtful, null_draws / 2, twins / 2, predictive_draws / 2};
+  }
+};
+
+/// What a study has found so far.
+struct Findings
+{
+  Tail null_distribution;
+  double log_bayes_factor = 0., p_nothing = 1.;
+  double threshold = 0.; ///< of the log Bayes factor at the study's level
+  bool detected = false;
+  Calibration calibration;
+  std::vector<Model> models;  ///< with calibrated probabilities, the likeliest first
+  std::vector<Model> answer;  ///< those that the data do not tell apart, without "none of these"
+  bool none_of_these = false; ///< whether that is among them
+  double p_fit = 1.;          ///< of the likeliest model's fit
+  double off_catalogue = 0.;  ///< probability of "none of these"
+  Verdict verdict = Verdict::none;
+};
+
+/// Tests whether anything is missing, weighs the models and calibrates.
+Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule);
+
+/// Raises probabilities to the inverse of the temperature.
+void temper(std::vector<Model> &models, double temperature);
+
+/// Chooses the verdict from the models' probabilities.
+void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
+            Findings &findings);
+
+/// Probability that an effect is among those that are missing.
+double probability_of(const std::vector<Model> &models, std::size_t effect);
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,61 @@
+#ifndef eunoe_discovery_inference_describe_h
+#define eunoe_discovery_inference_describe_h
+
+#include <eunoe/discovery/inference/decision.h>
+
+#include <nlohmann/json.hpp>
+
+#include <optional>
+
+namespace eunoe::discovery {
+
+using Json = nlohmann::ordered_json;
+
+/// Tables of discovery.json (doc/discovery_json.md).
+
+/// Names of a model's effects, joined by " + "; "none of the catalogue" for a discrepancy.
+std::string name_of(const Model &model, const FactorSpace &space);
+
+/// All effects by their probability, with what each says alone.
+Json describe_candidates(const Evidence &evidence, const Findings &findings);
+
+/// Amplitudes of the likeliest model with calibrated intervals and the posterior.
+Json describe_amplitudes(const Evidence &evidence, const Findings &findings);
+
+/// Models that the data do not tell apart.
+Json describe_models(const std::vector<Model> &models, const FactorSpace &space);
+
+/// Smallest amplitudes that would be seen, and bounds within which an amplitude lies.
+Json describe_power(const Evidence &evidence, const Findings &findings, std::uint32_t seed);
+
+/// Change by each effect at all data points in standard deviations of a run, its strength along
+/// the amplitude, and cosines between the changes.
+Json describe_fingerprints(const Evidence &evidence);
+
+/// A model's prediction with the nuisances at their best values for the data of the fit.
+struct Fitted
+{
+  Eigen::VectorXd mean; ///< in the target's coordinates
+  Target::Prediction prediction;
+};
+Fitted fit_to(const Evidence &evidence, const std::map<std::size_t, double> &effects,
+              const Eigen::VectorXd &nuisances);
+
+/// Measured values beside those of the models, a row for each data point.
+Json describe_envelopes(const Evidence &evidence, const Fitted &before,
+                        const std::optional<Fitted> &after, double level);
+
+/// Root mean square deviation between data and model over the data points, in standard deviations
+/// of a run, less what noise explains; negative if noise explains more than there is.
+double gap(const Evidence &evidence, const Fitted &model);
+
+/// The gap before and after.
+Json describe_gap(const Evidence &evidence, const Fitted &before,
+                  const std::optional<Fitted> &after);
+
+/// Data points by how much they speak for one model against another, the most first.
+Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted &second);
+
+} // namespace eunoe::discovery
+
+#endif

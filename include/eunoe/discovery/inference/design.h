@@ -1,0 +1,52 @@
+#ifndef eunoe_discovery_inference_design_h
+#define eunoe_discovery_inference_design_h
+
+#include <eunoe/discovery/inference/evidence.h>
+#include <eunoe/discovery/statistics/random_stream.h>
+
+#include <functional>
+
+namespace eunoe::discovery {
+
+/// Which design points a study runs, in which order.
+class Design
+{
+public:
+  Design(const StudyOptions &options, const FactorSpace &space, Samples &samples,
+         std::vector<std::string> experiments);
+
+  /// Runs the base model and each nuisance on either side. Throws a UserError if the budget does
+  /// not suffice for the base model.
+  void run_base();
+
+  /// Runs each effect at amplitudes in geometric sequence, from its scale down to what can just be
+  /// seen. Depends on the experiments alone, not on what was measured.
+  void run_effects(const std::function<Target()> &estimate);
+
+  /// Runs where it is expected to tell most: near the amplitudes at which models would be the
+  /// likeliest if they were known better, by the error of their emulator.
+  /// @return whether anything could be run
+  bool refine(const Evidence &evidence, const std::vector<Model> &models, double p_nothing);
+
+private:
+  /// A design point that may be run, of the base model if there is no such effect.
+  struct Wish
+  {
+    std::size_t effect;
+    double amplitude, weight;
+  };
+  std::vector<Wish> wishes(const Evidence &evidence, const std::vector<Model> &models,
+                           double p_nothing) const;
+  Eigen::VectorXd draw_nuisances();
+  DesignPoint point(std::size_t effect, double amplitude);
+
+  const StudyOptions &options;
+  const FactorSpace &space;
+  Samples &samples;
+  const std::vector<std::string> experiments;
+  RandomStream random;
+};
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,85 @@
+#ifndef eunoe_discovery_inference_emulator_h
+#define eunoe_discovery_inference_emulator_h
+
+#include <eunoe/discovery/inference/samples.h>
+#include <eunoe/discovery/statistics/gaussian_process.h>
+#include <eunoe/discovery/statistics/modes.h>
+
+#include <map>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// Emulator of one experiment: what runs give, at any amplitudes of effects and nuisances, and how
+/// much they scatter. It knows a few modes of the measured data points, whitened such that the
+/// scatter of one run of the base model is a unit matrix.
+class ExperimentEmulator
+{
+public:
+  /// @param samples of the experiment, at least four of the base model
+  /// @param columns of the measured data points in a sample's values
+  /// @param points their names
+  /// @param least_deviation of each data point: a smaller scatter is not believed
+  ExperimentEmulator(const FactorSpace &space, const std::vector<Sample> &samples,
+                     const std::vector<Eigen::Index> &columns, const std::vector<DataPoint> &points,
+                     const Eigen::VectorXd &least_deviation);
+
+  Eigen::Index size() const { return whitening.rows(); }
+  const Modes &modes() const { return reduction; }
+  /// Whitened modes of values at the data points, less those of the base model's mean.
+  Eigen::VectorXd whiten(const Eigen::VectorXd &values) const
+  {
+    return whitening * reduction.reduce(values - mean);
+  }
+  /// whiten() of columns that are in units of the data points' deviations.
+  Eigen::MatrixXd whiten_scaled(const Eigen::MatrixXd &columns) const
+  {
+    return whitening * (reduction.basis() * columns);
+  }
+
+  /// Prediction of a set of effects at their positions.
+  GaussianProcess::Prediction predict(const std::map<std::size_t, double> &effects) const;
+  /// Variance of a run's scatter over that of the base model.
+  double scatter(const std::map<std::size_t, double> &effects) const;
+
+  /// Deviations of runs from the mean of their design point, as whitened rows that have the scatter
+  /// of a new run, and the degrees of freedom of the covariance that is estimated from them.
+  const Eigen::MatrixXd &deviations() const { return residuals; }
+  double degrees_of_freedom() const { return dof; }
+  /// Covariance of the modes of one run of the base model.
+  Eigen::MatrixXd mode_covariance() const { return unwhitening() * unwhitening().transpose(); }
+  Eigen::MatrixXd unwhitening() const { return whitening.inverse(); }
+  /// Mean and standard deviation of the base model's runs at each data point.
+  const Eigen::VectorXd &base_mean() const { return mean; }
+  const Eigen::VectorXd &base_deviation() const { return reduction.deviations(); }
+  /// Mean of the values at the data points that a prediction of whitened modes stands for.
+  Eigen::VectorXd values(const Eigen::VectorXd &whitened) const;
+
+private:
+  /// Runs at one position.
+  struct Group
+  {
+    Eigen::VectorXd position, mean; ///< mean of the modes
+    Eigen::MatrixXd rows;           ///< of modes
+    int effect = -1;                ///< the only one that is not zero; -1: none, -2: several
+  };
+  std::vector<Group> make_groups(const std::vector<Sample> &samples,
+                                 const std::vector<Eigen::Index> &columns) const;
+  void estimate_covariance(const std::vector<Group> &groups);
+  void fit_scatter(const std::vector<Group> &groups);
+  void fit_base(const std::vector<Group> &groups);
+  double scatter_at(std::size_t effect, double amplitude) const;
+
+  std::size_t n_effects, n_nuisances;
+  Modes reduction;
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd whitening, residuals;
+  double dof = 1.;
+  LinearBase base;
+  std::vector<double> growth, largest; ///< per effect: exponent of the scatter, at this amplitude
+  std::vector<GaussianProcess> processes;
+};
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,113 @@
+#ifndef eunoe_discovery_inference_evidence_h
+#define eunoe_discovery_inference_evidence_h
+
+#include <eunoe/discovery/inference/target.h>
+
+#include <map>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// What is not estimated from runs: prior probabilities of the models, given that something is
+/// missing. Each share is divided equally among the models of its kind.
+struct Prior
+{
+  double one_effect = 0.7;    ///< a model lacks one effect of the catalogue as a rule
+  double two_effects = 0.2;   ///< sometimes two
+  double none_of_these = 0.1; ///< or something that is not in the catalogue
+  double just_visible = 1.;   ///< strength of the smallest amplitude: below it nothing is seen
+  double least_range = 1e-3;  ///< smallest amplitude that is considered, in scales
+  double weakest_discrepancy = 3., strongest_discrepancy = 48.; ///< strengths off the catalogue
+};
+
+/// A model: effects that are missing, none for "nothing", or a discrepancy of no catalogued shape.
+struct Model
+{
+  std::vector<std::size_t> effects;
+  bool is_discrepancy = false;
+  double log_prior = 0., log_evidence = 0., probability = 0.;
+  std::map<std::size_t, double> best; ///< likeliest amplitudes
+};
+
+/// Marginal likelihoods of all models: amplitudes and nuisances are integrated. The covariance is
+/// estimated, so the likelihood is a t-distribution (Sellentin and Heavens 2016, MNRAS 456, L132).
+class Evidence
+{
+public:
+  Evidence(const Target &target, const FactorSpace &space, const Prior &prior = {});
+
+  /// Likelihood of data for fixed effects, with all that does not depend on the data prepared.
+  struct Hypothesis
+  {
+    Target::Prediction prediction;
+    Eigen::VectorXd inverse; ///< of the variances
+    Eigen::MatrixXd half;    ///< what nuisances explain of a deviation
+    double constant = 0.;
+  };
+  Hypothesis prepare(const Target::Prediction &prediction) const;
+  double distance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+  double log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+
+  /// Log-likelihood that is to be expected once runs have left no more error than that of the base
+  /// model, if the hypothesis is true: its mean moves towards the data as far as its error allows.
+  double log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+
+  /// An amplitude of an effect on the grid over which it is integrated.
+  struct Place
+  {
+    double amplitude, log_prior;
+    /// Weight for intervals, uniform in strength: Jeffreys' prior, whose intervals cover a fixed
+    /// truth as often as stated where the proper prior would pull them to small amplitudes.
+    double log_reference;
+    Hypothesis hypothesis;
+  };
+  const std::vector<Place> &places(std::size_t effect) const { return grid[effect]; }
+  const Hypothesis &nothing() const { return base; }
+  const Target &target() const { return aim; }
+  const FactorSpace &space() const { return factors; }
+
+  /// Log of prior and optimistic likelihood of an effect's places.
+  std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data) const;
+  /// Effects with places.
+  std::vector<std::size_t> usable() const;
+
+  /// Log evidence of nothing, of each effect, of the discrepancy.
+  double log_nothing(const Eigen::VectorXd &data) const { return log_likelihood(base, data); }
+  double log_single(std::size_t effect, const Eigen::VectorXd &data, double *best = nullptr) const;
+  double log_discrepancy(const Eigen::VectorXd &data) const;
+
+  /// Log Bayes factor of "an effect is missing, or something else" against nothing.
+  double log_bayes_factor(const Eigen::VectorXd &data) const;
+
+  /// Log of prior and evidence of each effect that can be seen, and last of the discrepancy.
+  std::vector<double> log_posterior_of_singles(const Eigen::VectorXd &data) const;
+
+  /// Models of one and two effects and the discrepancy with posterior probabilities, the likeliest
+  /// first.
+  std::vector<Model> models(const Eigen::VectorXd &data) const;
+
+private:
+  void make_grid(std::size_t effect);
+  std::vector<double> strengths(const std::vector<Place> &places) const;
+  void make_discrepancy();
+  Model pair(std::size_t a, std::size_t b, const Eigen::VectorXd &data) const;
+  void polish(Model &pair, const Eigen::VectorXd &data) const;
+  double log_density(std::size_t effect, double amplitude) const;
+  double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
+  double t_log_likelihood(double constant, double distance) const;
+
+  const Target &aim;
+  const FactorSpace &factors;
+  const Prior prior;
+  double dof;
+  Hypothesis base;
+  std::vector<std::vector<Place>> grid;
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> discrepancies;
+};
+
+/// log(sum of exp).
+double log_sum(const std::vector<double> &logarithms);
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,45 @@
+#ifndef eunoe_discovery_inference_held_out_h
+#define eunoe_discovery_inference_held_out_h
+
+#include <eunoe/discovery/inference/describe.h>
+#include <eunoe/discovery/inference/predictive.h>
+
+namespace eunoe::discovery {
+
+/// Tests the answer on experiments whose data were not used: runs them with the base model, with
+/// the nuisances moved and with each model of the answer near its amplitudes, and compares
+/// predictions with what was measured.
+class HeldOut
+{
+public:
+  HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
+          const FactorSpace &space, Samples &samples);
+
+  /// Largest number of runs of a test that is not in doubt.
+  std::uint64_t n_runs() const;
+
+  /// Runs and tests. Models that the data refute leave the answer; the last one that leaves takes
+  /// the name with it.
+  /// @param evidence of the data of the fit
+  /// @return table of discovery.json
+  Json test(const Evidence &evidence, Findings &findings);
+
+private:
+  Predictive predict(const Evidence &fit, const Evidence &held_out, const Model &model) const;
+  /// Whether more runs could change what the data say of a model of the answer.
+  bool is_doubtful(const Evidence &fit, const Evidence &held_out, const std::vector<Model> &models,
+                   const Findings &findings) const;
+  Json test_models(const Evidence &fit, const Evidence &held_out, const std::vector<Model> &models,
+                   Findings &findings) const;
+
+  const StudyOptions &options;
+  const DecisionRule &rule;
+  const MeasuredData &data;
+  const FactorSpace &space;
+  Samples &samples;
+  std::vector<std::string> experiments;
+};
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,63 @@
+#ifndef eunoe_discovery_inference_predictive_h
+#define eunoe_discovery_inference_predictive_h
+
+#include <eunoe/discovery/inference/calibration.h>
+
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// A model with amplitudes and nuisances as the data of the fit leave them uncertain: draws from
+/// the posterior.
+struct PosteriorDraws
+{
+  std::vector<std::map<std::size_t, double>> effects;
+  std::vector<Eigen::VectorXd> nuisances;
+};
+
+/// @param model without effects: nothing is missing
+PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model, unsigned int draws,
+                              std::uint32_t seed);
+
+/// Best values of the nuisances for fixed effects, in prior deviations.
+Eigen::VectorXd best_nuisances(const Evidence &evidence, const Evidence::Hypothesis &hypothesis);
+
+/// How well a model fits the data that it was fitted to: the probability of a larger distance
+/// between data and best amplitudes if the model is true. Twins of the model are fitted as the data
+/// were, so that nothing is gained by having been chosen.
+/// @param model one that explains the data at its `best` amplitudes
+double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDraws &posterior,
+                std::uint32_t seed);
+
+/// How well a model predicts measured data: the probability of data as far from the prediction as
+/// these if the model is true, by twins of the prediction. There is no least value.
+/// @param evidence of the data that are predicted, with emulators of their experiments
+class Predictive
+{
+public:
+  Predictive(const Evidence &evidence, const PosteriorDraws &posterior, std::uint32_t seed);
+
+  double p(const Eigen::VectorXd &data) const { return tail.p(distance(data)); }
+  /// Squared Mahalanobis distance of data from the prediction.
+  double distance(const Eigen::VectorXd &data) const;
+  const Eigen::VectorXd &mean() const { return centre; }
+  /// Share of another model's twins that this one is refuted by at a level.
+  double refuted_by(const Predictive &truth, double level) const;
+  /// Of data about the mean.
+  const Eigen::LLT<Eigen::MatrixXd> &covariance() const { return llt; }
+  /// Data of each draw of the posterior, and their mean and variances if the draw is true.
+  const std::vector<Eigen::VectorXd> &twin_data() const { return twins; }
+  const Eigen::MatrixXd &draw_means() const { return means; }
+  const Eigen::MatrixXd &draw_variances() const { return variances; }
+
+private:
+  std::vector<Eigen::VectorXd> twins;
+  Eigen::MatrixXd means, variances; ///< a column for each draw
+  Eigen::VectorXd centre;
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  Tail tail;
+};
+
+} // namespace eunoe::discovery
+
+#endif

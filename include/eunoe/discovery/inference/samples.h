@@ -1,0 +1,104 @@
+#ifndef eunoe_discovery_inference_samples_h
+#define eunoe_discovery_inference_samples_h
+
+#include <eunoe/discovery/factor.h>
+#include <eunoe/discovery/simulator.h>
+#include <eunoe/discovery/study.h>
+
+#include <Eigen/Dense>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// The factors of a study in a fixed order, effects first; positions in their joint space count
+/// each amplitude from its null value, in scales of an effect and prior deviations of a nuisance.
+class FactorSpace
+{
+public:
+  explicit FactorSpace(const std::vector<Factor> &factors);
+
+  std::size_t n_effects() const { return effects.size(); }
+  std::size_t n_nuisances() const { return nuisances.size(); }
+  const Factor &effect(std::size_t k) const { return effects[k]; }
+  const Factor &nuisance(std::size_t k) const { return nuisances[k]; }
+
+  /// Range of an effect's positions.
+  double lower(std::size_t effect) const;
+  double upper(std::size_t effect) const;
+
+  Eigen::VectorXd origin() const
+  {
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_effects() + n_nuisances()));
+  }
+  Amplitudes amplitudes(const Eigen::VectorXd &position) const;
+  /// Nothing if an amplitude is that of no factor of the study.
+  std::optional<Eigen::VectorXd> position(const Amplitudes &amplitudes) const;
+
+private:
+  std::vector<Factor> effects, nuisances;
+};
+
+/// A simulation that reached its end.
+struct Sample
+{
+  Eigen::VectorXd position, values;
+  std::uint32_t seed = 1;
+};
+
+/// Replicates of a design point that are wanted: runs of several experiments.
+struct DesignPoint
+{
+  Eigen::VectorXd position;
+  unsigned int replicates = 1;
+};
+
+/// The simulations that a study knows, those of its table and those it asks for, within its budget.
+/// All have different seeds: chaos parts runs of equal seeds so soon that nothing is gained by
+/// comparing them.
+class Samples
+{
+public:
+  Samples(const StudyOptions &options, const FactorSpace &space, Simulator &simulator,
+          const std::vector<std::string> &experiments);
+
+  /// Runs design points, as many as the budget has room for.
+  /// @return whether all could be run
+  bool run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
+
+  const std::vector<Sample> &of(const std::string &experiment) const
+  {
+    return samples.at(experiment);
+  }
+  /// Replicates of a design point that are still missing in one of the experiments that it
+  /// concerns; failed ones are not missing.
+  unsigned int n_missing(const DesignPoint &point,
+                         const std::vector<std::string> &experiments) const;
+  /// Whether each experiment that an effect concerns has this many runs with nearly this amplitude.
+  bool has_near(std::size_t effect, double amplitude, unsigned int runs,
+                const std::vector<std::string> &experiments) const;
+
+  std::uint64_t n_asked() const { return asked; }
+  std::uint64_t n_failed() const { return failed; }
+  std::uint64_t n_known() const { return known; }
+  std::uint64_t remaining() const;
+  /// Keeps runs of the budget for later.
+  void set_aside(std::uint64_t runs) { reserved = runs; }
+  Simulator &simulator() { return source; }
+
+private:
+  void add(const RunRequest &request, const RunResult &result);
+
+  const StudyOptions &options;
+  const FactorSpace &space;
+  Simulator &source;
+  std::map<std::string, std::vector<Sample>> samples;
+  std::map<std::pair<std::string, Amplitudes>, unsigned int> counts;
+  std::uint32_t next_seed;
+  std::uint64_t asked = 0, failed = 0, known = 0, reserved = 0;
+};
+
+} // namespace eunoe::discovery
+
+#endif

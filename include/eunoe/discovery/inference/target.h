@@ -1,0 +1,79 @@
+#ifndef eunoe_discovery_inference_target_h
+#define eunoe_discovery_inference_target_h
+
+#include <eunoe/discovery/inference/emulator.h>
+#include <eunoe/discovery/measured_data.h>
+#include <eunoe/discovery/statistics/data_noise.h>
+
+#include <string>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// What was measured in one experiment, as far as it varies.
+struct MeasuredExperiment
+{
+  std::string name;
+  std::vector<DataPoint> points;
+  std::vector<Eigen::Index> columns; ///< of the points in the values of a run
+  Eigen::VectorXd value, deviation, repeats;
+  Eigen::VectorXd least_deviation; ///< a run's scatter below this is not believed
+};
+
+/// Sorts measured points by experiment, and leaves out those that vary neither in the runs of the
+/// base model nor in the measurement.
+/// @param notes gets a sentence for each that is left out
+std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoint> &points,
+                                                   const Samples &samples,
+                                                   const Simulator &simulator,
+                                                   std::vector<std::string> &notes);
+
+/// The measurement of several experiments beside their emulators, in coordinates in which all
+/// noise is independent: whitened modes, turned such that the noise of the instrument is diagonal.
+class Target
+{
+public:
+  Target(std::vector<MeasuredExperiment> measured, const Samples &samples, const FactorSpace &space,
+         double model_tolerance);
+
+  /// A prediction of all experiments.
+  struct Prediction
+  {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd gradient;          ///< by nuisances
+    Eigen::VectorXd leverage, scatter; ///< for each experiment
+  };
+  Prediction predict(const std::map<std::size_t, double> &effects) const;
+
+  /// Variance of each coordinate between data and prediction, nuisances apart.
+  Eigen::VectorXd variance(const Prediction &prediction) const;
+
+  const Eigen::VectorXd &data() const { return all; }
+  std::size_t n_experiments() const { return parts.size(); }
+  double degrees_of_freedom() const;
+
+  struct Part
+  {
+    MeasuredExperiment measured;
+    ExperimentEmulator emulator;
+    Eigen::MatrixXd rotation;    ///< from whitened modes to coordinates
+    Eigen::VectorXd instrument;  ///< variance of the means by the instrument, of each coordinate
+    Eigen::VectorXd point_ratio; ///< variance of a repeat over that of a run, of each point
+    std::vector<ExcessVariance> excess; ///< what it may be beyond 1, for each group of modes
+    double repeats = 1., ratio = 1.;    ///< means over the data points
+    Eigen::Index first = 0;             ///< coordinate
+
+    /// What the repeats scatter beyond the base model is the instrument's, or an effect's own.
+    /// @param scatter variance of runs over that of the base model's
+    double share_of_instrument(double scatter) const;
+  };
+  const std::vector<Part> &experiments() const { return parts; }
+
+private:
+  std::vector<Part> parts;
+  Eigen::VectorXd all;
+};
+
+} // namespace eunoe::discovery
+
+#endif

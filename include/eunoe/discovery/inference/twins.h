@@ -1,0 +1,52 @@
+#ifndef eunoe_discovery_inference_twins_h
+#define eunoe_discovery_inference_twins_h
+
+#include <eunoe/discovery/inference/evidence.h>
+#include <eunoe/discovery/statistics/random_stream.h>
+
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// Data of a known truth as this study would have measured them: the emulator's mean, nuisances
+/// from their priors, and scatter of runs that the study has made, which is neither normal nor has
+/// the correlations that are assumed.
+class Twins
+{
+public:
+  Twins(const Evidence &evidence, std::uint32_t seed) : evidence(evidence), random(seed, 17) {}
+
+  /// Data of one truth, in the target's coordinates. The error of the prediction is drawn, too.
+  Eigen::VectorXd draw(const Target::Prediction &truth);
+
+private:
+  Eigen::VectorXd instrument(const Target::Part &part, double scatter);
+
+  const Evidence &evidence;
+  RandomStream random;
+};
+
+/// Values of a statistic for draws of a truth, and the probability to be at or above another value.
+/// Beyond the largest tenth of the draws the tail is exponential, so that no p-value is limited by
+/// their number.
+class Tail
+{
+public:
+  Tail() = default;
+  explicit Tail(std::vector<double> draws);
+  double p(double value) const;
+  /// Value with this probability to be exceeded.
+  double quantile(double p) const;
+  std::size_t size() const { return sorted.size(); }
+
+private:
+  std::vector<double> sorted; ///< from the largest
+  double threshold = 0., scale = 1., share = 0.;
+};
+
+/// Distribution of the log Bayes factor where nothing is missing.
+Tail null_distribution(const Evidence &evidence, unsigned int draws, std::uint32_t seed);
+
+} // namespace eunoe::discovery
+
+#endif

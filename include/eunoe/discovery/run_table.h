@@ -1,0 +1,67 @@
+#ifndef eunoe_discovery_run_table_h
+#define eunoe_discovery_run_table_h
+
+#include <eunoe/discovery/simulator.h>
+#include <eunoe/simulation/process.h>
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <memory>
+#include <mpi.h>
+#include <string>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// The result of a simulation.
+struct RunRecord
+{
+  std::vector<Measurement> measurements;
+  std::string failure; ///< reason of a failure; empty without one
+  double core_seconds = 0.;
+};
+
+/// The table of runs: all finished simulations of a study in one SQLite file, which further studies
+/// use as well, also at the same time. A row has the design point, the result, a key that is a hash
+/// of the complete input, and the digest of the engine that made it.
+class RunTable
+{
+public:
+  struct Row
+  {
+    std::int64_t number = 0; ///< rows are numbered in the order in which they were finished
+    std::string key, engine;
+    RunRequest request;
+    RunRecord record;
+  };
+
+  RunTable(const std::string &file, MPI_Comm comm) : file(file), comm(comm) {}
+
+  /// Creates the file. Throws a UserError on every rank if that fails; collective.
+  void open();
+
+  /// All rows in their order, the same on every rank; collective.
+  std::vector<Row> rows() const;
+
+  /// Adds a row. To be called by one rank; throws a UserError there.
+  void store(const Row &row) const;
+
+  /// Gives all rows of one engine to another that was found to give the same results; collective.
+  void adopt(const std::string &old_engine, const std::string &engine) const;
+
+private:
+  const std::string file;
+  MPI_Comm comm;
+};
+
+/// The measured values as text, equal for equal bits.
+std::string text_of(const std::vector<Measurement> &measurements);
+
+nlohmann::ordered_json to_json(const RunRecord &record);
+/// Throws a nlohmann::json::exception if that is no record.
+RunRecord record_from(const nlohmann::ordered_json &json);
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,363 @@
+#include <eunoe/discovery/inference/design.h>
+#include <eunoe/discovery/inference/held_out.h>
+#include <eunoe/discovery/inference/plan.h>
+#include <eunoe/discovery/inference/predictive.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// One round of a study: what all runs so far say.
+struct Round
+{
+  Round(const std::vector<MeasuredExperiment> &measured, const Samples &samples,
+        const FactorSpace &space, const StudyOptions &options, const DecisionRule &rule)
+      : target(measured, samples, space, options.model_tolerance), evidence(target, space),
+        options(options)
+  {
+    look(rule);
+  }
+
+  void look(const DecisionRule &rule)
+  {
+    findings = weigh(evidence, options, rule);
+    if (findings.detected)
+      decide(evidence, rule, options.seed, findings);
+  }
+
+  Target target;
+  Evidence evidence;
+  Findings findings;
+
+private:
+  const StudyOptions &options;
+};
+
+/// The answer after each round, by the number of runs: the learning curve.
+class LearningCurve
+{
+public:
+  void add(const Round &round, const FactorSpace &space, std::uint64_t runs)
+  {
+    const Findings &f = round.findings;
+    const Model &first = f.models.front();
+    Json row = {{"runs", runs},
+                {"p of nothing missing", f.p_nothing},
+                {"verdict", name_of(f.detected ? f.verdict : Verdict::none)},
+                {"first", name_of(first, space)},
+                {"probability", first.probability},
+                {"probability off catalogue", f.off_catalogue}};
+    Json set = Json::array();
+    for (const Model &model : f.answer)
+      set.push_back(name_of(model, space));
+    row["answer"] = set;
+    rows.push_back(row);
+  }
+
+  /// Whether an effect that is not in the answer could be as likely as the first model, once it is
+  /// known better.
+  static bool has_challenger(const Round &round)
+  {
+    constexpr double behind = 3.; // e^-3 = 5 %
+    const Model &first = round.findings.models.front();
+    for (const std::size_t k : round.evidence.usable()) {
+      const auto &answer = round.findings.answer;
+      const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
+                                            [&](const Model &m) { return m.best.count(k) > 0; });
+      const std::vector<double> hopes = round.evidence.optimistic(k, round.target.data());
+      if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) >
+                               first.log_prior + first.log_evidence - behind)
+        return true;
+    }
+    return false;
+  }
+
+  /// Whether the last rounds gave the same answer, and the errors of the emulators no longer
+  /// matter for it.
+  bool is_settled(const Round &round, const double level) const
+  {
+    constexpr std::size_t patience = 3;
+    constexpr double same = 0.05, sure = 0.99, well_known = 0.15, far = 4.;
+    if (rows.size() < patience)
+      return false;
+    const Json &last = rows.back();
+    for (std::size_t k = rows.size() - patience; k < rows.size(); ++k)
+      if (rows[k]["verdict"] != last["verdict"] ||
+          (round.findings.detected && (rows[k]["answer"] != last["answer"] ||
+                                       std::abs(rows[k]["probability"].get<double>() -
+                                                last["probability"].get<double>()) > same)) ||
+          (!round.findings.detected && rows[k]["p of nothing missing"].get<double>() < far * level))
+        return false;
+    if (round.findings.detected && has_challenger(round))
+      return false;
+    if (!round.findings.detected || round.findings.models.front().probability > sure)
+      return true;
+    double largest = 0.;
+    for (const Model &model : round.findings.answer) {
+      const Target::Prediction prediction = round.target.predict(model.best);
+      largest = std::max(largest,
+                         prediction.leverage.maxCoeff() / round.target.variance(prediction).mean());
+    }
+    return largest < well_known;
+  }
+
+  Json rows = Json::array();
+};
+
+/// Verdict where nothing was detected: whether most effects would have been.
+Verdict verdict_without_detection(const Json &power)
+{
+  double seen = 0., all = 0.;
+  for (const auto &row : power)
+    if (row.at("simulated").get<bool>()) {
+      all += 1.;
+      seen += row.at("detectable").get<bool>() ? 1. : 0.;
+    }
+  return 2. * seen >= all ? Verdict::none : Verdict::underpowered;
+}
+
+/// What the residuals resemble where no effect of the catalogue explains them.
+Json describe_remainder(const Evidence &evidence, const Findings &findings)
+{
+  const Eigen::VectorXd deviation = evidence.target().data() - evidence.nothing().prediction.mean;
+  std::vector<std::pair<double, Json>> rows;
+  for (std::size_t k = 0; k < evidence.space().n_effects(); ++k) {
+    double largest = 0.;
+    for (const Evidence::Place &place : evidence.places(k)) {
+      const Eigen::VectorXd change =
+          place.hypothesis.prediction.mean - evidence.nothing().prediction.mean;
+      largest = std::max(largest, change.dot(deviation) /
+                                      std::max(change.norm() * deviation.norm(), 1e-300));
+    }
+    if (largest > 0.)
+      rows.emplace_back(-largest, Json{{"effect", evidence.space().effect(k).name},
+                                       {"mechanism", evidence.space().effect(k).mechanism},
+                                       {"cosine", largest}});
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto &a, const auto &b) { return a.first < b.first; });
+  Json list = Json::array();
+  constexpr std::size_t most = 3;
+  for (std::size_t k = 0; k < std::min(most, rows.size()); ++k)
+    list.push_back(rows[k].second);
+  return {{"closest model", name_of(findings.models.front(), evidence.space())},
+          {"p of its fit", findings.p_fit},
+          {"resembles", list}};
+}
+
+Json describe_nuisances(const FactorSpace &space, const Eigen::VectorXd &values)
+{
+  Json rows = Json::array();
+  for (std::size_t q = 0; q < space.n_nuisances(); ++q) {
+    const Factor &nuisance = space.nuisance(q);
+    const double shift = values(static_cast<Eigen::Index>(q));
+    rows.push_back({{"nuisance", nuisance.name},
+                    {"value", nuisance.null_value + shift * nuisance.prior_deviation},
+                    {"prior deviations", shift}});
+  }
+  return rows;
+}
+
+Json describe_calibration(const Calibration &c)
+{
+  return {{"twins", c.twins},
+          {"temperature", c.temperature},
+          {"mean stated", c.stated},
+          {"right", c.right},
+          {"coverage of plain intervals", c.coverage},
+          {"tail", c.tail}};
+}
+
+std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points)
+{
+  std::vector<std::string> names;
+  for (const MeasuredPoint &point : points)
+    if (std::find(names.begin(), names.end(), point.point.experiment) == names.end())
+      names.push_back(point.point.experiment);
+  return names;
+}
+
+/// Everything that the page says of the data of the fit.
+Json describe_fit(const Round &round, const StudyOptions &options, Amplitudes &nuisances)
+{
+  const Evidence &evidence = round.evidence;
+  const Findings &findings = round.findings;
+  const auto fitted = [&](const std::map<std::size_t, double> &effects) {
+    const Eigen::VectorXd best =
+        best_nuisances(evidence, evidence.prepare(round.target.predict(effects)));
+    return std::pair(fit_to(evidence, effects, best), best);
+  };
+  const auto [base, base_nuisances] = fitted({});
+  Eigen::VectorXd values = base_nuisances;
+  std::optional<Fitted> after, second;
+  if (findings.detected) {
+    const Model &first =
+        findings.answer.empty() ? findings.models.front() : findings.answer.front();
+    if (!first.is_discrepancy)
+      std::tie(after.emplace(), values) = fitted(first.best);
+    for (const Model &model : findings.models)
+      if (!second && model.effects.size() == 1 && model.effects != first.effects)
+        second = fitted(model.best).first;
+  }
+  Json content;
+  content["nuisances"] = describe_nuisances(evidence.space(), values);
+  for (const auto &row : content["nuisances"])
+    nuisances[row["nuisance"].get<std::string>()] = row["value"].get<double>();
+  content["gap"] = describe_gap(evidence, base, after);
+  content["envelopes"] = describe_envelopes(evidence, base, after, options.level);
+  content["decisive"] = after && second ? decisive_points(evidence, *after, *second)
+                        : after         ? decisive_points(evidence, *after, base)
+                                        : Json::array();
+  return content;
+}
+
+/// A study while it is made.
+class Study
+{
+public:
+  Study(const StudyOptions &options, const MeasuredData &data, const std::vector<Factor> &factors,
+        Simulator &simulator, Log &log)
+      : options(options), data(data), space(factors), log(log), fit(experiments_of(data.fit)),
+        samples(options, space, simulator, all_experiments()),
+        held_out(options, rule, data, space, samples), design(options, space, samples, fit)
+  {
+    constexpr unsigned int most_members = 4;
+    samples.set_aside(held_out.n_runs() +
+                      options.further_experiments.size() *
+                          (runs_of_base(options.validate_runs, space.n_nuisances()) +
+                           most_members * most_runs_near(options.validate_runs)));
+    if (samples.n_known() > 0)
+      log.line("  " + std::to_string(samples.n_known()) + " runs are in the table already");
+  }
+
+  void run();
+  Discovery answer();
+
+private:
+  std::vector<std::string> all_experiments() const
+  {
+    std::vector<std::string> all = fit;
+    for (const auto &more : {experiments_of(data.held_out), options.further_experiments})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  std::uint64_t n_runs() const { return samples.n_known() + samples.n_asked(); }
+  Json describe(const Json &power, const Json &validation, const Json &of_fit);
+
+  const StudyOptions &options;
+  const MeasuredData &data;
+  const DecisionRule rule;
+  const FactorSpace space;
+  Log &log;
+  const std::vector<std::string> fit;
+  Samples samples;
+  HeldOut held_out;
+  Design design;
+  std::vector<std::string> notes;
+  LearningCurve curve;
+  std::unique_ptr<Round> round;
+};
+
+/// First runs, then rounds of runs where they are expected to tell most.
+void Study::run()
+{
+  design.run_base();
+  const auto measured = sort_by_experiment(data.fit, samples, samples.simulator(), notes);
+  if (measured.empty())
+    throw UserError("No measured data point varies in the runs of the base model, so nothing can "
+                    "be compared: give standard deviations, or data points that vary.");
+  design.run_effects([&] { return Target(measured, samples, space, options.model_tolerance); });
+  while (true) {
+    round = std::make_unique<Round>(measured, samples, space, options, rule.quick());
+    const Findings &findings = round->findings;
+    curve.add(*round, space, n_runs());
+    const Json &last = curve.rows.back();
+    log.line("  " + std::to_string(n_runs()) + " runs: " + last["verdict"].get<std::string>() +
+             (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
+                                      format(last["probability"].get<double>()) + ")"
+                                : ", p = " + format(findings.p_nothing)));
+    if (curve.is_settled(*round, options.level) ||
+        !design.refine(round->evidence, findings.models, findings.p_nothing))
+      break;
+  }
+  round->look(rule);
+}
+
+Json Study::describe(const Json &power, const Json &validation, const Json &of_fit)
+{
+  const Findings &findings = round->findings;
+  const Evidence &evidence = round->evidence;
+  const bool is_tie = findings.verdict == Verdict::tie;
+  constexpr std::size_t most = 8;
+  std::vector<Model> likeliest = findings.models;
+  likeliest.resize(std::min(most, likeliest.size()));
+  Json c = {{"verdict", name_of(findings.verdict)},
+            {"exit code", exit_code(findings.verdict)},
+            {"p of nothing missing", findings.p_nothing},
+            {"log Bayes factor", findings.log_bayes_factor},
+            {"confidence off catalogue", findings.detected ? findings.off_catalogue : 0.}};
+  c["candidates"] = describe_candidates(evidence, findings);
+  c["amplitudes"] = describe_amplitudes(evidence, findings);
+  c["p of the fit"] = findings.p_fit;
+  c["tie"] = is_tie ? describe_models(findings.answer, space) : Json::array();
+  if (is_tie && findings.none_of_these)
+    c["tie"].push_back(
+        {{"effects", "none of the catalogue"}, {"probability", findings.off_catalogue}});
+  c["measurements that would break the tie"] =
+      is_tie ? plan_for_tie(evidence, findings, options, space, samples) : Json::array();
+  c["remainder"] = findings.verdict == Verdict::off_catalogue
+                       ? describe_remainder(evidence, findings)
+                       : Json::object();
+  c["models"] = describe_models(likeliest, space);
+  c["nuisances"] = of_fit["nuisances"];
+  c["gaps"] = {{"fit", of_fit["gap"]}, {"held-out", validation}};
+  c["envelopes"] = of_fit["envelopes"];
+  c["decisive"] = of_fit["decisive"];
+  c["effects"] = power;
+  c.update(describe_fingerprints(evidence));
+  c["calibration"] = describe_calibration(findings.calibration);
+  c["learning curve"] = curve.rows;
+  c["runs"] = {{"known", samples.n_known()},
+               {"asked for", samples.n_asked()},
+               {"failed", samples.n_failed()},
+               {"budget", options.budget}};
+  c["notes"] = notes;
+  return c;
+}
+
+Discovery Study::answer()
+{
+  Findings &findings = round->findings;
+  const Json power = describe_power(round->evidence, findings, options.seed);
+  if (!findings.detected)
+    findings.verdict = verdict_without_detection(power);
+  samples.set_aside(0);
+  const Json validation = held_out.test(round->evidence, findings);
+  Discovery discovery;
+  const Json of_fit = describe_fit(*round, options, discovery.nuisances);
+  discovery.content = describe(power, validation, of_fit);
+  discovery.verdict = findings.verdict;
+  if (findings.verdict == Verdict::named || findings.verdict == Verdict::tie)
+    for (const auto &[k, position] : findings.answer.front().best)
+      discovery.model_after[space.effect(k).name] =
+          space.effect(k).null_value + position * space.effect(k).scale;
+  discovery.n_runs = n_runs();
+  log.line("Verdict: " + name_of(findings.verdict));
+  return discovery;
+}
+
+} // namespace
+
+Discovery discover(const StudyOptions &options, const MeasuredData &data,
+                   const std::vector<Factor> &factors, Simulator &simulator, Log &log)
+{
+  Study study(options, data, factors, simulator, log);
+  study.run();
+  return study.answer();
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,110 @@
+#include <eunoe/discovery/inference/decision.h>
+#include <eunoe/discovery/inference/predictive.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+std::string name_of(const Verdict verdict)
+{
+  switch (verdict) {
+  case Verdict::none:
+    return "none";
+  case Verdict::named:
+    return "named";
+  case Verdict::tie:
+    return "tie";
+  case Verdict::off_catalogue:
+    return "off catalogue";
+  case Verdict::underpowered:
+    break;
+  }
+  return "underpowered";
+}
+
+int exit_code(const Verdict verdict)
+{
+  constexpr int first = 10;
+  return verdict == Verdict::none ? 0 : first + static_cast<int>(verdict) - 1;
+}
+
+double probability_of(const std::vector<Model> &models, const std::size_t effect)
+{
+  double sum = 0.;
+  for (const Model &model : models)
+    if (std::find(model.effects.begin(), model.effects.end(), effect) != model.effects.end())
+      sum += model.probability;
+  return sum;
+}
+
+void temper(std::vector<Model> &models, const double temperature)
+{
+  double sum = 0.;
+  for (Model &model : models)
+    sum += model.probability = std::pow(model.probability, 1. / temperature);
+  for (Model &model : models)
+    model.probability /= sum;
+}
+
+Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule)
+{
+  Findings findings;
+  const Eigen::VectorXd &data = evidence.target().data();
+  findings.null_distribution = null_distribution(evidence, rule.null_draws, options.seed);
+  findings.log_bayes_factor = evidence.log_bayes_factor(data);
+  findings.p_nothing = findings.null_distribution.p(findings.log_bayes_factor);
+  findings.detected = findings.p_nothing <= options.level;
+  findings.threshold = findings.null_distribution.quantile(options.level);
+  findings.calibration = calibrate(evidence, findings.threshold, rule.twins, options.seed);
+  findings.models = evidence.models(data);
+  temper(findings.models, findings.calibration.temperature);
+  for (const Model &model : findings.models)
+    if (model.is_discrepancy)
+      findings.off_catalogue = model.probability;
+  return findings;
+}
+
+void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
+            Findings &findings)
+{
+  double sum = 0.;
+  for (const Model &model : findings.models) {
+    if (sum >= rule.credible)
+      break;
+    sum += model.probability;
+    if (model.is_discrepancy)
+      findings.none_of_these = true;
+    else
+      findings.answer.push_back(model);
+  }
+  const bool is_first = findings.models.front().is_discrepancy;
+  if (!findings.answer.empty()) {
+    const Model &model = findings.answer.front();
+    findings.p_fit = p_of_fit(
+        evidence, model, draw_posterior(evidence, model, rule.predictive_draws, seed), seed + 2);
+    findings.none_of_these |= findings.p_fit < rule.doubtful;
+    if (findings.p_fit < rule.refuted) {
+      // Nothing of the catalogue describes the data if not even the likeliest model does.
+      findings.verdict = Verdict::off_catalogue;
+      return;
+    }
+  }
+  if (is_first || findings.answer.empty()) {
+    findings.verdict = Verdict::off_catalogue;
+    return;
+  }
+  // One effect, perhaps with another that it hardly needs, is one name.
+  const std::vector<std::size_t> &first = findings.answer.front().effects;
+  const bool all_contain_it =
+      std::all_of(findings.answer.begin(), findings.answer.end(), [&](const Model &model) {
+        return std::includes(model.effects.begin(), model.effects.end(), first.begin(),
+                             first.end());
+      });
+  if (all_contain_it && !findings.none_of_these)
+    findings.answer.resize(1);
+  findings.verdict =
+      findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,318 @@
+#include <eunoe/discovery/inference/describe.h>
+#include <eunoe/discovery/inference/predictive.h>
+
+#include <boost/algorithm/string/join.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+double amplitude_of(const Factor &effect, const double position)
+{
+  return effect.null_value + position * effect.scale;
+}
+
+/// Values at the data points of one experiment for a vector of the target's coordinates.
+Eigen::VectorXd values_of(const Target::Part &part, const Eigen::VectorXd &coordinates)
+{
+  return part.emulator.values(part.rotation.transpose() *
+                              coordinates.segment(part.first, part.emulator.size()));
+}
+
+Json name_of_point(const DataPoint &point)
+{
+  return {
+      {"experiment", point.experiment}, {"observable", point.observable}, {"index", point.index}};
+}
+
+/// Variance of a measured mean about a prediction at each data point, in base deviations squared.
+Eigen::VectorXd point_variance(const Target::Part &part, const Target::Prediction &prediction,
+                               const Eigen::Index e)
+{
+  return (part.point_ratio.cwiseMax(prediction.scatter(e)).array() / part.measured.repeats.array() +
+          prediction.leverage(e))
+      .matrix();
+}
+
+} // namespace
+
+std::string name_of(const Model &model, const FactorSpace &space)
+{
+  if (model.is_discrepancy)
+    return "none of the catalogue";
+  std::vector<std::string> names;
+  for (const std::size_t k : model.effects)
+    names.push_back(space.effect(k).name);
+  return boost::join(names, " + ");
+}
+
+Json describe_candidates(const Evidence &evidence, const Findings &findings)
+{
+  const FactorSpace &space = evidence.space();
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t k = 0; k < space.n_effects(); ++k)
+    order.emplace_back(findings.detected ? -probability_of(findings.models, k) : 0., k);
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto &a, const auto &b) { return a.first < b.first; });
+  Json rows = Json::array();
+  const Eigen::VectorXd &data = evidence.target().data();
+  for (const auto &[minus, k] : order) {
+    const Factor &effect = space.effect(k);
+    Json row = {{"effect", effect.name},
+                {"confidence", -minus},
+                {"mechanism", effect.mechanism},
+                {"unit", effect.unit},
+                {"source", effect.source}};
+    if (!evidence.places(k).empty()) {
+      double best = 0.;
+      row["log Bayes factor alone"] =
+          evidence.log_single(k, data, &best) - evidence.log_nothing(data);
+      row["amplitude alone"] = amplitude_of(effect, best);
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
+{
+  Json rows = Json::array();
+  if (findings.answer.empty() || findings.verdict == Verdict::off_catalogue)
+    return rows;
+  const Model &model = findings.answer.front();
+  for (const std::size_t k : model.effects) {
+    const Factor &effect = evidence.space().effect(k);
+    const AmplitudePosterior posterior =
+        amplitude_posterior(evidence, k, evidence.target().data(), model);
+    const double tail = findings.calibration.tail;
+    const double low = posterior.quantile(tail), high = posterior.quantile(1. - tail);
+    Json shape = Json::array();
+    constexpr double least = 1e-3;
+    for (const auto &[position, weight] : posterior.weights())
+      if (weight > least)
+        shape.push_back({amplitude_of(effect, position), weight});
+    const double range_low = evidence.space().lower(k), range_high = evidence.space().upper(k);
+    rows.push_back({{"effect", effect.name},
+                    {"unit", effect.unit},
+                    {"amplitude", amplitude_of(effect, posterior.quantile(0.5))},
+                    {"lower", amplitude_of(effect, low)},
+                    {"upper", amplitude_of(effect, high)},
+                    {"lower reached", low > 0.99 * range_low || range_low == 0.},
+                    {"upper reached", high < 0.99 * range_high || range_high == 0.},
+                    {"confidence", probability_of(findings.models, k)},
+                    {"posterior", shape}});
+  }
+  return rows;
+}
+
+Json describe_models(const std::vector<Model> &models, const FactorSpace &space)
+{
+  Json rows = Json::array();
+  for (const Model &model : models) {
+    Json amplitudes = Json::object();
+    for (const auto &[k, position] : model.best)
+      amplitudes[space.effect(k).name] = amplitude_of(space.effect(k), position);
+    rows.push_back({{"effects", name_of(model, space)},
+                    {"probability", model.probability},
+                    {"log evidence", model.log_evidence},
+                    {"amplitudes", amplitudes}});
+  }
+  return rows;
+}
+
+Json describe_power(const Evidence &evidence, const Findings &findings, const std::uint32_t seed)
+{
+  Json rows = Json::array();
+  const FactorSpace &space = evidence.space();
+  const Eigen::VectorXd &data = evidence.target().data();
+  // Half of the squared normal quantile of 95 %: where a likelihood has fallen to it.
+  constexpr double fall = 1.92;
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
+    const Factor &effect = space.effect(k);
+    bool is_seen = false;
+    Json row = {{"effect", effect.name}, {"simulated", !evidence.places(k).empty()}};
+    double highest = evidence.log_nothing(data);
+    for (const Evidence::Place &place : evidence.places(k))
+      highest = std::max(highest, evidence.log_likelihood(place.hypothesis, data));
+    for (const bool above : {false, true}) {
+      if ((above ? space.upper(k) : space.lower(k)) == 0. || evidence.places(k).empty())
+        continue;
+      const std::string side = above ? "above" : "below";
+      const auto seen = detectable(evidence, k, above, findings.threshold, seed);
+      is_seen = is_seen || seen;
+      row["detectable " + side] = seen ? Json(amplitude_of(effect, *seen)) : Json(nullptr);
+      double bound = 0.;
+      for (const Evidence::Place &place : evidence.places(k))
+        if ((place.amplitude > 0.) == above && std::abs(place.amplitude) > std::abs(bound) &&
+            evidence.log_likelihood(place.hypothesis, data) > highest - fall)
+          bound = place.amplitude;
+      row[above ? "upper bound" : "lower bound"] = amplitude_of(effect, bound);
+    }
+    row["detectable"] = is_seen;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+Json describe_fingerprints(const Evidence &evidence)
+{
+  const FactorSpace &space = evidence.space();
+  Json rows = Json::array(), strengths = Json::object(), names = Json::array();
+  std::vector<Eigen::VectorXd> changes;
+  const Eigen::VectorXd base = evidence.nothing().prediction.mean;
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
+    const auto &places = evidence.places(k);
+    if (places.empty())
+      continue;
+    const Factor &effect = space.effect(k);
+    for (const Evidence::Place &place : places)
+      strengths[effect.name].push_back({amplitude_of(effect, place.amplitude),
+                                        (place.hypothesis.prediction.mean - base).norm()});
+    const Evidence::Place &last = places.back();
+    Json change = Json::array(), error = Json::array();
+    for (std::size_t e = 0; e < evidence.target().n_experiments(); ++e) {
+      const Target::Part &part = evidence.target().experiments()[e];
+      const Eigen::VectorXd moved =
+          (values_of(part, last.hypothesis.prediction.mean) - part.emulator.base_mean())
+              .cwiseQuotient(part.emulator.base_deviation());
+      for (const double value : moved) {
+        change.push_back(value);
+        error.push_back(
+            std::sqrt(last.hypothesis.prediction.leverage(static_cast<Eigen::Index>(e))));
+      }
+    }
+    rows.push_back({{"effect", effect.name},
+                    {"amplitude", amplitude_of(effect, last.amplitude)},
+                    {"change", change},
+                    {"error", error}});
+    names.push_back(effect.name);
+    changes.push_back(last.hypothesis.prediction.mean - base);
+  }
+  Json cosines = Json::array();
+  for (const Eigen::VectorXd &a : changes) {
+    Json row = Json::array();
+    for (const Eigen::VectorXd &b : changes)
+      row.push_back(a.dot(b) / std::max(a.norm() * b.norm(), 1e-300));
+    cosines.push_back(row);
+  }
+  return {{"fingerprints", rows},
+          {"strengths", strengths},
+          {"similarity", {{"effects", names}, {"cosines", cosines}}}};
+}
+
+Fitted fit_to(const Evidence &evidence, const std::map<std::size_t, double> &effects,
+              const Eigen::VectorXd &nuisances)
+{
+  const Target::Prediction prediction = evidence.target().predict(effects);
+  return {prediction.mean + prediction.gradient * nuisances, prediction};
+}
+
+Json describe_envelopes(const Evidence &evidence, const Fitted &before,
+                        const std::optional<Fitted> &after, const double level)
+{
+  Json rows = Json::array();
+  const Target &target = evidence.target();
+  std::size_t n_points = 0;
+  for (const Target::Part &part : target.experiments())
+    n_points += part.measured.points.size();
+  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
+    const Target::Part &part = target.experiments()[e];
+    const auto k = static_cast<Eigen::Index>(e);
+    const Eigen::VectorXd unit = part.emulator.base_deviation();
+    const Eigen::VectorXd base = part.emulator.base_mean(),
+                          with_nuisances = values_of(part, before.mean);
+    const Eigen::VectorXd variance = point_variance(part, before.prediction, k);
+    const boost::math::students_t t(std::max(1., part.emulator.degrees_of_freedom()));
+    for (Eigen::Index c = 0; c < unit.size(); ++c) {
+      Json row = name_of_point(part.measured.points[static_cast<std::size_t>(c)]);
+      const double deviation =
+          (part.measured.value(c) - with_nuisances(c)) / unit(c) / std::sqrt(variance(c));
+      const double p =
+          std::min(1., static_cast<double>(n_points) * 2. *
+                           boost::math::cdf(boost::math::complement(t, std::abs(deviation))));
+      row["measured"] = part.measured.value(c);
+      row["measured deviation"] = part.measured.deviation(c);
+      row["repeats"] = part.measured.repeats(c);
+      row["base"] = base(c);
+      row["base deviation"] = unit(c);
+      row["deviation"] = deviation;
+      row["p"] = p;
+      row["flagged"] = p <= level;
+      if (after) {
+        row["after"] = values_of(part, after->mean)(c);
+        row["after deviation"] = unit(c) * std::sqrt(after->prediction.scatter(k));
+      }
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+double gap(const Evidence &evidence, const Fitted &model)
+{
+  double square = 0., number = 0.;
+  const Target &target = evidence.target();
+  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
+    const Target::Part &part = target.experiments()[e];
+    const Eigen::VectorXd deviation = (part.measured.value - values_of(part, model.mean))
+                                          .cwiseQuotient(part.emulator.base_deviation());
+    square += deviation.squaredNorm() -
+              point_variance(part, model.prediction, static_cast<Eigen::Index>(e)).sum();
+    number += static_cast<double>(deviation.size());
+  }
+  return std::copysign(std::sqrt(std::abs(square) / number), square);
+}
+
+Json describe_gap(const Evidence &evidence, const Fitted &before,
+                  const std::optional<Fitted> &after)
+{
+  std::size_t cells = 0;
+  for (const Target::Part &part : evidence.target().experiments())
+    cells += part.measured.points.size();
+  Json table = {{"cells", cells}, {"gap before", gap(evidence, before)}};
+  if (after) {
+    const double left = gap(evidence, *after);
+    table["gap after"] = left;
+    const double first = table["gap before"];
+    table["shrink"] = first > 0. ? Json(1. - left / first) : Json(nullptr);
+  }
+  return table;
+}
+
+Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted &second)
+{
+  constexpr std::size_t most = 12;
+  std::vector<std::pair<double, Json>> rows;
+  const Target &target = evidence.target();
+  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
+    const Target::Part &part = target.experiments()[e];
+    const Eigen::VectorXd unit = part.emulator.base_deviation();
+    const Eigen::VectorXd variance =
+        point_variance(part, first.prediction, static_cast<Eigen::Index>(e));
+    const Eigen::VectorXd a = values_of(part, first.mean), b = values_of(part, second.mean);
+    for (Eigen::Index c = 0; c < unit.size(); ++c) {
+      const auto squared = [&](const Eigen::VectorXd &mean) {
+        return std::pow((part.measured.value(c) - mean(c)) / unit(c), 2) / variance(c);
+      };
+      const double favours = 0.5 * (squared(b) - squared(a));
+      Json row = name_of_point(part.measured.points[static_cast<std::size_t>(c)]);
+      row["log likelihood ratio"] = favours;
+      row["measured"] = part.measured.value(c);
+      row["first"] = a(c);
+      row["second"] = b(c);
+      rows.emplace_back(-std::abs(favours), row);
+    }
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto &a, const auto &b) { return a.first < b.first; });
+  Json result = Json::array();
+  for (std::size_t k = 0; k < std::min(most, rows.size()); ++k)
+    result.push_back(rows[k].second);
+  return result;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,177 @@
+#include <eunoe/core/problems.h>
+#include <eunoe/discovery/inference/design.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// Replicates of a design point: two give the scatter there.
+constexpr unsigned int replicates = 2;
+/// Amplitudes of the first look are this far apart.
+constexpr double amplitude_ratio = 1. / 3.;
+/// An amplitude whose change is smaller than this (in standard deviations of a run, Mahalanobis)
+/// has no smaller one after it.
+constexpr double just_visible = 3.;
+constexpr int most_levels = 6;
+
+double strength(const Target &target, const std::size_t effect, const double amplitude)
+{
+  const Target::Prediction with = target.predict({{effect, amplitude}}),
+                           without = target.predict({});
+  const auto n = static_cast<double>(with.mean.size());
+  return std::sqrt(
+      std::max(0., (with.mean - without.mean).squaredNorm() - n * 0.5 * with.leverage.mean()));
+}
+
+} // namespace
+
+Design::Design(const StudyOptions &options, const FactorSpace &space, Samples &samples,
+               std::vector<std::string> experiments)
+    : options(options), space(space), samples(samples), experiments(std::move(experiments)),
+      random(options.seed, 23)
+{
+}
+
+Eigen::VectorXd Design::draw_nuisances()
+{
+  constexpr double most = 2.;
+  Eigen::VectorXd position = space.origin();
+  for (std::size_t q = 0; q < space.n_nuisances(); ++q) {
+    constexpr double digits = 1e3;
+    position(static_cast<Eigen::Index>(space.n_effects() + q)) =
+        std::round(std::clamp(random.normal(), -most, most) * digits) / digits;
+  }
+  return position;
+}
+
+DesignPoint Design::point(const std::size_t effect, const double amplitude)
+{
+  // Three digits are enough, and make rows of the table that can be read.
+  const double unit = std::pow(10., std::floor(std::log10(std::abs(amplitude))) - 2.);
+  Eigen::VectorXd position = draw_nuisances();
+  position(static_cast<Eigen::Index>(effect)) =
+      std::clamp(std::round(amplitude / unit) * unit, space.lower(effect), space.upper(effect));
+  return {position, replicates};
+}
+
+void Design::run_base()
+{
+  const std::uint64_t needed = options.null_runs * experiments.size();
+  std::vector<DesignPoint> points = {{space.origin(), options.null_runs}};
+  constexpr double step = 2.;
+  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
+    for (const double side : {-step, step}) {
+      points.push_back({space.origin(), options.nuisance_runs});
+      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
+    }
+  if (samples.n_known() == 0 && samples.remaining() < needed)
+    throw UserError("The budget has no room for the " + std::to_string(needed) +
+                    " runs of the base model. Increase 'budget of runs'.");
+  for (DesignPoint &point : points)
+    point.replicates = samples.n_missing(point, experiments);
+  samples.run(points, experiments);
+}
+
+void Design::run_effects(const std::function<Target()> &estimate)
+{
+  struct Ladder
+  {
+    std::size_t effect;
+    double amplitude;
+  };
+  std::vector<Ladder> open;
+  for (std::size_t k = 0; k < space.n_effects(); ++k)
+    for (const double limit : {space.lower(k), space.upper(k)})
+      if (limit != 0.)
+        open.push_back(
+            {k, std::clamp(1., -std::abs(limit), std::abs(limit)) * (limit < 0. ? -1. : 1.)});
+  for (int level = 0; level < most_levels && !open.empty(); ++level) {
+    std::vector<DesignPoint> points;
+    for (const Ladder &ladder : open)
+      if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments))
+        points.push_back(point(ladder.effect, ladder.amplitude));
+    samples.run(points, experiments);
+    const Target target = estimate();
+    std::vector<Ladder> still;
+    for (const Ladder &ladder : open)
+      if (strength(target, ladder.effect, ladder.amplitude) > just_visible)
+        still.push_back({ladder.effect, ladder.amplitude * amplitude_ratio});
+    open = still;
+  }
+}
+
+std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::vector<Model> &models,
+                                         const double p_nothing) const
+{
+  const Target &target = evidence.target();
+  const Eigen::VectorXd &data = target.data();
+  const auto unknown = [&](const Target::Prediction &prediction) {
+    return std::sqrt(prediction.leverage.maxCoeff() / target.variance(prediction).mean());
+  };
+  // Whether a model becomes the likeliest once it is known better.
+  std::vector<Wish> list;
+  std::vector<double> logs;
+  for (const std::size_t k : evidence.usable()) {
+    const std::vector<double> optimistic = evidence.optimistic(k, data);
+    for (std::size_t i = 0; i < optimistic.size(); ++i) {
+      const Evidence::Place &place = evidence.places(k)[i];
+      list.push_back({k, place.amplitude, unknown(place.hypothesis.prediction)});
+      logs.push_back(optimistic[i]);
+    }
+  }
+  for (const Model &model : models)
+    if (model.effects.size() == 2) {
+      const Evidence::Hypothesis best = evidence.prepare(target.predict(model.best));
+      const double gain = evidence.log_optimistic(best, data) - evidence.log_likelihood(best, data);
+      for (const auto &[k, amplitude] : model.best) {
+        list.push_back({k, amplitude, unknown(target.predict({{k, amplitude}}))});
+        logs.push_back(model.log_prior + model.log_evidence + gain);
+      }
+    }
+  // Tempered, as hopes are not certain.
+  constexpr double temperature = 2.;
+  for (double &value : logs)
+    value /= temperature;
+  const double total = logs.empty() ? 0. : log_sum(logs);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    list[i].weight *= std::exp(logs[i] - total);
+  std::stable_sort(list.begin(), list.end(), [](const Wish &a, const Wish &b) {
+    return std::pair(a.effect, a.amplitude) < std::pair(b.effect, b.amplitude);
+  });
+  constexpr double least = 0.01, share_of_base = 0.5;
+  list.push_back({space.n_effects(), 0.,
+                  share_of_base * std::sqrt(std::min(1., p_nothing + least)) *
+                      unknown(evidence.nothing().prediction)});
+  return list;
+}
+
+bool Design::refine(const Evidence &evidence, const std::vector<Model> &models,
+                    const double p_nothing)
+{
+  const std::vector<Wish> list = wishes(evidence, models, p_nothing);
+  double sum = 0.;
+  for (const Wish &wish : list)
+    sum += wish.weight;
+  constexpr std::uint64_t growth = 10, fewest = 8;
+  const std::uint64_t n_points = std::max(fewest, (samples.n_known() + samples.n_asked()) / growth /
+                                                      experiments.size() / replicates);
+  // Systematic sampling: as many points of each as it has of the weight.
+  std::vector<DesignPoint> points;
+  double below = 0.;
+  for (const Wish &wish : list) {
+    below += wish.weight / sum * static_cast<double>(n_points);
+    while (static_cast<double>(points.size()) + 0.5 <= below)
+      if (wish.effect < space.n_effects())
+        points.push_back(point(wish.effect, wish.amplitude));
+      else
+        points.push_back({points.size() % 2 == 0 ? space.origin() : draw_nuisances(), replicates});
+  }
+  const std::uint64_t before = samples.n_asked();
+  samples.run(points, experiments);
+  return samples.n_asked() > before;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,364 @@
+#include <eunoe/discovery/inference/evidence.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// Places on each side of an effect's null value, and how many of them are left out in pairs.
+constexpr int n_places = 60, pair_stride = 4;
+
+Eigen::MatrixXd lower_inverse_times(const Eigen::MatrixXd &matrix, const Eigen::MatrixXd &right)
+{
+  return Eigen::LLT<Eigen::MatrixXd>(matrix).matrixL().solve(right);
+}
+
+Target::Prediction sum(const Target::Prediction &a, const Target::Prediction &b,
+                       const Target::Prediction &base)
+{
+  return {a.mean + b.mean - base.mean, a.gradient + b.gradient - base.gradient,
+          (a.leverage + b.leverage - base.leverage).cwiseMax(1e-4),
+          a.scatter.cwiseProduct(b.scatter)};
+}
+
+/// Those of Sellentin and Heavens. (Their scale would be that of the plain estimate, whose
+/// distances are too long; the shrunk one has no such error.)
+double degrees_of_t(const Target &target)
+{
+  constexpr double least = 10.;
+  return std::max(least,
+                  target.degrees_of_freedom() + 1. - static_cast<double>(target.data().size()));
+}
+
+} // namespace
+
+double log_sum(const std::vector<double> &logarithms)
+{
+  const double largest = *std::max_element(logarithms.begin(), logarithms.end());
+  double sum = 0.;
+  for (const double value : logarithms)
+    sum += std::exp(value - largest);
+  return largest + std::log(sum);
+}
+
+Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
+    : aim(target), factors(space), prior(prior), dof(degrees_of_t(target)),
+      base(prepare(target.predict({}))), grid(space.n_effects())
+{
+  for (std::size_t k = 0; k < space.n_effects(); ++k)
+    make_grid(k);
+  make_discrepancy();
+}
+
+Evidence::Hypothesis Evidence::prepare(const Target::Prediction &prediction) const
+{
+  Hypothesis result;
+  result.prediction = prediction;
+  result.inverse = aim.variance(prediction).cwiseInverse();
+  const Eigen::MatrixXd scaled = prediction.gradient.transpose() * result.inverse.asDiagonal();
+  const Eigen::Index n = prediction.gradient.cols();
+  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + scaled * prediction.gradient;
+  result.constant = 0.5 * result.inverse.array().log().sum();
+  if (n > 0) {
+    result.half = lower_inverse_times(inner, scaled);
+    result.constant -= Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(inner).matrixL())
+                           .diagonal()
+                           .array()
+                           .log()
+                           .sum();
+  }
+  return result;
+}
+
+double Evidence::distance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+{
+  const Eigen::VectorXd d = data - hypothesis.prediction.mean;
+  return (d.array().square() * hypothesis.inverse.array()).sum() -
+         (hypothesis.half.rows() > 0 ? (hypothesis.half * d).squaredNorm() : 0.);
+}
+
+double Evidence::t_log_likelihood(const double constant, const double distance) const
+{
+  return constant -
+         0.5 * (dof + static_cast<double>(aim.data().size())) * std::log1p(distance / dof);
+}
+
+double Evidence::log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+{
+  return t_log_likelihood(hypothesis.constant, distance(hypothesis, data));
+}
+
+double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+{
+  Target::Prediction known = hypothesis.prediction;
+  known.leverage = known.leverage.cwiseMin(base.prediction.leverage);
+  const Eigen::VectorXd share = 1. - aim.variance(known).array() * hypothesis.inverse.array();
+  known.mean += share.cwiseProduct(data - known.mean);
+  return log_likelihood(prepare(known), data);
+}
+
+std::vector<double> Evidence::optimistic(const std::size_t effect,
+                                         const Eigen::VectorXd &data) const
+{
+  std::vector<double> values;
+  for (const Place &place : grid[effect])
+    values.push_back(place.log_prior +
+                     std::log(prior.one_effect / static_cast<double>(usable().size())) +
+                     log_optimistic(place.hypothesis, data));
+  return values;
+}
+
+/// Size of an effect's change at each of its places, in standard deviations of a run, without what
+/// the error of the emulator adds; it does not fall as the amplitude grows.
+std::vector<double> Evidence::strengths(const std::vector<Place> &places) const
+{
+  std::vector<double> result;
+  double largest = prior.just_visible;
+  for (const Place &place : places) {
+    const Target::Prediction &with = place.hypothesis.prediction;
+    double noise = 0.;
+    for (std::size_t e = 0; e < aim.n_experiments(); ++e)
+      noise += with.leverage(static_cast<Eigen::Index>(e)) *
+               static_cast<double>(aim.experiments()[e].emulator.size());
+    const double square = (with.mean - base.prediction.mean).squaredNorm() - noise;
+    result.push_back(largest = std::max(largest, std::sqrt(std::max(0., square))));
+  }
+  return result;
+}
+
+/// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of
+/// strength are equally likely, and a little of the probability is shared by equal ratios of
+/// amplitude: the prior does not depend on how an effect is parametrised, and favours none for its
+/// narrow range.
+void Evidence::make_grid(const std::size_t k)
+{
+  constexpr double share_by_amplitude = 0.1, least_ratio = 1.25;
+  for (const double limit : {factors.lower(k), factors.upper(k)}) {
+    if (limit == 0.)
+      continue;
+    double first = prior.least_range * (limit < 0. ? -1. : 1.);
+    while (std::abs(first) * least_ratio < std::abs(limit) &&
+           (aim.predict({{k, first}}).mean - base.prediction.mean).norm() < prior.just_visible)
+      first *= least_ratio;
+    std::vector<Place> side;
+    for (int i = 0; i < n_places; ++i) {
+      const double u = first * std::pow(limit / first, i / (n_places - 1.));
+      side.push_back({u, 0., 0., prepare(aim.predict({{k, u}}))});
+    }
+    const std::vector<double> strength = strengths(side);
+    const double step = std::log(limit / first) / (n_places - 1.);
+    const double whole = std::log(strength.back() / prior.just_visible) + share_by_amplitude;
+    for (std::size_t i = 0; i < side.size(); ++i) {
+      const double below = i == 0 ? strength[i] : strength[i - 1],
+                   above = i + 1 == side.size() ? strength[i] : strength[i + 1];
+      const auto mixed = [&](const double by_strength, const double by_amplitude) {
+        return std::log((1. - share_by_amplitude) * by_strength +
+                        share_by_amplitude * by_amplitude);
+      };
+      side[i].log_prior = mixed(0.5 * std::log(above / below), whole / n_places);
+      side[i].log_reference = mixed(0.5 * (above - below), step * strength[i]);
+    }
+    grid[k].insert(grid[k].end(), side.begin(), side.end());
+  }
+  std::vector<double> weights;
+  for (const Place &place : grid[k])
+    weights.push_back(place.log_prior);
+  const double total = grid[k].empty() ? 0. : log_sum(weights);
+  for (Place &place : grid[k])
+    place.log_prior -= total;
+}
+
+/// "None of these" is a change of any size, half of it along directions like those of the
+/// catalogue's effects, half along any.
+void Evidence::make_discrepancy()
+{
+  const Eigen::Index n = aim.data().size();
+  Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, n);
+  for (const auto &places : grid)
+    for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
+      const Eigen::VectorXd change = places[i].hypothesis.prediction.mean - base.prediction.mean;
+      const double noise = places[i].hypothesis.prediction.leverage.mean() * static_cast<double>(n);
+      const double square = change.squaredNorm();
+      if (square > noise)
+        along += change * change.transpose() / square * (1. - noise / square);
+    }
+  const double trace = along.trace();
+  Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
+  if (trace > 0.)
+    shape = 0.5 * shape + 0.5 * along / trace;
+  Eigen::MatrixXd noise = base.prediction.gradient * base.prediction.gradient.transpose();
+  noise.diagonal() += base.inverse.cwiseInverse();
+  for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
+       strength *= 2.)
+    discrepancies.emplace_back(noise + strength * strength * shape);
+}
+
+double Evidence::log_single(const std::size_t effect, const Eigen::VectorXd &data,
+                            double *best) const
+{
+  std::vector<double> values;
+  for (const Place &place : grid[effect])
+    values.push_back(place.log_prior + log_likelihood(place.hypothesis, data));
+  if (best != nullptr)
+    *best = grid[effect][static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
+                                                  values.begin())]
+                .amplitude;
+  return log_sum(values);
+}
+
+double Evidence::log_discrepancy(const Eigen::VectorXd &data) const
+{
+  const Eigen::VectorXd d = data - base.prediction.mean;
+  std::vector<double> values;
+  for (const auto &llt : discrepancies) {
+    const double half_determinant = Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
+    values.push_back(t_log_likelihood(-half_determinant, llt.matrixL().solve(d).squaredNorm()) -
+                     std::log(static_cast<double>(discrepancies.size())));
+  }
+  return log_sum(values);
+}
+
+std::vector<std::size_t> Evidence::usable() const
+{
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < factors.n_effects(); ++k)
+    if (!grid[k].empty())
+      result.push_back(k);
+  return result;
+}
+
+std::vector<double> Evidence::log_posterior_of_singles(const Eigen::VectorXd &data) const
+{
+  std::vector<double> values;
+  const std::vector<std::size_t> effects = usable();
+  for (const std::size_t k : effects)
+    values.push_back(std::log(prior.one_effect / static_cast<double>(effects.size())) +
+                     log_single(k, data));
+  values.push_back(std::log(prior.none_of_these) + log_discrepancy(data));
+  return values;
+}
+
+double Evidence::log_bayes_factor(const Eigen::VectorXd &data) const
+{
+  return log_sum(log_posterior_of_singles(data)) - log_nothing(data);
+}
+
+Model Evidence::pair(const std::size_t a, const std::size_t b, const Eigen::VectorXd &data) const
+{
+  Model result;
+  result.effects = {a, b};
+  std::vector<double> values;
+  double highest = -1e300, weight = 0.;
+  for (std::size_t i = pair_stride / 2; i < grid[a].size(); i += pair_stride)
+    for (std::size_t j = pair_stride / 2; j < grid[b].size(); j += pair_stride) {
+      const Place &p = grid[a][i], &q = grid[b][j];
+      const Hypothesis both =
+          prepare(sum(p.hypothesis.prediction, q.hypothesis.prediction, base.prediction));
+      values.push_back(p.log_prior + q.log_prior + log_likelihood(both, data));
+      weight += std::exp(p.log_prior + q.log_prior);
+      if (values.back() > highest) {
+        highest = values.back();
+        result.best = {{a, p.amplitude}, {b, q.amplitude}};
+      }
+    }
+  result.log_evidence = log_sum(values) - std::log(weight);
+  return result;
+}
+
+double Evidence::log_at(const std::map<std::size_t, double> &effects,
+                        const Eigen::VectorXd &data) const
+{
+  return log_likelihood(prepare(aim.predict(effects)), data);
+}
+
+/// The grid of pairs is coarse. Newton's method finds the likeliest logarithms of both amplitudes,
+/// and the evidence is that of the normal distribution there (Laplace).
+void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
+{
+  constexpr double step = 0.05, longest = 0.5;
+  constexpr int iterations = 4;
+  const std::size_t a = model.effects[0], b = model.effects[1];
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  const auto amplitude = [&](const std::size_t k, const double shift) {
+    return std::clamp(model.best.at(k) * std::exp(shift), factors.lower(k), factors.upper(k));
+  };
+  const auto f = [&](const double x, const double y) {
+    return log_at({{a, amplitude(a, at(0) + x)}, {b, amplitude(b, at(1) + y)}}, data);
+  };
+  Eigen::Matrix2d curvature;
+  double value = 0.;
+  for (int i = 0; i <= iterations; ++i) {
+    value = f(0., 0.);
+    const double left = f(-step, 0.), right = f(step, 0.), down = f(0., -step), up = f(0., step);
+    const double cross = (f(step, step) + f(-step, -step) + 2. * value - left - right - down - up) /
+                         (2. * step * step);
+    curvature << (2. * value - left - right) / (step * step), -cross, -cross,
+        (2. * value - down - up) / (step * step);
+    if (curvature(0, 0) <= 0. || curvature.determinant() <= 0.)
+      return;
+    const Eigen::Vector2d slope((right - left) / (2. * step), (up - down) / (2. * step));
+    if (i < iterations)
+      at += curvature.inverse() * slope.cwiseMin(1e3).cwiseMax(-1e3);
+    at = at.cwiseMin(longest).cwiseMax(-longest);
+  }
+  const double evidence = value + log_density(a, model.best.at(a)) +
+                          log_density(b, model.best.at(b)) + std::log(2. * M_PI) -
+                          0.5 * std::log(curvature.determinant());
+  model.best = {{a, amplitude(a, at(0))}, {b, amplitude(b, at(1))}};
+  model.log_evidence = evidence;
+}
+
+/// Log of the prior density of an amplitude's logarithm.
+double Evidence::log_density(const std::size_t effect, const double amplitude) const
+{
+  const std::vector<Place> &places = grid[effect];
+  const std::size_t side = (amplitude > 0.) == (places.front().amplitude > 0.) ? 0 : n_places;
+  const double ratio = std::log(places[side + 1].amplitude / places[side].amplitude);
+  const double place = std::log(amplitude / places[side].amplitude) / ratio;
+  return places[side + static_cast<std::size_t>(std::clamp(std::lround(place), 0l, n_places - 1l))]
+             .log_prior -
+         std::log(ratio);
+}
+
+std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
+{
+  std::vector<Model> all(1);
+  all[0].is_discrepancy = true;
+  all[0].log_prior = std::log(prior.none_of_these);
+  all[0].log_evidence = log_discrepancy(data);
+  const std::vector<std::size_t> effects = usable();
+  const auto n = static_cast<double>(effects.size());
+  for (const std::size_t k : effects) {
+    Model one;
+    one.effects = {k};
+    one.log_prior = std::log(prior.one_effect / n);
+    one.log_evidence = log_single(k, data, &one.best[k]);
+    all.push_back(one);
+  }
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      Model two = pair(effects[j], effects[i], data);
+      two.log_prior = std::log(prior.two_effects / (0.5 * n * (n - 1.)));
+      all.push_back(two);
+    }
+  std::vector<double> logs;
+  double highest = all.front().log_prior + all.front().log_evidence;
+  for (const Model &model : all)
+    highest = std::max(highest, model.log_prior + model.log_evidence);
+  for (Model &model : all) {
+    constexpr double within = 15.;
+    if (model.effects.size() == 2 && model.log_prior + model.log_evidence > highest - within)
+      polish(model, data);
+    logs.push_back(model.log_prior + model.log_evidence);
+  }
+  const double total = log_sum(logs);
+  for (std::size_t m = 0; m < all.size(); ++m)
+    all[m].probability = std::exp(logs[m] - total);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
+  return all;
+}
+
+} // namespace eunoe::discovery

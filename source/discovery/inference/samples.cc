@@ -1,0 +1,170 @@
+#include <eunoe/discovery/inference/samples.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace eunoe::discovery {
+
+namespace {
+
+constexpr double all_digits = 1e6;
+
+/// Amplitudes are told apart, and kept, with six digits.
+double rounded(const double value, const double unit)
+{
+  return std::round(value / unit * all_digits) / all_digits * unit;
+}
+
+std::vector<std::string> effects_of(const FactorSpace &space, const Eigen::VectorXd &position)
+{
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < space.n_effects(); ++k)
+    if (position(static_cast<Eigen::Index>(k)) != 0.)
+      names.push_back(space.effect(k).name);
+  return names;
+}
+
+} // namespace
+
+FactorSpace::FactorSpace(const std::vector<Factor> &factors)
+{
+  for (const Factor &factor : factors)
+    (factor.kind == Factor::Kind::effect ? effects : nuisances).push_back(factor);
+}
+
+double FactorSpace::lower(const std::size_t k) const
+{
+  const Factor &f = effects[k];
+  return f.sign == Factor::Sign::above ? 0. : std::min(0., (f.lower - f.null_value) / f.scale);
+}
+
+double FactorSpace::upper(const std::size_t k) const
+{
+  const Factor &f = effects[k];
+  return f.sign == Factor::Sign::below ? 0. : std::max(0., (f.upper - f.null_value) / f.scale);
+}
+
+Amplitudes FactorSpace::amplitudes(const Eigen::VectorXd &position) const
+{
+  Amplitudes result;
+  for (Eigen::Index k = 0; k < position.size(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    const bool is_effect = i < n_effects();
+    const Factor &f = is_effect ? effects[i] : nuisances[i - n_effects()];
+    const double unit = is_effect ? f.scale : f.prior_deviation;
+    if (position(k) != 0.)
+      result[f.name] = f.null_value + rounded(position(k) * unit, unit);
+  }
+  return result;
+}
+
+std::optional<Eigen::VectorXd> FactorSpace::position(const Amplitudes &amplitudes) const
+{
+  Eigen::VectorXd result = origin();
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < n_effects() + n_nuisances(); ++k) {
+    const bool is_effect = k < n_effects();
+    const Factor &f = is_effect ? effects[k] : nuisances[k - n_effects()];
+    const auto a = amplitudes.find(f.name);
+    if (a == amplitudes.end())
+      continue;
+    ++found;
+    const double unit = is_effect ? f.scale : f.prior_deviation;
+    result(static_cast<Eigen::Index>(k)) =
+        std::round((a->second - f.null_value) / unit * all_digits) / all_digits;
+  }
+  return found == amplitudes.size() ? std::make_optional(result) : std::nullopt;
+}
+
+Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulator &simulator,
+                 const std::vector<std::string> &experiments)
+    : options(options), space(space), source(simulator), next_seed(100000 * options.seed + 1)
+{
+  for (const std::string &experiment : experiments) {
+    samples[experiment];
+    for (const auto &[request, result] : simulator.known(experiment)) {
+      if (!space.position(request.amplitudes))
+        continue;
+      add(request, result);
+      ++known;
+      next_seed = std::max(next_seed, request.seed + 1);
+    }
+  }
+}
+
+void Samples::add(const RunRequest &request, const RunResult &result)
+{
+  ++counts[{request.experiment, request.amplitudes}];
+  if (!result || result->size() != source.data_points(request.experiment).size()) {
+    ++failed;
+    return;
+  }
+  samples.at(request.experiment)
+      .push_back({*space.position(request.amplitudes),
+                  Eigen::Map<const Eigen::VectorXd>(result->data(),
+                                                    static_cast<Eigen::Index>(result->size())),
+                  request.seed});
+}
+
+unsigned int Samples::n_missing(const DesignPoint &point,
+                                const std::vector<std::string> &experiments) const
+{
+  unsigned int there = point.replicates;
+  for (const std::string &experiment : experiments)
+    if (source.concerns(experiment, effects_of(space, point.position))) {
+      const auto found = counts.find({experiment, space.amplitudes(point.position)});
+      there = std::min(there, found == counts.end() ? 0 : found->second);
+    }
+  return point.replicates - there;
+}
+
+bool Samples::has_near(const std::size_t effect, const double amplitude, const unsigned int runs,
+                       const std::vector<std::string> &experiments) const
+{
+  constexpr double near = 0.2;
+  const std::string &name = space.effect(effect).name;
+  return std::all_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
+    const auto n = std::count_if(
+        samples.at(experiment).begin(), samples.at(experiment).end(), [&](const Sample &sample) {
+          return effects_of(space, sample.position) == std::vector<std::string>{name} &&
+                 std::abs(sample.position(static_cast<Eigen::Index>(effect)) / amplitude - 1.) <
+                     near;
+        });
+    return !source.concerns(experiment, {name}) || n >= static_cast<std::ptrdiff_t>(runs);
+  });
+}
+
+std::uint64_t Samples::remaining() const
+{
+  if (options.budget == 0)
+    return std::numeric_limits<std::uint64_t>::max();
+  return asked + reserved < options.budget ? options.budget - asked - reserved : 0;
+}
+
+bool Samples::run(const std::vector<DesignPoint> &points,
+                  const std::vector<std::string> &experiments)
+{
+  std::vector<RunRequest> requests;
+  bool complete = true;
+  for (const DesignPoint &point : points)
+    for (unsigned int r = 0; r < point.replicates; ++r) {
+      const Amplitudes amplitudes = space.amplitudes(point.position);
+      const std::uint32_t seed = next_seed++;
+      for (const std::string &experiment : experiments) {
+        const bool concerned = source.concerns(experiment, effects_of(space, point.position));
+        if (!concerned)
+          continue;
+        if (requests.size() >= remaining())
+          complete = false;
+        else
+          requests.push_back({experiment, amplitudes, seed});
+      }
+    }
+  asked += requests.size();
+  const std::vector<RunResult> results = source.run(requests);
+  for (std::size_t k = 0; k < requests.size(); ++k)
+    add(requests[k], results[k]);
+  return complete;
+}
+
+} // namespace eunoe::discovery

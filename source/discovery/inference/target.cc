@@ -1,0 +1,201 @@
+#include <eunoe/core/problems.h>
+#include <eunoe/discovery/inference/target.h>
+#include <eunoe/discovery/statistics/covariance.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// Least standard deviation of each data point between runs that is believed: a share of its
+/// observable's typical one, so that a difference in the last digit is not significant. It is 0
+/// where neither runs nor measurements vary.
+Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Samples &samples)
+{
+  constexpr double least_share = 0.2;
+  std::vector<Eigen::VectorXd> base;
+  for (const Sample &sample : samples.of(measured.name))
+    if (sample.position.isZero(0.))
+      base.push_back(sample.values(measured.columns));
+  constexpr std::size_t fewest = 4;
+  if (base.size() < fewest)
+    throw UserError("Only " + std::to_string(base.size()) + " runs of the base model of '" +
+                    measured.name +
+                    "' reached their end, which is too few to compare anything with. See the "
+                    "failures in its table of runs, or ask for more runs.");
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(base.size()), base.front().size());
+  for (std::size_t r = 0; r < base.size(); ++r)
+    rows.row(static_cast<Eigen::Index>(r)) = base[r].transpose();
+  const Eigen::VectorXd deviation =
+      (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
+          .cwiseSqrt();
+  Eigen::VectorXd result(deviation.size());
+  for (Eigen::Index c = 0; c < deviation.size(); ++c) {
+    std::vector<double> same;
+    for (Eigen::Index d = 0; d < deviation.size(); ++d)
+      if (measured.points[static_cast<std::size_t>(c)].observable ==
+          measured.points[static_cast<std::size_t>(d)].observable)
+        same.push_back(deviation(d));
+    std::sort(same.begin(), same.end());
+    const double median = same[same.size() / 2], size = std::abs(rows.col(c).mean());
+    double typical = median > 0. ? median : same.back();
+    if (typical <= 1e-12 * size)
+      typical = measured.deviation(c) / least_share;
+    result(c) = std::max(least_share * typical, deviation(c) > 0. ? 1e-300 : 0.);
+  }
+  return result;
+}
+
+MeasuredExperiment chosen(const MeasuredExperiment &all, const std::vector<Eigen::Index> &kept)
+{
+  MeasuredExperiment result;
+  result.name = all.name;
+  for (const Eigen::Index k : kept) {
+    result.points.push_back(all.points[static_cast<std::size_t>(k)]);
+    result.columns.push_back(all.columns[static_cast<std::size_t>(k)]);
+  }
+  result.value = all.value(kept);
+  result.deviation = all.deviation(kept);
+  result.repeats = all.repeats(kept);
+  result.least_deviation = all.least_deviation(kept);
+  return result;
+}
+
+} // namespace
+
+std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoint> &points,
+                                                   const Samples &samples,
+                                                   const Simulator &simulator,
+                                                   std::vector<std::string> &notes)
+{
+  std::map<std::string, std::vector<const MeasuredPoint *>> sorted;
+  for (const MeasuredPoint &point : points)
+    sorted[point.point.experiment].push_back(&point);
+  std::vector<MeasuredExperiment> result;
+  for (const auto &[name, rows] : sorted) {
+    MeasuredExperiment one;
+    one.name = name;
+    const auto n = static_cast<Eigen::Index>(rows.size());
+    one.value.resize(n);
+    one.deviation.resize(n);
+    one.repeats.resize(n);
+    const auto &known = simulator.data_points(name);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const MeasuredPoint &row = *rows[static_cast<std::size_t>(k)];
+      const auto place = std::find(known.begin(), known.end(), row.point);
+      if (place == known.end())
+        throw UserError("Experiment '" + name + "' does not give observable '" +
+                        row.point.observable + "', index " + std::to_string(row.point.index) + ".");
+      one.points.push_back(row.point);
+      one.columns.push_back(place - known.begin());
+      one.value(k) = row.value;
+      one.deviation(k) = row.standard_deviation;
+      one.repeats(k) = row.repeats;
+    }
+    one.least_deviation = least_deviations(one, samples);
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < n; ++k)
+      if (one.least_deviation(k) > 0.)
+        kept.push_back(k);
+      else
+        notes.push_back("Left out, as it varies neither in runs nor in the measurement: " + name +
+                        ", " + one.points[static_cast<std::size_t>(k)].observable + ", index " +
+                        std::to_string(one.points[static_cast<std::size_t>(k)].index) + ".");
+    if (!kept.empty())
+      result.push_back(chosen(one, kept));
+  }
+  return result;
+}
+
+Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
+               const FactorSpace &space, const double model_tolerance)
+{
+  Eigen::Index n = 0;
+  for (MeasuredExperiment &one : measured) {
+    ExperimentEmulator emulator(space, samples.of(one.name), one.columns, one.points,
+                                one.least_deviation);
+    const Eigen::VectorXd unit = emulator.base_deviation();
+    const Eigen::Index size = emulator.size();
+    const Repeats repeats = {one.deviation.cwiseQuotient(unit), one.repeats};
+    std::vector<ExcessVariance> excess =
+        excess_variances(emulator.modes(), emulator.mode_covariance(), repeats);
+    Eigen::VectorXd ratio = Eigen::VectorXd::Ones(unit.size());
+    for (std::size_t g = 0; g < excess.size(); ++g)
+      for (const Eigen::Index c : emulator.modes().groups()[g].points)
+        ratio(c) += excess[g].mean();
+    const Eigen::VectorXd error =
+        (ratio.array() - 1.) / one.repeats.array() +
+        (model_tolerance * emulator.base_mean().cwiseQuotient(unit)).array().square();
+    const Eigen::MatrixXd instrument =
+        emulator.whiten_scaled(Eigen::MatrixXd(error.cwiseSqrt().matrix().asDiagonal()));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(instrument * instrument.transpose());
+    Part part{std::move(one),
+              std::move(emulator),
+              eigen.eigenvectors().transpose(),
+              eigen.eigenvalues().cwiseMax(0.),
+              ratio,
+              std::move(excess),
+              1.,
+              1.,
+              n};
+    part.repeats = 1. / part.measured.repeats.cwiseInverse().mean();
+    part.ratio = ratio.mean();
+    n += size;
+    parts.push_back(std::move(part));
+  }
+  all.resize(n);
+  for (const Part &part : parts)
+    all.segment(part.first, part.emulator.size()) =
+        part.rotation * part.emulator.whiten(part.measured.value);
+}
+
+double Target::Part::share_of_instrument(const double scatter) const
+{
+  return ratio > 1. ? std::clamp((ratio - scatter) / (ratio - 1.), 0., 1.) : 1.;
+}
+
+double Target::degrees_of_freedom() const
+{
+  double least = parts.front().emulator.degrees_of_freedom();
+  for (const Part &part : parts)
+    least = std::min(least, part.emulator.degrees_of_freedom());
+  return least;
+}
+
+Target::Prediction Target::predict(const std::map<std::size_t, double> &effects) const
+{
+  Prediction result;
+  const auto n_parts = static_cast<Eigen::Index>(parts.size());
+  result.mean.resize(all.size());
+  result.leverage.resize(n_parts);
+  result.scatter.resize(n_parts);
+  for (Eigen::Index e = 0; e < n_parts; ++e) {
+    const Part &part = parts[static_cast<std::size_t>(e)];
+    const GaussianProcess::Prediction one = part.emulator.predict(effects);
+    if (e == 0)
+      result.gradient.resize(all.size(), one.gradient.cols());
+    result.mean.segment(part.first, part.emulator.size()) = part.rotation * one.mean;
+    result.gradient.middleRows(part.first, part.emulator.size()) = part.rotation * one.gradient;
+    result.leverage(e) = one.leverage;
+    result.scatter(e) = part.emulator.scatter(effects);
+  }
+  return result;
+}
+
+Eigen::VectorXd Target::variance(const Prediction &prediction) const
+{
+  Eigen::VectorXd result(all.size());
+  for (std::size_t e = 0; e < parts.size(); ++e) {
+    const Part &part = parts[e];
+    const auto k = static_cast<Eigen::Index>(e);
+    const double scatter = prediction.scatter(k);
+    const double left = part.share_of_instrument(scatter);
+    result.segment(part.first, part.emulator.size()) =
+        (scatter / part.repeats + prediction.leverage(k) + left * part.instrument.array()).matrix();
+  }
+  return result;
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,88 @@
+#include <eunoe/discovery/inference/twins.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+/// Noise of an instrument that is not known, either, in whitened modes.
+Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter)
+{
+  Eigen::VectorXd noise(part.measured.repeats.size());
+  const auto &groups = part.emulator.modes().groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const double variance = part.excess[g].draw(random) * part.share_of_instrument(scatter);
+    for (const Eigen::Index c : groups[g].points)
+      noise(c) = std::sqrt(variance / part.measured.repeats(c)) * random.normal();
+  }
+  return part.emulator.whiten_scaled(noise);
+}
+
+Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
+{
+  Eigen::VectorXd result = truth.mean;
+  for (Eigen::Index q = 0; q < truth.gradient.cols(); ++q)
+    result += random.normal() * truth.gradient.col(q);
+  const auto &parts = evidence.target().experiments();
+  for (std::size_t e = 0; e < parts.size(); ++e) {
+    const Target::Part &part = parts[e];
+    const Eigen::MatrixXd &rows = part.emulator.deviations();
+    const Eigen::Index n = rows.cols();
+    const auto k = static_cast<Eigen::Index>(e);
+    const auto repeats = std::max(1, static_cast<int>(std::lround(part.repeats)));
+    const auto row = [&] {
+      return rows.row(
+          static_cast<Eigen::Index>(random.index(static_cast<std::size_t>(rows.rows()))));
+    };
+    Eigen::VectorXd scatter = Eigen::VectorXd::Zero(n);
+    for (int r = 0; r < repeats; ++r)
+      scatter += row().transpose();
+    scatter *= std::sqrt(truth.scatter(k) / part.repeats / repeats);
+    const Eigen::VectorXd error = std::sqrt(truth.leverage(k)) * row().transpose();
+    result.segment(part.first, n) += part.rotation * (scatter + error);
+    result.segment(part.first, n) += part.rotation * instrument(part, truth.scatter(k));
+  }
+  return result;
+}
+
+Tail::Tail(std::vector<double> draws) : sorted(std::move(draws))
+{
+  std::sort(sorted.rbegin(), sorted.rend());
+  constexpr std::size_t one_in = 10;
+  const std::size_t n = sorted.size() / one_in;
+  if (n < 2)
+    return;
+  threshold = sorted[n];
+  scale = 0.;
+  for (std::size_t k = 0; k < n; ++k)
+    scale += (sorted[k] - threshold) / static_cast<double>(n);
+  share = static_cast<double>(n) / static_cast<double>(sorted.size());
+}
+
+double Tail::p(const double value) const
+{
+  if (share > 0. && value > threshold)
+    return share * std::exp(-(value - threshold) / std::max(scale, 1e-300));
+  const auto above = std::upper_bound(sorted.begin(), sorted.end(), value, std::greater<>());
+  return (static_cast<double>(above - sorted.begin()) + 1.) /
+         (static_cast<double>(sorted.size()) + 1.);
+}
+
+double Tail::quantile(const double p) const
+{
+  if (share > 0. && p < share)
+    return threshold + scale * std::log(share / p);
+  return sorted[std::min(sorted.size() - 1,
+                         static_cast<std::size_t>(p * static_cast<double>(sorted.size())))];
+}
+
+Tail null_distribution(const Evidence &evidence, const unsigned int draws, const std::uint32_t seed)
+{
+  Twins twins(evidence, seed);
+  std::vector<double> values;
+  for (unsigned int k = 0; k < draws; ++k)
+    values.push_back(evidence.log_bayes_factor(twins.draw(evidence.nothing().prediction)));
+  return Tail(std::move(values));
+}
+
+} // namespace eunoe::discovery

@@ -1,0 +1,124 @@
+#ifndef eunoe_tests_discovery_ideal_observer_h
+#define eunoe_tests_discovery_ideal_observer_h
+
+// The ceiling of naming: an observer who knows the fingerprint and the scatter of every effect at
+// every amplitude exactly, and the noise of the instrument, but neither amplitude nor nuisances. No
+// study can name more effects rightly.
+
+#include "recorded.h"
+
+namespace test {
+
+class IdealObserver
+{
+public:
+  /// @param instrument noise of a repeat at each data point, as a share of a run's scatter
+  IdealObserver(const RecordedSimulator &simulator, const std::vector<MeasuredPoint> &data,
+                unsigned int repeats, double instrument)
+      : simulator(simulator), repeats(repeats), instrument(instrument)
+  {
+    for (const MeasuredPoint &point : data) {
+      Part &part = parts[point.point.experiment];
+      part.values.conservativeResize(part.values.size() + 1);
+      part.values(part.values.size() - 1) = point.value;
+    }
+  }
+
+  /// The single effect whose evidence is the largest.
+  std::string first_name() const
+  {
+    std::string first;
+    double highest = -1e300;
+    for (const Factor &f : simulator.factors())
+      if (f.kind == Factor::Kind::effect)
+        if (const double evidence = log_evidence(f); evidence > highest) {
+          highest = evidence;
+          first = f.name;
+        }
+    return first;
+  }
+
+private:
+  struct Part
+  {
+    Eigen::VectorXd values;
+  };
+
+  std::vector<std::string> experiments() const
+  {
+    std::vector<std::string> names;
+    for (const auto &[name, part] : parts)
+      names.push_back(name);
+    return names;
+  }
+
+  /// Log of the mean likelihood over strengths in a geometric sequence, from the smallest that can
+  /// be seen to that of the end of the range.
+  double log_evidence(const Factor &f) const
+  {
+    constexpr int places = 30;
+    constexpr double just_visible = 1., strongest = 50.;
+    std::vector<double> logs;
+    for (const double limit : {f.lower, f.upper}) {
+      const double side = limit < f.null_value ? -1. : 1.;
+      if (limit == f.null_value ||
+          f.sign == (side > 0. ? Factor::Sign::below : Factor::Sign::above))
+        continue;
+      const double last = std::min(strongest, simulator.strength({{f.name, limit}}, experiments()));
+      for (int k = 0; k < places && just_visible < last; ++k) {
+        const double strength = just_visible * std::pow(last / just_visible, k / (places - 1.));
+        logs.push_back(
+            log_likelihood(f.name, simulator.amplitude_of(f.name, strength, experiments(), side)));
+      }
+    }
+    if (logs.empty())
+      return -1e300;
+    const double highest = *std::max_element(logs.begin(), logs.end());
+    double sum = 0.;
+    for (const double log : logs)
+      sum += std::exp(log - highest) / static_cast<double>(logs.size());
+    return highest + std::log(sum);
+  }
+
+  double log_likelihood(const std::string &name, const double amplitude) const
+  {
+    // Nuisances move all experiments together.
+    Eigen::Index size = 0;
+    for (const auto &[experiment, part] : parts)
+      size += part.values.size();
+    Eigen::VectorXd deviation(size);
+    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+    Eigen::Index first = 0;
+    std::vector<Eigen::VectorXd> columns(simulator.factors().size(), Eigen::VectorXd::Zero(size));
+    for (const auto &[experiment, part] : parts) {
+      const Eigen::Index n = part.values.size();
+      const Amplitudes truth = {{name, amplitude}};
+      deviation.segment(first, n) = part.values - simulator.mean(experiment, truth);
+      const Eigen::MatrixXd one_run =
+          simulator.covariance(experiment) * std::pow(simulator.growth(experiment, truth), 2);
+      covariance.block(first, first, n, n) = one_run / repeats;
+      covariance.diagonal().segment(first, n) +=
+          instrument * instrument / repeats * simulator.covariance(experiment).diagonal();
+      for (std::size_t q = 0; q < columns.size(); ++q)
+        if (const Factor &f = simulator.factors()[q]; f.kind == Factor::Kind::nuisance)
+          columns[q].segment(first, n) =
+              simulator.mean(experiment, {{f.name, f.null_value + f.prior_deviation}}) -
+              simulator.mean(experiment, {});
+      first += n;
+    }
+    for (const Eigen::VectorXd &column : columns)
+      covariance += column * column.transpose();
+    const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
+    return -0.5 * llt.matrixL().solve(deviation).squaredNorm() -
+           Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
+  }
+
+  const RecordedSimulator &simulator;
+  const unsigned int repeats;
+  const double instrument;
+  std::map<std::string, Part> parts;
+};
+
+} // namespace test
+
+#endif
