@@ -63,7 +63,7 @@ Json describe_candidates(const Evidence &evidence, const Findings &findings)
   for (const auto &[minus, k] : order) {
     const Factor &effect = space.effect(k);
     Json row = {{"effect", effect.name},
-                {"confidence", -minus},
+                {"confidence", 0. - minus},
                 {"mechanism", effect.mechanism},
                 {"unit", effect.unit},
                 {"source", effect.source}};
