@@ -60,6 +60,13 @@ class PageOfAStudy(InFolder):
             make_study(folder, verdict)
             self.assertIn(words, " ".join(verdict_text(Study(folder))))
 
+    def test_a_tie_whose_first_model_fits_badly_says_so(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        self.assertNotIn("none of them", " ".join(verdict_text(study)))
+        study.content["p of the fit"] = 0.03
+        self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
+
     def test_small_probabilities_are_told(self) -> None:
         make_study(self.folder / "study", "named")
         study = Study(self.folder / "study")

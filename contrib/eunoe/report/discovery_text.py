@@ -9,6 +9,7 @@ TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
           "tie": "Several effects explain the data alike",
           "off catalogue": "Something is missing that is not in the catalogue",
           "underpowered": "The data cannot tell"}
+DOUBTFUL = 0.05  # as in the program's DecisionRule
 
 
 def _amount(value: float, unit: str) -> str:
@@ -55,6 +56,10 @@ def _tie(study: Study) -> list[str]:
     members = ", ".join(f"{plain(row['effects'])} ({percent(row['probability'], 0)})"
                         for row in study.content["tie"])
     sentences = [f"Something is missing, and the data cannot say which of these it is: {members}."]
+    fit, held_out = study.content.get("p of the fit", 1.), study.content["gaps"].get("held-out", {}).get("p after", 1.)
+    if min(fit, held_out) < DOUBTFUL:
+        sentences.append(f"The likeliest describes the {'data' if fit <= held_out else 'held-out data'} badly "
+                         f"(p = {_probability(min(fit, held_out))}), so it may be none of them.")
     breakers = study.content.get("measurements that would break the tie", [])
     if breakers:
         best = breakers[0]
