@@ -60,14 +60,11 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
   const Eigen::VectorXd &data = evidence.target().data();
   const std::vector<Evidence::Hypothesis> members = family(evidence, model, data);
   const auto misfit = [&](const Eigen::VectorXd &values) {
-    const auto likelihood = [&](const Evidence::Hypothesis &one) {
-      return evidence.log_likelihood(one, values);
-    };
-    const auto best =
-        std::max_element(members.begin(), members.end(), [&](const auto &a, const auto &b) {
-          return likelihood(a) < likelihood(b);
-        });
-    return evidence.distance(*best, values);
+    std::vector<double> likelihoods;
+    for (const Evidence::Hypothesis &member : members)
+      likelihoods.push_back(evidence.log_likelihood(member, values));
+    const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
+    return evidence.distance(members[static_cast<std::size_t>(best - likelihoods.begin())], values);
   };
   Twins source(evidence, seed);
   std::vector<double> misfits;
