@@ -17,7 +17,6 @@ import math
 import re
 import statistics
 import subprocess
-from dataclasses import dataclass
 from pathlib import Path
 
 from eunoe.intervals import difference_of
@@ -25,7 +24,7 @@ from eunoe.launch import Failure, overrides
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import arguments, compute, publish, spread, summary_of
+from .series import SeededVariant, arguments, compute, publish, spread, summary_of
 
 STEP = "simulation control/time step"
 YOUNG = ("lagrangian physical properties/particle type 0/young modulus particles",
@@ -38,15 +37,7 @@ TITLES = {**{f"step{share}": f"{share} % of the Rayleigh time" for share in SHAR
           "soft": "E / 10", "sleep": "with sleep"}
 
 
-@dataclass(frozen=True)
-class Run:
-    variant: str
-    seed: int
-
-    @property
-    def name(self) -> str:
-        return f"{self.variant}_seed{self.seed}"
-
+class Run(SeededVariant):
     def command(self, options: argparse.Namespace) -> list[str]:
         settings = {STEP: f"{time_step(options, self.variant):.6g}",
                     "simulation control/output path": options.folder / self.name}

@@ -24,7 +24,7 @@ from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import arguments, compute, layers_of, publish, spread, spreading_command
+from .series import SeededVariant, arguments, compute, layers_of, publish, spread, spreading_command
 
 RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
 TYPE = "lagrangian physical properties/particle type 0"
@@ -69,15 +69,7 @@ VARIANTS = {
 }
 
 
-@dataclass(frozen=True)
-class Run:
-    variant: str
-    seed: int
-
-    @property
-    def name(self) -> str:
-        return f"{self.variant}_seed{self.seed}"
-
+class Run(SeededVariant):
     def command(self, options: argparse.Namespace) -> list[str]:
         return spreading_command(options, self, self.seed, VARIANTS[self.variant].settings)
 

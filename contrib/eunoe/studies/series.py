@@ -8,6 +8,7 @@ import math
 import statistics
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -27,6 +28,18 @@ class Run(Protocol):
 
     def result(self, folder: Path) -> Any:
         """The run's result; None if it has not finished."""
+
+
+@dataclass(frozen=True)
+class SeededVariant:
+    """A variant of a case, by its name, with one seed."""
+
+    variant: str
+    seed: int
+
+    @property
+    def name(self) -> str:
+        return f"{self.variant}_seed{self.seed}"
 
 
 # Settings of a run that is long enough to be interrupted: it continues from its checkpoint.
