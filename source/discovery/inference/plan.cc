@@ -85,7 +85,8 @@ double information(const Measurable &what, const std::vector<Model> &models,
               (logs[m] - log_sum(logs) - std::log(models[m].probability)) / std::log(2.);
     }
   }
-  return bits;
+  // No measurement tells less than nothing; below zero is the error of few draws with long tails.
+  return std::max(0., bits);
 }
 
 double separation(const Measurable &what, const Predictive &a, const Predictive &b)
