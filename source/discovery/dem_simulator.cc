@@ -162,18 +162,27 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
   return result;
 }
 
-void DemSimulator::find_data_points(const std::uint32_t seed)
+void DemSimulator::take_over(const RunRequest &request, const RunRecord &record)
+{
+  const Case one = make_case(request);
+  if (!one.problem.empty())
+    throw UserError(one.problem);
+  on_first_rank(comm, [&] { table.store({0, one.key, engine_digest(), request, record}); });
+  records.emplace(one.key, record);
+}
+
+void DemSimulator::find_data_points(const std::uint32_t seed, const Amplitudes &amplitudes)
 {
   adopt_earlier_runs();
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
-    requests.push_back({experiment.name(), {}, seed});
+    requests.push_back({experiment.name(), amplitudes, seed});
   run(requests);
   for (const RunRequest &request : requests) {
     const RunRecord &record = records.at(keys.at(text_of(request)));
     if (!record.failure.empty())
-      throw UserError("The base model of experiment '" + request.experiment +
-                      "' cannot be run: " + record.failure);
+      throw UserError((amplitudes.empty() ? "The base model" : "The truth") + std::string(" of ") +
+                      "experiment '" + request.experiment + "' cannot be run: " + record.failure);
     std::vector<DataPoint> &points = known_points[request.experiment];
     for (const Measurement &m : record.measurements)
       if (std::isfinite(m.value))

@@ -122,8 +122,12 @@ std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
       row.standard_deviation += (reading - row.value) * (reading - row.value) / (n - 1.);
     row.standard_deviation = std::max(std::sqrt(row.standard_deviation), 1e-9 * size);
     const bool is_wanted =
-        takes_all || std::find(synthetic.observables.begin(), synthetic.observables.end(),
-                               points[c].observable) != synthetic.observables.end();
+        takes_all ||
+        std::any_of(synthetic.observables.begin(), synthetic.observables.end(),
+                    [&](const std::string &words) {
+                      return words == points[c].observable ||
+                             words == points[c].observable + ":" + std::to_string(points[c].index);
+                    });
     // A data point without a value, such as a loss that never happened, is not measured.
     if (is_wanted && std::isfinite(row.value) && row.standard_deviation > 0.)
       rows.push_back(row);
@@ -176,7 +180,7 @@ MeasuredData measure_truth(const SyntheticDataParameters &synthetic,
 {
   // Above all seeds of studies.
   const std::uint32_t first_seed = 0x40000000u + (synthetic.seed * 64u & 0x3fffffffu);
-  simulator.find_data_points(first_seed);
+  simulator.find_data_points(first_seed, amplitudes);
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
     for (unsigned int r = 0; r < synthetic.repeats; ++r)

@@ -21,9 +21,12 @@ public:
   DemSimulator(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
                const std::string &table_file, unsigned int ranks_per_run, MPI_Comm comm, Log &log);
 
-  /// Runs the base model of every experiment once, to see which data points it gives. Throws a
-  /// UserError if one fails; collective. To be called before `data_points`.
-  void find_data_points(std::uint32_t seed);
+  /// Runs every experiment once, the base model or with these amplitudes, to see which data points
+  /// it gives. Throws a UserError if one fails; collective. To be called before `data_points`.
+  void find_data_points(std::uint32_t seed, const Amplitudes &amplitudes = {});
+
+  /// Adds a simulation to the table that this engine has made elsewhere; collective.
+  void take_over(const RunRequest &request, const RunRecord &record);
 
   /// From now on a run without a value for one of these data points counts as failed. For any other
   /// data point that the base model gives, such a run has NaN.
