@@ -70,6 +70,12 @@ def make_data(program: Program) -> None:
     assert json.loads(sealed)["effects"] == {"tilt": 0.7}
     assert "tilt" not in data and ",held-out\n" in data and ",fit\n" in data
     expect(program.run("--make-twin", "truth.prm"), FAILED, "is there already")
+    few = ("twin/observables = drift, height:2", "discovery/measured data = few.csv", "twin/sealed file = few.json")
+    expect(program.run("--make-twin", "truth.prm", *(word for entry in few for word in ("--set", entry))), 0)
+    rows = [line.split(",") for line in (folder / "few.csv").read_text().splitlines() if line[0] != "#"]
+    assert {tuple(row[1:3]) for row in rows[1:]} == {("drift", "0"), ("height", "2")}, rows
+    for name in ("few.csv", "few.json", "few.json.runs.sqlite"):
+        (folder / name).unlink()
     # From here on no program can read the truth.
     for name in ("truth.sealed.json", "truth.prm"):
         (folder / name).unlink()
