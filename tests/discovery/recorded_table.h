@@ -37,7 +37,9 @@ struct RecordedTable
   std::vector<Run> runs;
   unsigned int n_failed = 0;
 
-  explicit RecordedTable(const std::string &path)
+  /// @param only_complete leaves out data points that a run lacks, or that do not vary in runs of
+  /// the base model
+  explicit RecordedTable(const std::string &path, const bool only_complete = true)
   {
     std::ifstream file(path);
     if (!file)
@@ -55,7 +57,8 @@ struct RecordedTable
       else
         read_run(first, words);
     }
-    keep_complete_cells();
+    if (only_complete)
+      keep_complete_cells();
   }
 
   std::vector<const Run *> of(const std::string &experiment, const std::string &factor) const
@@ -112,7 +115,6 @@ private:
     runs.push_back(run);
   }
 
-  /// Leaves out data points that a run lacks, or that do not vary in runs of the base model.
   void keep_complete_cells()
   {
     for (auto &[experiment, list] : points) {
