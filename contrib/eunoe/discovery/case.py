@@ -12,6 +12,7 @@ from pathlib import Path
 FIRST_SEED = {"ci": 100, "development": 10_000, "reported": 500_000}
 STRENGTHS = (2., 4., 8.)  # shift in standard deviations of one run (Mahalanobis)
 STRENGTH_OF_PAIRS, STRENGTH_WHEN_DELETED = 6., 8.
+JUST_VISIBLE, OVERWHELMING = 3., 40.
 
 
 @dataclass
@@ -43,11 +44,13 @@ class Numbers:
     two: int
     deleted: int
     confounded: int
+    drawn: int = 0  # for each effect, of a strength from just visible to the end of its range
 
 
-# "ci" runs in minutes on cheap experiments, "small" in some hours on two cores, "full" on a cluster.
+# "ci" runs in minutes on cheap experiments, "small" in some hours on two cores, "full" on a cluster. "range" has
+# physical amplitudes all over the ranges, in an order that may be cut short anywhere.
 TIERS = {"ci": Numbers(2, 1, 0, 1, 0), "small": Numbers(12, 1, 6, 6, 6),
-         "full": Numbers(100, 3, 40, 40, 40)}
+         "full": Numbers(100, 3, 40, 40, 40), "range": Numbers(14, 0, 4, 8, 0, 2)}
 
 
 def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int) -> list[Case]:
@@ -75,6 +78,9 @@ def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int
         add("none", {})
     for strength, name, _ in itertools.product(STRENGTHS, names, range(numbers.single)):
         add("single", {name: sign(name) * strength})
+    for name, _ in itertools.product(names, range(numbers.drawn)):
+        strength = JUST_VISIBLE * (OVERWHELMING / JUST_VISIBLE) ** draw.random()
+        add("single", {name: sign(name) * round(strength, 1)})
     for _ in range(numbers.two):
         add("two", {name: sign(name) * STRENGTH_OF_PAIRS for name in draw.sample(names, 2)})
     for _ in range(numbers.deleted):
@@ -84,4 +90,6 @@ def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int
     for _ in range(numbers.confounded if pairs else 0):
         name, _ = draw.choice(pairs)
         add("confounded", {name: sign(name) * STRENGTHS[1]})
+    if numbers.drawn:
+        draw.shuffle(cases)
     return cases

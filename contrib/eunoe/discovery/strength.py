@@ -15,15 +15,15 @@ class Strengths:
         self.null = {e["name"]: e["null_value"] for e in content["catalogue"]}
         self.known = content["strengths"]
 
-    def amplitude(self, effect: str, strength: float) -> float | None:
-        """The first amplitude with a strength (negative: below the null value); None if the range ends
-        before it."""
+    def amplitude(self, effect: str, strength: float) -> tuple[float, float]:
+        """The first amplitude with a strength (negative: below the null value), or the range's end, and the
+        strength there."""
         null, side = self.null[effect], 1. if strength > 0. else -1.
         before, below = null, 0.
         rows = sorted((abs(a - null), a, s) for a, s in self.known.get(effect, []) if (a - null) * side > 0.)
         for _, amplitude, reached in rows:
             if reached >= abs(strength):
                 share = (abs(strength) - below) / (reached - below)
-                return before + share * (amplitude - before)
+                return before + share * (amplitude - before), abs(strength)
             before, below = amplitude, reached
-        return None
+        return before, below

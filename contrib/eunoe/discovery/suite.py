@@ -15,6 +15,7 @@ Thresholds are tuned on development seeds only; the reported suite is made after
 from __future__ import annotations
 
 import argparse
+import math
 import shutil
 from pathlib import Path
 
@@ -120,11 +121,13 @@ class Suite:
             if self.options.only not in case.name:
                 continue
             found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
-            missing = [name for name, amplitude in found.items() if amplitude is None]
-            if missing:
-                print(f"{case.name}: left out, as {', '.join(missing)} cannot be so strong in its range")
+            weak = [name for name, (_, reached) in found.items() if reached < abs(case.strengths[name])]
+            if weak and (not TIERS[self.options.tier].drawn or min(s for _, s in found.values()) == 0.):
+                print(f"{case.name}: left out, as {', '.join(weak)} cannot be so strong in its range")
                 continue
-            case.amplitudes = {name: a for name, a in found.items() if a is not None}
+            for name, (amplitude, reached) in found.items():
+                case.amplitudes[name] = amplitude
+                case.strengths[name] = math.copysign(reached, case.strengths[name])
             print(case.name, flush=True)
             folder = self.make_data(case)
             self.make_study(case, folder, self.options.label, self.options.set)
