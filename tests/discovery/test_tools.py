@@ -19,7 +19,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
 from eunoe.discovery.foreign_heaps import occupy
-from eunoe.discovery.outcomes import read, read_lines, score, wilson
+from eunoe.discovery.outcomes import outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
 from eunoe.launch import Failure
 from eunoe.report import of_study
@@ -152,11 +152,21 @@ class StrengthOfAnEffect(InFolder):
         strengths = Strengths(self.folder / "pilot")
         # Data points are independent here, so the shift is the length of the change.
         length = float((CHANGES["cohesion"]**2).sum())**0.5
-        found = strengths.amplitude("cohesion", 4.)
-        assert found is not None
+        found, reached = strengths.amplitude("cohesion", 4.)
         self.assertAlmostEqual(found / (4. / length * 1e-4), 1., delta=1e-6)
-        self.assertIsNone(strengths.amplitude("cohesion", 1000.))
-        self.assertIsNone(strengths.amplitude("cohesion", -4.))
+        self.assertEqual(reached, 4.)
+        at_the_end, reached = strengths.amplitude("cohesion", 1000.)
+        self.assertGreater(at_the_end, found)
+        self.assertTrue(4. < reached < 1000.)
+        self.assertEqual(strengths.amplitude("cohesion", -4.), (0., 0.))
+
+    def test_a_suite_over_whole_ranges_can_be_cut_short(self) -> None:
+        cases = make_cases(EFFECTS, "range", "ci", 1)
+        first_half = cases[:len(cases) // 2]
+        self.assertLess(1, sum(1 for case in first_half if case.kind == "none"))
+        drawn = [abs(s) for case in cases if case.kind == "single" for s in case.strengths.values()]
+        self.assertEqual(len(drawn), len(set(drawn)))
+        self.assertTrue(3. <= min(drawn) <= max(drawn) <= 40.)
 
 
 class HeapsOfOtherPrograms(InFolder):
@@ -175,7 +185,7 @@ class Scores(InFolder):
         case = Case(name, kind, 1, 1, {effect: 4. for effect in truth}, [], truth)
         case.save(folder)
         (folder / "sealed").mkdir()
-        (folder / "sealed" / "truth.json").write_text(json.dumps({"effects": truth}))
+        (folder / "sealed" / "truth.json").write_text(json.dumps({"effects": truth, "nuisances": {}}))
 
     def test_rates(self) -> None:
         self.add("a", "none", "none", {})
@@ -186,7 +196,8 @@ class Scores(InFolder):
         self.add("f", "deleted", "off catalogue", {"rolling_resistance": 0.1})
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(score_script.main([str(self.folder)]), 0)
-        outcomes = [o for o in (read(self.folder / name, "study") for name in "abcdef") if o]
+        outcomes = [outcome_of(line) for line in (read(self.folder / name, "study") for name in "abcdef") if line]
+        self.assertEqual(read_lines(self.folder / "answers_study.jsonl"), outcomes)
         rates = {r.name: (r.hits, r.number) for r in score(outcomes).rates}
         self.assertEqual(rates["named rightly at strength 4"], (1, 3))
         self.assertEqual(rates["named wrongly at strength 4"], (1, 3))
@@ -200,6 +211,22 @@ class Scores(InFolder):
         self.assertEqual(rates["confident and wrong"], (1, 4))
         self.assertEqual(rates["amplitude within its interval"], (1, 1))
         self.assertIn("1 of 2", (self.folder / "scores_study.md").read_text())
+
+    def test_what_held_out_data_refute(self) -> None:
+        held_out = {"members of the tie": [{"effects": "a", "p": 0.4}, {"effects": "b", "p": 1e-3},
+                                           {"effects": "a + c", "p": 1e-4}, {"effects": "d", "p": 0.3}],
+                    "could have refuted": [{"effects": "nothing", "p": 1e-9}, {"effects": "b", "p": 1e-3},
+                                           {"effects": "e", "p": 1e-5}]}
+        answer = {"verdict": "tie", "tie": [{"effects": "a"}, {"effects": "d"}], "gaps": {"held-out": held_out},
+                  "candidates": [{"effect": "a", "confidence": 0.6}], "amplitudes": [],
+                  "runs": {"asked for": 100}}
+        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
+                "excluded": [], "amplitudes": {"a": 1.}}
+        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        # Models with the true effect are not wrong names.
+        self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
+        self.assertEqual(rates["any wrong model refuted by held-out data"], (2, 3))
+        self.assertEqual(rates["detection at strength 2.8 to 5.7"], (1, 1))
 
     def test_lines_of_answers(self) -> None:
         lines = []

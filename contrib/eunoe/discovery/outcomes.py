@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import json
+import math
 from collections import Counter
-from dataclasses import dataclass, field
-from math import sqrt
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from statistics import median
 
-from .case import Case
+from .case import STRENGTHS, Case
 
 SOMETHING = ("named", "tie", "off catalogue")
 # A truth counts as distinguishable if it differs from the nearest other single effect by this many
 # standard errors of the measurement.
 APART = 4.
+# A model is refuted by held-out data below this p-value, as in the program's DecisionRule.
+REFUTED = 0.01
+# Borders between the strengths 2, 4, 8 and 16, where strengths are drawn and not given.
+BORDERS = (0., 2.8, 5.7, 11.3, math.inf)
 
 
 @dataclass
@@ -30,6 +34,9 @@ class Outcome:
     runs: int
     separation: float | None = None  # from the nearest other effect; None: unknown
     curve: list[tuple[int, set[str]]] = field(default_factory=list)  # runs, and the likeliest model with them
+    # What held-out data say of models, by their p-values: of those that the fit has named, and of others.
+    names_tested: list[tuple[set[str], float]] = field(default_factory=list)
+    others_tested: list[tuple[set[str], float]] = field(default_factory=list)
 
     @property
     def stands_apart(self) -> bool:
@@ -51,6 +58,10 @@ class Outcome:
         """The likeliest model after this many runs; none before something is detected."""
         return next((model for number, model in reversed(self.curve) if number <= runs), set())
 
+    def wrong_p(self, tested: list[tuple[set[str], float]]) -> list[float]:
+        """p-values of those models that have no effect of the truth."""
+        return [p for effects, p in tested if not effects & self.truth_in_catalogue]
+
     @property
     def covers(self) -> bool:
         return any(members == self.truth for members in self.covering)
@@ -65,7 +76,8 @@ class Outcome:
         return self.truth - set(self.case.excluded)
 
 
-def read(folder: Path, label: str) -> Outcome | None:
+def read(folder: Path, label: str) -> dict | None:
+    """The case and what is scored of the answer: a line of JSON, as the suites without simulations print it."""
     path = folder / label / "discovery.json"
     if not path.exists() or not (folder / "case.json").exists():
         return None
@@ -73,13 +85,20 @@ def read(folder: Path, label: str) -> Outcome | None:
     sealed = json.loads((folder / "sealed" / "truth.json").read_text(encoding="utf-8"))
     case = Case.load(folder)
     assert sealed["effects"] == case.amplitudes, f"{folder}: the sealed truth is another one"
-    return outcome(case, content)
+    content["gaps"] = {"held-out": {key: value for key, value in content["gaps"].get("held-out", {}).items()
+                                    if key != "envelopes"}}
+    scored = ("verdict", "candidates", "amplitudes", "tie", "gaps", "runs", "learning curve")
+    return {"case": asdict(case), "nuisances": sealed["nuisances"],
+            "answer": {key: content[key] for key in scored}}
 
 
 def read_lines(path: Path) -> list[Outcome]:
     """The outcomes of a suite that writes cases and answers as lines of JSON."""
-    lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
-    return [outcome(Case(**line["case"]), line["answer"]) for line in lines]
+    return [outcome_of(json.loads(line)) for line in path.read_text(encoding="utf-8").splitlines() if line]
+
+
+def outcome_of(line: dict) -> Outcome:
+    return outcome(Case(**line["case"]), line["answer"])
 
 
 def outcome(case: Case, content: dict) -> Outcome:
@@ -88,12 +107,19 @@ def outcome(case: Case, content: dict) -> Outcome:
     rows = {row["effect"]: row for row in content["amplitudes"]}
     named = set(rows) if content["verdict"] == "named" else set()
     covering = [named] if named else [set(row["effects"].split(" + ")) for row in content["tie"]]
+    held_out = content["gaps"].get("held-out", {})
+
+    def tested(key: str) -> list[tuple[set[str], float]]:
+        return [(set(row["effects"].split(" + ")), row["p"]) for row in held_out.get(key, [])
+                if row.get("p") is not None and row["effects"] != "nothing"]
+    names = tested("members of the tie")
     return Outcome(case, content["verdict"], named, candidates[0]["effect"] if candidates else "",
                    covering, {row["effect"]: row["confidence"] for row in candidates}, rows,
-                   content["gaps"].get("held-out", {}).get("shrink"), content["runs"]["asked for"],
+                   held_out.get("shrink"), content["runs"]["asked for"],
                    content.get("separation of the truth"),
                    [(row["runs"], set(row["first"].split(" + ")) if row["verdict"] in SOMETHING else set())
-                    for row in content.get("learning curve", [])])
+                    for row in content.get("learning curve", [])],
+                   names, [row for row in tested("could have refuted") if row not in names])
 
 
 def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
@@ -102,7 +128,7 @@ def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
         return 0., 1.
     share = hits / number
     centre = share + z * z / (2. * number)
-    half = z * sqrt(share * (1. - share) / number + z * z / (4. * number * number))
+    half = z * math.sqrt(share * (1. - share) / number + z * z / (4. * number * number))
     below = 1. + z * z / number
     return max(0., (centre - half) / below), min(1., (centre + half) / below)
 
@@ -144,14 +170,15 @@ def score(outcomes: list[Outcome]) -> Scores:
     answered = [o for o in single if o.verdict in ("named", "tie")]
     right = [o for o in single + two if o.verdict == "named" and o.named == o.truth]
     rates = [rate("false alarms", nothing, lambda o: o.detected, "upper limit at most 5 %")]
-    for strength in sorted({o.strength for o in single}):
-        rates.append(rate(f"detection at strength {strength:g}",
-                          [o for o in single if o.strength == strength], lambda o: o.detected))
+    by_strength = _by_strength(single)
+    for at, some in by_strength.items():
+        rates.append(rate(f"detection at strength {at}", some, lambda o: o.detected))
     rates += [
         rate("detection at strength 4 and more", strong, lambda o: o.detected, "at least 95 %")]
-    for strength in sorted({o.strength for o in single if o.strength >= 4.}):
-        some = [o for o in single if o.strength == strength]
-        at = f"at strength {strength:g}"
+    for strength, some in by_strength.items():
+        if max(o.strength for o in some) < STRENGTHS[1]:
+            continue
+        at = f"at strength {strength}"
         rates += [
             rate(f"first name, named or leading, correct {at}", some,
                  lambda o: o.detected and o.first in o.truth, "85 % at 4, 93 % at 8"),
@@ -179,6 +206,11 @@ def score(outcomes: list[Outcome]) -> Scores:
         rate("confident and wrong, effect deleted", deleted, lambda o: o.confidently_wrong),
         rate("confident and wrong", single + two + deleted, lambda o: o.confidently_wrong, "at most 2 %"),
         rate("amplitude within its interval", right, _covers_amplitudes, "95 %")]
+    known = single + two + deleted
+    rates += [_refuted("wrong name refuted by held-out data", [p for o in known for p in o.wrong_p(o.names_tested)],
+                       "at least 70 %"),
+              _refuted("any wrong model refuted by held-out data",
+                       [p for o in known for p in o.wrong_p(o.names_tested + o.others_tested)])]
     rates += _rates_apart(strong, two, deleted)
     numbers = {}
     for name, some in (("", answered), (", strength 4 and more", [o for o in answered if o.strength >= 4.])):
@@ -199,6 +231,20 @@ def score(outcomes: list[Outcome]) -> Scores:
         answer = o.first if o.verdict == "named" else o.verdict
         confusion.setdefault(truth, Counter())[answer] += 1
     return Scores(rates, numbers, confusion, calibration(single), learning(strong))
+
+
+def _by_strength(outcomes: list[Outcome]) -> dict[str, list[Outcome]]:
+    """Outcomes by their strengths, or, where strengths were drawn, by ranges of it."""
+    strengths = sorted({o.strength for o in outcomes})
+    if set(strengths) <= set(STRENGTHS):
+        return {f"{strength:g}": [o for o in outcomes if o.strength == strength] for strength in strengths}
+    groups = {(f"{low:g} to {high:g}" if high < math.inf else f"{low:g} and more"):
+              [o for o in outcomes if low <= o.strength < high] for low, high in zip(BORDERS, BORDERS[1:])}
+    return {name: some for name, some in groups.items() if some}
+
+
+def _refuted(name: str, p_values: list[float], target: str = "") -> Rate:
+    return Rate(name, sum(1 for p in p_values if p < REFUTED), len(p_values), target)
 
 
 def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcome]) -> list[Rate]:

@@ -4,19 +4,21 @@ Usage: contrib/tools score folder [--label NAME ...]
        contrib/tools score answers.jsonl
 
 Of a folder that suite.py has made it opens the sealed truths and compares them with the studies'
-answers, and writes scores_<label>.md and scores_<label>.csv (one row a case) into it. The suites on
-synthetic simulators and on recorded simulations (tests/discovery) print truths and answers as lines
-of JSON instead; their scores go beside that file.
+answers, and writes scores_<label>.md, scores_<label>.csv (one row a case) and answers_<label>.jsonl into
+it. The last has all that is scored, so that it can be kept without the folder; the suites on synthetic
+simulators and on recorded simulations (tests/discovery) print such lines, too. Scores of lines go beside
+their file.
 """
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from eunoe.launch import Failure, parser
 from eunoe.tables import as_markdown, write_csv
 
-from .outcomes import Outcome, Scores, read, read_lines, score
+from .outcomes import Outcome, Scores, outcome_of, read, read_lines, score
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -48,7 +50,7 @@ def page(scores: Scores, label: str, n: int) -> str:
 def rows_of_cases(outcomes: list[Outcome]) -> list[list]:
     return [["case", "kind", "truth", "strength", "verdict", "named", "first", "confidence", "covers", "shrink",
              "runs"],
-            *([o.case.name, o.case.kind, " + ".join(sorted(o.truth)), o.strength, o.verdict,
+            *([o.case.name, o.case.kind, " + ".join(sorted(o.truth)), round(o.strength, 2), o.verdict,
                " + ".join(sorted(o.named)), o.first, o.confidence.get(o.first, 0.), o.covers,
                "" if o.shrink is None else o.shrink, o.runs] for o in outcomes)]
 
@@ -70,10 +72,12 @@ def main(words: list[str]) -> int:
         write(read_lines(suite), suite.stem, suite.parent)
         return 0
     for label in options.label or ["study"]:
-        outcomes = [o for o in (read(path, label) for path in sorted(suite.iterdir())
-                                if path.is_dir() and path.name != "pilot") if o is not None]
-        if not outcomes:
+        lines = [line for line in (read(path, label) for path in sorted(suite.iterdir())
+                                   if path.is_dir() and path.name != "pilot") if line is not None]
+        if not lines:
             raise Failure(f"There are no finished studies '{label}' in {suite}.")
-        write(outcomes, label, suite)
+        (suite / f"answers_{label}.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines),
+                                                      encoding="utf-8")
+        write([outcome_of(line) for line in lines], label, suite)
     return 0
 
