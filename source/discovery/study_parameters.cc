@@ -81,9 +81,10 @@ void declare_synthetic_data(dealii::ParameterHandler &prm, SyntheticDataParamete
   declare::list(prm, "overrides", synthetic.overrides, ';',
                 "Entries in which the truth's simulations differ from the model's without being "
                 "effects, such as the depth: 'subsection/entry = value; ...'.");
-  declare::list(prm, "observables", synthetic.observables, ',',
-                "Observables that are measured: 'all', or names, with ':' and an index for one of its data "
-                "points.");
+  declare::list(
+      prm, "observables", synthetic.observables, ',',
+      "Observables that are measured: 'all', or names, with ':' and an index for one of its data "
+      "points.");
   declare::between(prm, "time step factor", synthetic.time_step_factor, 0.05, 2.,
                    "Time step of the truth, in terms of the model's.");
   declare::entry(prm, "jitter nuisances", synthetic.jitter_nuisances,
