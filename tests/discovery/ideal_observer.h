@@ -1,11 +1,13 @@
 #ifndef eunoe_tests_discovery_ideal_observer_h
 #define eunoe_tests_discovery_ideal_observer_h
 
-// The ceiling of naming: an observer who knows the fingerprint and the scatter of every effect at
-// every amplitude exactly, and the noise of the instrument, but neither amplitude nor nuisances. No
-// study can name more effects rightly.
+// The ceiling of detection and naming: an observer who knows the fingerprint and the scatter of
+// every effect at every amplitude exactly, and the noise of the instrument, but neither amplitude
+// nor nuisances. No study can detect or name more effects rightly.
 
 #include "recorded.h"
+
+#include <eunoe/discovery/inference/evidence.h>
 
 namespace test {
 
@@ -38,6 +40,16 @@ public:
     return first;
   }
 
+  /// Log of the evidence for some effect, each as likely as the others, over that for nothing.
+  double log_bayes_factor() const
+  {
+    std::vector<double> logs;
+    for (const Factor &f : simulator.factors())
+      if (f.kind == Factor::Kind::effect)
+        logs.push_back(log_evidence(f));
+    return log_sum(logs) - std::log(static_cast<double>(logs.size())) - log_likelihood({});
+  }
+
 private:
   struct Part
   {
@@ -67,20 +79,14 @@ private:
       const double last = std::min(strongest, simulator.strength({{f.name, limit}}, experiments()));
       for (int k = 0; k < places && just_visible < last; ++k) {
         const double strength = just_visible * std::pow(last / just_visible, k / (places - 1.));
-        logs.push_back(
-            log_likelihood(f.name, simulator.amplitude_of(f.name, strength, experiments(), side)));
+        logs.push_back(log_likelihood(
+            {{f.name, simulator.amplitude_of(f.name, strength, experiments(), side)}}));
       }
     }
-    if (logs.empty())
-      return -1e300;
-    const double highest = *std::max_element(logs.begin(), logs.end());
-    double sum = 0.;
-    for (const double log : logs)
-      sum += std::exp(log - highest) / static_cast<double>(logs.size());
-    return highest + std::log(sum);
+    return logs.empty() ? -1e300 : log_sum(logs) - std::log(static_cast<double>(logs.size()));
   }
 
-  double log_likelihood(const std::string &name, const double amplitude) const
+  double log_likelihood(const Amplitudes &truth) const
   {
     // Nuisances move all experiments together.
     Eigen::Index size = 0;
@@ -92,7 +98,6 @@ private:
     std::vector<Eigen::VectorXd> columns(simulator.factors().size(), Eigen::VectorXd::Zero(size));
     for (const auto &[experiment, part] : parts) {
       const Eigen::Index n = part.values.size();
-      const Amplitudes truth = {{name, amplitude}};
       deviation.segment(first, n) = part.values - simulator.mean(experiment, truth);
       const Eigen::MatrixXd one_run =
           simulator.covariance(experiment) * std::pow(simulator.growth(experiment, truth), 2);

@@ -4,8 +4,8 @@
 //   contrib/tools score answers.jsonl
 // Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
 // are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
-// and no study); ideal (how often an observer who knows all fingerprints names single effects
-// rightly, and no study); table=FILE.
+// and no study); ideal (how often an observer who knows all fingerprints detects single effects and
+// names them rightly, and no study); table=FILE.
 
 #include "ideal_observer.h"
 #include "recorded_cases.h"
@@ -37,22 +37,39 @@ void describe(const RecordedTable &table)
   }
 }
 
-/// How often the ideal observer names the right effect, on the data of the studies with the same
-/// seeds.
+IdealObserver observer_of(const DrawnCase &drawn)
+{
+  return {drawn.simulator, drawn.data.fit, drawn.repeats, drawn.instrument};
+}
+
+/// How often the ideal observer detects and names the right effect, on the data of the studies with
+/// the same seeds. What he takes for a detection is more than all but 5 % or 2 % of such data show
+/// in which nothing is missing.
 void observe(const RecordedTable &table, const SuiteOptions &options)
 {
+  constexpr std::uint32_t n_nulls = 1000, first_null = 0x20000000u;
+  constexpr double levels[] = {0.05, 0.02};
+  std::vector<double> nothing;
+  for (std::uint32_t k = 0; k < n_nulls; ++k)
+    nothing.push_back(observer_of({table, {"none"}, first_null + k}).log_bayes_factor());
+  std::sort(nothing.rbegin(), nothing.rend());
   for (const StudyKind &kind : standard_kinds()) {
     if (kind.kind != "single" || !options.wants(kind))
       continue;
     unsigned int right = 0;
+    std::map<double, unsigned int> detected;
     for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
       const DrawnCase drawn(table, kind, options.first_seed + k);
-      const IdealObserver observer(drawn.simulator, drawn.data.fit, drawn.repeats,
-                                   drawn.instrument);
+      const IdealObserver observer = observer_of(drawn);
       right += drawn.one.strengths.count(observer.first_name()) > 0;
+      for (const double level : levels)
+        detected[level] +=
+            observer.log_bayes_factor() > nothing[static_cast<std::size_t>(level * n_nulls)];
     }
-    std::printf("strength %g: first name right in %u of %u\n", kind.strength, right,
-                options.n_seeds);
+    std::printf("strength %g: first name right in %u of %u", kind.strength, right, options.n_seeds);
+    for (const double level : levels)
+      std::printf(", detected at level %g in %u", level, detected[level]);
+    std::printf("\n");
     std::fflush(stdout);
   }
 }
