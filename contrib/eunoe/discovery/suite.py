@@ -2,7 +2,7 @@
 
 Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full]
        [--seeds ci|development|reported] [--study-seeds N] [--ranks N] [--label NAME]
-       [--set "discovery/entry = value" ...]
+       [--set "discovery/entry = value" ...] [--part I/N]
 
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
 suite are amplitudes from it. Then the twins are made, then the studies. What is there already is not made
@@ -54,7 +54,17 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--twin", action="append", default=[], metavar="ENTRY",
                         help="entry of the twins, such as 'overrides = powder spreading/depth = 4e-4'")
     arguments.add_argument("--only", default="", help="only cases whose name contains this")
+    arguments.add_argument("--part", type=part, default=(1, 1), metavar="I/N",
+                           help="only the I-th case of each N, so that N commands may share a suite once its "
+                                "pilot is done")
     return arguments.parse_args(words)
+
+
+def part(text: str) -> tuple[int, int]:
+    number, of = (int(word) for word in text.split("/"))
+    if not 1 <= number <= of:
+        raise ValueError(text)
+    return number, of
 
 
 class Suite:
@@ -116,8 +126,9 @@ class Suite:
             raise Failure("The study has no effects.")
         print("pilot", flush=True)
         strengths = self.pilot()
-        for case in make_cases(effects, self.options.tier, self.options.seeds,
-                               self.options.study_seeds):
+        number, of = self.options.part
+        cases = make_cases(effects, self.options.tier, self.options.seeds, self.options.study_seeds)
+        for case in cases[number - 1::of]:
             if self.options.only not in case.name:
                 continue
             found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
