@@ -258,6 +258,11 @@ void plans()
       (row["experiment"] == "heap" ? heap : spreading) = row["information"];
   check("experiments where effects are alike tell less", spreading > 2. * heap,
         std::to_string(heap) + ", " + std::to_string(spreading));
+  constexpr double error = 0.1;
+  for (const auto &row : rows)
+    if (row["observable"] != "all" &&
+        row["information"] > (row["experiment"] == "heap" ? heap : spreading) + error)
+      check("a part tells no more than the whole", false, row.dump());
 }
 
 } // namespace

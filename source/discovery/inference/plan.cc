@@ -33,59 +33,74 @@ std::vector<Measurable> measurables(const Target &target)
   return result;
 }
 
-/// A model's prediction of one measurement: a normal distribution for each draw of its posterior.
+/// What is to be expected of an experiment if a model is true.
+struct Expectation
+{
+  Predictive twins;                ///< examples
+  Predictive amplitudes;           ///< densely, so that one of them is close to any example
+  std::vector<double> log_weights; ///< of the amplitudes; none: equal ones
+};
+
+/// A model's prediction of one measurement: the t-distribution of the evidence for each amplitude
+/// that it may have, over all nuisances.
 class Forecast
 {
 public:
-  Forecast(const Measurable &what, const Predictive &predictive)
-      : means(what.rows * predictive.draw_means())
+  Forecast(const Measurable &what, const Predictive &predictive, std::vector<double> log_weights,
+           const double dof)
+      : constants(std::move(log_weights)), dof(dof)
   {
-    for (Eigen::Index i = 0; i < means.cols(); ++i) {
-      parts.emplace_back(what.rows * predictive.draw_variances().col(i).asDiagonal() *
-                         what.rows.transpose());
-      constants.push_back(-Eigen::MatrixXd(parts.back().matrixL()).diagonal().array().log().sum());
+    constants.resize(predictive.draws().size(), 0.);
+    const double total = log_sum(constants);
+    for (std::size_t i = 0; i < constants.size(); ++i) {
+      const Predictive::Conditional &draw = predictive.draws()[i];
+      const Eigen::MatrixXd columns = what.rows * draw.columns;
+      means.emplace_back(what.rows * draw.mean);
+      parts.emplace_back(what.rows * draw.variance.asDiagonal() * what.rows.transpose() +
+                         columns * columns.transpose());
+      constants[i] -=
+          total + Eigen::MatrixXd(parts.back().matrixL()).diagonal().array().log().sum();
     }
   }
 
-  /// Log density of a value, without the draw that it was made from.
-  double log_density(const Eigen::VectorXd &value, const Eigen::Index without) const
+  double log_density(const Eigen::VectorXd &value) const
   {
     std::vector<double> logs;
-    for (Eigen::Index i = 0; i < means.cols(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (i != without)
-        logs.push_back(constants[k] -
-                       0.5 * parts[k].matrixL().solve(value - means.col(i)).squaredNorm());
+    for (std::size_t i = 0; i < means.size(); ++i) {
+      const double distance = parts[i].matrixL().solve(value - means[i]).squaredNorm();
+      logs.push_back(constants[i] -
+                     0.5 * (dof + static_cast<double>(value.size())) * std::log1p(distance / dof));
     }
-    return log_sum(logs) - std::log(static_cast<double>(logs.size()));
+    return log_sum(logs);
   }
 
 private:
-  Eigen::MatrixXd means;
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> parts;
   std::vector<double> constants;
+  const double dof;
+  std::vector<Eigen::VectorXd> means;
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> parts;
 };
 
+/// @return bits
 double information(const Measurable &what, const std::vector<Model> &models,
-                   const std::vector<Predictive> &predictives)
+                   const std::vector<Expectation> &expectations, const double dof)
 {
   std::vector<Forecast> forecasts;
-  for (const Predictive &one : predictives)
-    forecasts.emplace_back(what, one);
+  for (const Expectation &one : expectations)
+    forecasts.emplace_back(what, one.amplitudes, one.log_weights, dof);
   double bits = 0.;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const auto &twins = predictives[m].twin_data();
-    for (std::size_t t = 0; t < twins.size(); ++t) {
-      const Eigen::VectorXd value = what.rows * twins[t];
+    const auto &draws = expectations[m].twins.draws();
+    for (const Predictive::Conditional &draw : draws) {
+      const Eigen::VectorXd value = what.rows * draw.twin;
       std::vector<double> logs;
       for (std::size_t k = 0; k < models.size(); ++k)
-        logs.push_back(std::log(models[k].probability) +
-                       forecasts[k].log_density(value, static_cast<Eigen::Index>(t)));
-      bits += models[m].probability / static_cast<double>(twins.size()) *
+        logs.push_back(std::log(models[k].probability) + forecasts[k].log_density(value));
+      bits += models[m].probability / static_cast<double>(draws.size()) *
               (logs[m] - log_sum(logs) - std::log(models[m].probability)) / std::log(2.);
     }
   }
-  // No measurement tells less than nothing; below zero is the error of few draws with long tails.
+  // No measurement tells less than nothing; below zero is the error of few twins.
   return std::max(0., bits);
 }
 
@@ -141,6 +156,92 @@ std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experim
   return sort_by_experiment(points, samples, simulator, notes);
 }
 
+/// Ranks the observables of experiments, and whole experiments, by the information that measuring
+/// them is expected to give about which model is true: the mean fall of the entropy of the models'
+/// probabilities over twins of each model (bit). The best come first.
+Json rank_measurements(const Evidence &evidence, const std::vector<Model> &models,
+                       const std::vector<Expectation> &expectations)
+{
+  const std::vector<Model> candidates = normalised(models);
+  double entropy = 0.;
+  for (const Model &model : candidates)
+    entropy -= model.probability * std::log2(model.probability);
+  std::vector<std::pair<double, Json>> rows;
+  for (const Measurable &what : measurables(evidence.target())) {
+    const double bits = information(what, candidates, expectations, evidence.degrees_of_freedom());
+    double least = 1e300;
+    for (std::size_t m = 1; m < expectations.size(); ++m)
+      least = std::min(least, separation(what, expectations[0].twins, expectations[m].twins));
+    rows.emplace_back(-bits, Json{{"experiment", what.experiment},
+                                  {"observable", what.observable},
+                                  {"information", bits},
+                                  {"of", entropy},
+                                  {"separation", expectations.size() > 1 ? least : 0.}});
+  }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto &a, const auto &b) { return a.first < b.first; });
+  Json list = Json::array();
+  for (const auto &[bits, row] : rows)
+    list.push_back(row);
+  return list;
+}
+
+/// An effect before anything is measured: amplitudes by their prior, and nuisances by theirs.
+class PriorAmplitudes
+{
+public:
+  PriorAmplitudes(const Evidence &evidence, const std::size_t effect)
+      : places(evidence.places(effect)), effect(effect),
+        n_nuisances(static_cast<Eigen::Index>(evidence.space().n_nuisances()))
+  {
+  }
+
+  PosteriorDraws all() const
+  {
+    PosteriorDraws result;
+    for (const Evidence::Place &place : places)
+      add(place.amplitude, Eigen::VectorXd::Zero(n_nuisances), result);
+    return result;
+  }
+  std::vector<double> log_weights() const
+  {
+    std::vector<double> weights;
+    for (const Evidence::Place &place : places)
+      weights.push_back(place.log_prior);
+    return weights;
+  }
+  /// Amplitudes anywhere between the places.
+  PosteriorDraws draw(const unsigned int number, RandomStream &random) const
+  {
+    PosteriorDraws result;
+    for (unsigned int i = 0; i < number; ++i) {
+      double left = random.uniform();
+      std::size_t drawn = 0;
+      while (drawn + 1 < places.size() && (left -= std::exp(places[drawn].log_prior)) > 0.)
+        ++drawn;
+      double amplitude = places[drawn].amplitude;
+      const std::size_t next = drawn + 1;
+      if (next < places.size() && places[next].amplitude / amplitude > 1.)
+        amplitude *= std::pow(places[next].amplitude / amplitude, random.uniform());
+      add(amplitude, random.normals(n_nuisances, 1).col(0), result);
+    }
+    return result;
+  }
+
+private:
+  void add(const double amplitude, const Eigen::VectorXd &nuisances, PosteriorDraws &draws) const
+  {
+    draws.effects.push_back({{effect, amplitude}});
+    draws.nuisances.push_back(nuisances);
+    draws.nuisance_means.push_back(Eigen::VectorXd::Zero(n_nuisances));
+    draws.nuisance_roots.push_back(Eigen::MatrixXd::Identity(n_nuisances, n_nuisances));
+  }
+
+  const std::vector<Evidence::Place> &places;
+  const std::size_t effect;
+  const Eigen::Index n_nuisances;
+};
+
 } // namespace
 
 unsigned int most_runs_near(const unsigned int runs)
@@ -179,33 +280,6 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
   samples.run(points, experiments);
 }
 
-Json rank_measurements(const Evidence &evidence, const std::vector<Model> &models,
-                       const std::vector<Predictive> &predictives)
-{
-  const std::vector<Model> candidates = normalised(models);
-  double entropy = 0.;
-  for (const Model &model : candidates)
-    entropy -= model.probability * std::log2(model.probability);
-  std::vector<std::pair<double, Json>> rows;
-  for (const Measurable &what : measurables(evidence.target())) {
-    const double bits = information(what, candidates, predictives);
-    double least = 1e300;
-    for (std::size_t m = 1; m < predictives.size(); ++m)
-      least = std::min(least, separation(what, predictives[0], predictives[m]));
-    rows.emplace_back(-bits, Json{{"experiment", what.experiment},
-                                  {"observable", what.observable},
-                                  {"information", bits},
-                                  {"of", entropy},
-                                  {"separation", predictives.size() > 1 ? least : 0.}});
-  }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto &a, const auto &b) { return a.first < b.first; });
-  Json list = Json::array();
-  for (const auto &[bits, row] : rows)
-    list.push_back(row);
-  return list;
-}
-
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
                   const FactorSpace &space, Samples &samples)
 {
@@ -215,10 +289,13 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   if (models.size() > most_models)
     models.resize(most_models);
   const auto rank = [&](const Evidence &where, const unsigned int seed) {
-    std::vector<Predictive> predictives;
+    std::vector<Expectation> expectations;
     for (const Model &model : models)
-      predictives.emplace_back(where, draw_posterior(evidence, model, draws, options.seed), seed);
-    return rank_measurements(where, models, predictives);
+      expectations.push_back(
+          {{where, draw_posterior(evidence, model, draws, options.seed), seed},
+           {where, draw_posterior(evidence, model, draws, options.seed + 1), seed},
+           {}});
+    return rank_measurements(where, models, expectations);
   };
   Json rows = rank(evidence, options.seed + 5);
   for (Json &row : rows)
@@ -259,24 +336,20 @@ nlohmann::ordered_json plan(const StudyOptions &options,
   const Evidence evidence(target, space);
   RandomStream random(options.seed, 37);
   std::vector<Model> models;
-  std::vector<Predictive> predictives;
+  std::vector<Expectation> expectations;
   for (std::size_t k = 0; k < space.n_effects(); ++k) {
     if (evidence.places(k).empty())
       continue;
-    PosteriorDraws prior;
-    for (unsigned int i = 0; i < draws; ++i) {
-      const auto &places = evidence.places(k);
-      prior.effects.push_back({{k, places[random.index(places.size())].amplitude}});
-      prior.nuisances.push_back(
-          random.normals(static_cast<Eigen::Index>(space.n_nuisances()), 1).col(0));
-    }
+    const PriorAmplitudes prior(evidence, k);
+    expectations.push_back({{evidence, prior.draw(draws, random), options.seed + 7},
+                            {evidence, prior.all(), options.seed + 8},
+                            prior.log_weights()});
     Model model;
     model.effects = {k};
     model.probability = 1. / static_cast<double>(space.n_effects());
     models.push_back(model);
-    predictives.emplace_back(evidence, prior, options.seed + 7);
   }
-  return rank_measurements(evidence, models, predictives);
+  return rank_measurements(evidence, models, expectations);
 }
 
 } // namespace eunoe::discovery

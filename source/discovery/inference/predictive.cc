@@ -114,7 +114,9 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
                                             gradient.transpose() * hypothesis.inverse.asDiagonal() *
                                                 gradient);
     result.effects.push_back(effects);
-    result.nuisances.push_back(best_nuisances(evidence, hypothesis) +
+    result.nuisance_means.push_back(best_nuisances(evidence, hypothesis));
+    result.nuisance_roots.emplace_back(inner.matrixU().solve(Eigen::MatrixXd::Identity(n, n)));
+    result.nuisances.push_back(result.nuisance_means.back() +
                                inner.matrixU().solve(random.normals(n, 1)).col(0));
   }
   return result;
@@ -127,16 +129,19 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
   const Target &target = evidence.target();
   const Eigen::Index n = target.data().size();
   const auto draws = static_cast<Eigen::Index>(posterior.effects.size());
-  means.resize(n, draws);
-  variances.resize(n, draws);
+  Eigen::MatrixXd means(n, draws), variances(n, draws); // a column for each draw
   for (Eigen::Index i = 0; i < draws; ++i) {
     const auto k = static_cast<std::size_t>(i);
     Target::Prediction prediction = target.predict(posterior.effects[k]);
+    Conditional one;
+    one.mean = prediction.mean + prediction.gradient * posterior.nuisance_means[k];
+    one.columns = prediction.gradient * posterior.nuisance_roots[k];
     prediction.mean += prediction.gradient * posterior.nuisances[k];
-    variances.col(i) = target.variance(prediction);
+    one.variance = variances.col(i) = target.variance(prediction);
     means.col(i) = prediction.mean;
     prediction.gradient.resize(n, 0);
-    twins.push_back(source.draw(prediction));
+    one.twin = source.draw(prediction);
+    all.push_back(one);
   }
   centre = means.rowwise().mean();
   Eigen::MatrixXd covariance = (means.colwise() - centre) * (means.colwise() - centre).transpose() /
@@ -144,8 +149,8 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
   covariance.diagonal() += variances.rowwise().mean();
   llt.compute(covariance);
   std::vector<double> distances;
-  for (const Eigen::VectorXd &twin : twins)
-    distances.push_back(distance(twin));
+  for (const Conditional &one : all)
+    distances.push_back(distance(one.twin));
   tail = Tail(std::move(distances));
 }
 
@@ -156,9 +161,9 @@ double Predictive::distance(const Eigen::VectorXd &data) const
 
 double Predictive::refuted_by(const Predictive &truth, const double level) const
 {
-  const auto refuted = std::count_if(truth.twins.begin(), truth.twins.end(),
-                                     [&](const Eigen::VectorXd &twin) { return p(twin) < level; });
-  return static_cast<double>(refuted) / static_cast<double>(truth.twins.size());
+  const auto refuted = std::count_if(truth.all.begin(), truth.all.end(),
+                                     [&](const Conditional &one) { return p(one.twin) < level; });
+  return static_cast<double>(refuted) / static_cast<double>(truth.all.size());
 }
 
 } // namespace eunoe::discovery

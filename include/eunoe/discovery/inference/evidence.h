@@ -64,6 +64,7 @@ public:
   const std::vector<Place> &places(std::size_t effect) const { return grid[effect]; }
   const Hypothesis &nothing() const { return base; }
   const Target &target() const { return aim; }
+  double degrees_of_freedom() const { return dof; } ///< of the t-distribution
   const FactorSpace &space() const { return factors; }
 
   /// Log of prior and optimistic likelihood of an effect's places.

@@ -6,13 +6,6 @@
 
 namespace eunoe::discovery {
 
-/// Ranks the observables of experiments, and whole experiments, by the information that measuring
-/// them is expected to give about which model is true: the mean fall of the entropy of the models'
-/// probabilities over twins of each model (bit). The best come first.
-/// @param predictives of each model for the experiments of the evidence
-Json rank_measurements(const Evidence &evidence, const std::vector<Model> &models,
-                       const std::vector<Predictive> &predictives);
-
 /// Measurements that would tell the models of an answer apart: those that were made, once more, and
 /// experiments that were not measured.
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,

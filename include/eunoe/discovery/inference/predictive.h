@@ -13,6 +13,10 @@ struct PosteriorDraws
 {
   std::vector<std::map<std::size_t, double>> effects;
   std::vector<Eigen::VectorXd> nuisances;
+  /// What the nuisances were drawn from, for the effects of each draw: a normal distribution by its
+  /// mean and a root of its covariance.
+  std::vector<Eigen::VectorXd> nuisance_means;
+  std::vector<Eigen::MatrixXd> nuisance_roots;
 };
 
 /// @param model without effects: nothing is missing
@@ -45,14 +49,18 @@ public:
   double refuted_by(const Predictive &truth, double level) const;
   /// Of data about the mean.
   const Eigen::LLT<Eigen::MatrixXd> &covariance() const { return llt; }
-  /// Data of each draw of the posterior, and their mean and variances if the draw is true.
-  const std::vector<Eigen::VectorXd> &twin_data() const { return twins; }
-  const Eigen::MatrixXd &draw_means() const { return means; }
-  const Eigen::MatrixXd &draw_variances() const { return variances; }
+
+  /// Data if the effects of a draw are true, and the nuisances anything that the posterior allows.
+  struct Conditional
+  {
+    Eigen::VectorXd twin; ///< an example
+    Eigen::VectorXd mean, variance;
+    Eigen::MatrixXd columns; ///< what nuisances add to the covariance, by its root
+  };
+  const std::vector<Conditional> &draws() const { return all; }
 
 private:
-  std::vector<Eigen::VectorXd> twins;
-  Eigen::MatrixXd means, variances; ///< a column for each draw
+  std::vector<Conditional> all;
   Eigen::VectorXd centre;
   Eigen::LLT<Eigen::MatrixXd> llt;
   Tail tail;
