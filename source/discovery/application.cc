@@ -12,6 +12,7 @@
 #include <boost/algorithm/string.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -183,13 +184,19 @@ int make_plan(const StudyInput &study, MPI_Comm comm, Log &log)
       names.push_back(experiment.name());
       cost[experiment.name()] = experiment.estimate().core_seconds();
     }
-    log.line("Information that a measurement with four repeats is expected to give about which "
-             "effect is missing, in bits, and core-seconds of one run:");
-    for (const auto &row : plan(p.options, names, study.plain_factors(), simulator, log))
-      log.line("  " + format(row.at("information").get<double>()) + " of " +
-               format(row.at("of").get<double>()) + ": " + row.at("experiment").get<std::string>() +
-               ", " + row.at("observable").get<std::string>() + " (" +
-               format_roughly(cost[row.at("experiment").get<std::string>()]) + ")");
+    const auto rows = plan(p.options, names, study.plain_factors(), simulator, log);
+    if (!rows.empty())
+      log.line("What a measurement with four repeats is expected to tell about which effect is "
+               "missing, of " +
+               format_roughly(rows[0].at("of").get<double>()) + " bits:");
+    log.line("   bits  core-seconds of a run  experiment, observable");
+    for (const auto &row : rows) {
+      const std::string experiment = row.at("experiment").get<std::string>();
+      char numbers[40];
+      std::snprintf(numbers, sizeof numbers, "%7.2f %22.1f  ", row.at("information").get<double>(),
+                    cost[experiment]);
+      log.line(numbers + experiment + ", " + row.at("observable").get<std::string>());
+    }
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Give the same command again to go on.");
     return exit_stopped;

@@ -171,7 +171,7 @@ def check_plan(program: Program) -> None:
     expect(program.run("study.prm", "--plan", *settings(measured_data="none.csv",
                                                         table_of_runs="output_runs.sqlite",
                                                         budget_of_runs="60")),
-           0, "in bits", "box, all", "short, all")
+           0, "bits  core-seconds of a run", "box, all", "short, all")
 
 
 def check_full_disk(program: Program) -> None:
