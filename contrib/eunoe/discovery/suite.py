@@ -140,7 +140,11 @@ class Suite:
                 case.amplitudes[name] = amplitude
                 case.strengths[name] = math.copysign(reached, case.strengths[name])
             print(case.name, flush=True)
-            folder = self.make_data(case)
+            try:
+                folder = self.make_data(case)
+            except RuntimeError as error:
+                print(f"  {error}")
+                continue
             self.make_study(case, folder, self.options.label, self.options.set)
 
 
