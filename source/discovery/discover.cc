@@ -76,6 +76,17 @@ public:
     return false;
   }
 
+  /// Whether an effect would be detected if it is what it could be once it is known better.
+  static bool could_be_detected(const Round &round)
+  {
+    const Eigen::VectorXd &data = round.target.data();
+    const double needed = round.findings.threshold + round.evidence.log_nothing(data);
+    const std::vector<std::size_t> effects = round.evidence.usable();
+    return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
+      return log_sum(round.evidence.optimistic(k, data)) > needed;
+    });
+  }
+
   /// Whether the last rounds gave the same answer, and the errors of the emulators no longer
   /// matter for it.
   bool is_settled(const Round &round, const double level) const
@@ -92,7 +103,7 @@ public:
                                                 last["probability"].get<double>()) > same)) ||
           (!round.findings.detected && rows[k]["p of nothing missing"].get<double>() < far * level))
         return false;
-    if (round.findings.detected && has_challenger(round))
+    if (round.findings.detected ? has_challenger(round) : could_be_detected(round))
       return false;
     if (!round.findings.detected || round.findings.models.front().probability > sure)
       return true;
