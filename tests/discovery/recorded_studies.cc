@@ -100,6 +100,14 @@ EUNOE_MPI_TEST()
   check("strong effects are detected", strong.detected >= 5, strong.text());
   check("and named", strong.right >= 4, strong.text());
   check("nothing else is", strong.wrong <= 1, strong.text());
+  // The first rounds of this study see nothing, as the effect's fingerprint is hardly known.
+  StudyOptions patient;
+  patient.budget = 700;
+  const RecordedStudy late = interpolated_study(table, {"single", 4., 1}, 9631, patient);
+  check("a study looks on while an effect could be detected",
+        is_detected(late) &&
+            late.discovery.content["learning curve"][0]["verdict"] == name_of(Verdict::none),
+        late.discovery.content["learning curve"].dump());
   const Answers deleted = interpolated(table, {"deleted", 8., 1}, 1, 3);
   // At least 97 % detected: 0.3 %.
   check("an effect that the catalogue lacks is detected", deleted.detected >= 2, deleted.text());

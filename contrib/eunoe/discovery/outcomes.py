@@ -21,6 +21,14 @@ REFUTED = 0.01
 BORDERS = (0., 2.8, 5.7, 11.3, math.inf)
 
 
+# What is scored of the lists of an answer, and how many of the likeliest effects are kept.
+MOST_CANDIDATES = 5
+SCORED_ROWS = {"candidates": ("effect", "confidence"),
+               "amplitudes": ("effect", "amplitude", "lower", "upper"),
+               "tie": ("effects", "probability"),
+               "learning curve": ("runs", "verdict", "first", "probability", "p of nothing missing")}
+
+
 @dataclass
 class Outcome:
     case: Case
@@ -85,11 +93,13 @@ def read(folder: Path, label: str) -> dict | None:
     sealed = json.loads((folder / "sealed" / "truth.json").read_text(encoding="utf-8"))
     case = Case.load(folder)
     assert sealed["effects"] == case.amplitudes, f"{folder}: the sealed truth is another one"
+    content["candidates"] = content["candidates"][:MOST_CANDIDATES]
     content["gaps"] = {"held-out": {key: value for key, value in content["gaps"].get("held-out", {}).items()
                                     if key != "envelopes"}}
-    scored = ("verdict", "candidates", "amplitudes", "tie", "gaps", "runs", "learning curve")
     return {"case": asdict(case), "nuisances": sealed["nuisances"],
-            "answer": {key: content[key] for key in scored}}
+            "answer": {key: content[key] for key in ("verdict", "p of nothing missing", "gaps", "runs")}
+            | {key: [{word: row[word] for word in words if word in row} for row in content[key]]
+               for key, words in SCORED_ROWS.items()}}
 
 
 def read_lines(path: Path) -> list[Outcome]:
