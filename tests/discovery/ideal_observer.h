@@ -5,9 +5,9 @@
 // every effect at every amplitude exactly, and the noise of the instrument, but neither amplitude
 // nor nuisances. No study can detect or name more effects rightly.
 
-#include "recorded.h"
-
 #include <eunoe/discovery/inference/evidence.h>
+
+#include "recorded.h"
 
 namespace test {
 
@@ -24,29 +24,34 @@ public:
       part.values.conservativeResize(part.values.size() + 1);
       part.values(part.values.size() - 1) = point.value;
     }
-  }
-
-  /// The single effect whose evidence is the largest.
-  std::string first_name() const
-  {
-    std::string first;
-    double highest = -1e300;
     for (const Factor &f : simulator.factors())
       if (f.kind == Factor::Kind::effect)
-        if (const double evidence = log_evidence(f); evidence > highest) {
-          highest = evidence;
-          first = f.name;
-        }
-    return first;
+        effects.emplace_back(log_evidence(f), f.name);
+    std::sort(effects.begin(), effects.end());
+  }
+
+  /// The likeliest single effects, which together have a probability; the likeliest first.
+  std::vector<std::string> names(const double probability) const
+  {
+    std::vector<double> logs;
+    for (const auto &[log, name] : effects)
+      logs.push_back(log);
+    const double total = log_sum(logs);
+    std::vector<std::string> list;
+    double sum = 0.;
+    for (auto it = effects.rbegin(); it != effects.rend() && sum < probability; ++it) {
+      list.push_back(it->second);
+      sum += std::exp(it->first - total);
+    }
+    return list;
   }
 
   /// Log of the evidence for some effect, each as likely as the others, over that for nothing.
   double log_bayes_factor() const
   {
     std::vector<double> logs;
-    for (const Factor &f : simulator.factors())
-      if (f.kind == Factor::Kind::effect)
-        logs.push_back(log_evidence(f));
+    for (const auto &[log, name] : effects)
+      logs.push_back(log);
     return log_sum(logs) - std::log(static_cast<double>(logs.size())) - log_likelihood({});
   }
 
@@ -122,6 +127,7 @@ private:
   const unsigned int repeats;
   const double instrument;
   std::map<std::string, Part> parts;
+  std::vector<std::pair<double, std::string>> effects; ///< log evidence and name
 };
 
 } // namespace test

@@ -56,17 +56,25 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
   for (const StudyKind &kind : standard_kinds()) {
     if (kind.kind != "single" || !options.wants(kind))
       continue;
-    unsigned int right = 0;
+    constexpr double credible = 0.95;
+    unsigned int right = 0, covered = 0;
+    std::size_t size = 0;
     std::map<double, unsigned int> detected;
     for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
       const DrawnCase drawn(table, kind, options.first_seed + k);
       const IdealObserver observer = observer_of(drawn);
-      right += drawn.one.strengths.count(observer.first_name()) > 0;
+      const std::vector<std::string> names = observer.names(credible);
+      const std::string truth = drawn.one.strengths.begin()->first;
+      right += names.front() == truth;
+      covered += std::count(names.begin(), names.end(), truth) > 0;
+      size += names.size();
       for (const double level : levels)
         detected[level] +=
             observer.log_bayes_factor() > nothing[static_cast<std::size_t>(level * n_nulls)];
     }
-    std::printf("strength %g: first name right in %u of %u", kind.strength, right, options.n_seeds);
+    std::printf("strength %g: first name right in %u of %u, sets of 95 %% cover %u, mean size %.2f",
+                kind.strength, right, options.n_seeds, covered,
+                static_cast<double>(size) / options.n_seeds);
     for (const double level : levels)
       std::printf(", detected at level %g in %u", level, detected[level]);
     std::printf("\n");

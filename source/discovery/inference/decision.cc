@@ -65,6 +65,20 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
   return findings;
 }
 
+namespace {
+
+/// Whether a model is one of the answer with another effect that it hardly needs, as it has not
+/// made it likelier.
+bool is_needless(const Model &model, const std::vector<Model> &answer)
+{
+  return std::any_of(answer.begin(), answer.end(), [&](const Model &likelier) {
+    return std::includes(model.effects.begin(), model.effects.end(), likelier.effects.begin(),
+                         likelier.effects.end());
+  });
+}
+
+} // namespace
+
 void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
             Findings &findings)
 {
@@ -75,7 +89,7 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
     sum += model.probability;
     if (model.is_discrepancy)
       findings.none_of_these = true;
-    else
+    else if (!is_needless(model, findings.answer))
       findings.answer.push_back(model);
   }
   const bool is_first = findings.models.front().is_discrepancy;
@@ -94,15 +108,6 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
     findings.verdict = Verdict::off_catalogue;
     return;
   }
-  // One effect, perhaps with another that it hardly needs, is one name.
-  const std::vector<std::size_t> &first = findings.answer.front().effects;
-  const bool all_contain_it =
-      std::all_of(findings.answer.begin(), findings.answer.end(), [&](const Model &model) {
-        return std::includes(model.effects.begin(), model.effects.end(), first.begin(),
-                             first.end());
-      });
-  if (all_contain_it && !findings.none_of_these)
-    findings.answer.resize(1);
   findings.verdict =
       findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
 }
