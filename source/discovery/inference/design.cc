@@ -141,10 +141,14 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::ve
   std::stable_sort(list.begin(), list.end(), [](const Wish &a, const Wish &b) {
     return std::pair(a.effect, a.amplitude) < std::pair(b.effect, b.amplitude);
   });
-  constexpr double least = 0.01, share_of_base = 0.5;
-  list.push_back({space.n_effects(), 0.,
-                  share_of_base * std::sqrt(std::min(1., p_nothing + least)) *
-                      unknown(evidence.nothing().prediction)});
+  // The base model must be known at least as well as an effect at small amplitudes, which else
+  // would describe data without any effect better than the base model does.
+  constexpr double most = 0.5, least = 0.01;
+  const double share = std::max(least, most * std::sqrt(std::min(1., p_nothing / options.level)));
+  double others = 0.;
+  for (const Wish &wish : list)
+    others += wish.weight;
+  list.push_back({space.n_effects(), 0., others > 0. ? others * share / (1. - share) : 1.});
   return list;
 }
 
