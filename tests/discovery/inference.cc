@@ -1,5 +1,6 @@
 // The parts of the inference against closed formulas and against twins of a known truth.
 
+#include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/predictive.h>
 
@@ -125,6 +126,48 @@ void calibrations(Laboratory &lab)
         seen ? std::to_string(*seen) : "none");
 }
 
+/// The quantiles of one amplitude whatever another one is, against a fine grid of both.
+void pairs()
+{
+  constexpr int on_each_side = 150, rounds = 8;
+  constexpr double strength = 10., farthest = 0.75, step = farthest / on_each_side;
+  Laboratory lab(nature(), 1);
+  const Amplitudes truth = {{"c", lab.simulator.amplitude_of("c", strength, both)},
+                            {"d", lab.simulator.amplitude_of("d", strength, both)}};
+  for (int k = 0; k < rounds; ++k) {
+    const Target target = lab.target(truth, 3);
+    const Evidence evidence(target, lab.space);
+    lab.design.refine(evidence, evidence.models(target.data()), 0.);
+  }
+  const Target target = lab.target(truth, 3);
+  const Evidence evidence(target, lab.space);
+  const Eigen::VectorXd &data = target.data();
+  const Model model = evidence.models(data).front();
+  check("both effects are found", model.effects == std::vector<std::size_t>{2, 3});
+  const std::size_t a = 2, b = 3;
+  std::vector<double> logs;
+  std::map<double, std::vector<double>> by_amplitude;
+  for (int i = -on_each_side; i <= on_each_side; ++i)
+    for (int j = -on_each_side; j <= on_each_side; ++j) {
+      const double u = model.best.at(a) * std::exp(step * i),
+                   v = model.best.at(b) * std::exp(step * j);
+      const auto here = evidence.prepare(target.predict({{a, u}, {b, v}}));
+      logs.push_back(evidence.log_likelihood(here, data) + evidence.place_near(a, u).log_reference +
+                     evidence.place_near(b, v).log_reference);
+      by_amplitude[u].push_back(logs.back());
+    }
+  double sum = 0., low = 0., high = 0.;
+  for (const auto &[u, values] : by_amplitude) {
+    sum += std::exp(log_sum(values) - log_sum(logs));
+    low = sum < 0.05 ? u : low;
+    high = sum < 0.95 ? u : high;
+  }
+  const AmplitudePosterior posterior(evidence, model, data, a);
+  const double width = (posterior.quantile(0.95) - posterior.quantile(0.05)) / (high - low);
+  check("an interval of one of them allows for the other", std::abs(width - 1.) < 0.04,
+        std::to_string(width));
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -133,4 +176,5 @@ EUNOE_MPI_TEST()
   likelihoods(lab);
   levels(lab);
   calibrations(lab);
+  pairs();
 }

@@ -1,4 +1,7 @@
+#include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/calibration.h>
+
+#include <boost/random/discrete_distribution.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +10,8 @@
 namespace eunoe::discovery {
 
 namespace {
+
+using Pick = boost::random::discrete_distribution<std::size_t>;
 
 /// A twin in which an effect was detected: log posterior of each model, and which is the truth.
 struct Trial
@@ -27,76 +32,7 @@ double log_score(const std::vector<Trial> &trials, const double temperature)
   return sum;
 }
 
-/// An index drawn by weights that are logarithms and sum to one.
-std::size_t draw_place(const std::vector<Evidence::Place> &places, RandomStream &random)
-{
-  double left = random.uniform();
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    left -= std::exp(places[i].log_prior);
-    if (left < 0.)
-      return i;
-  }
-  return places.size() - 1;
-}
-
 } // namespace
-
-AmplitudePosterior::AmplitudePosterior(const std::vector<Evidence::Place> &places,
-                                       const std::vector<double> &log_weights)
-{
-  const double total = log_sum(log_weights);
-  for (std::size_t i = 0; i < places.size(); ++i)
-    sorted.emplace_back(places[i].amplitude, std::exp(log_weights[i] - total));
-  std::sort(sorted.begin(), sorted.end());
-}
-
-double AmplitudePosterior::quantile(const double share) const
-{
-  double sum = 0.;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double next = sum + sorted[i].second;
-    if (next >= share) {
-      // Each place stands for the amplitudes half-way to its neighbours.
-      const double low = i == 0 ? sorted[i].first : 0.5 * (sorted[i - 1].first + sorted[i].first);
-      const double high =
-          i + 1 == sorted.size() ? sorted[i].first : 0.5 * (sorted[i].first + sorted[i + 1].first);
-      return low + (high - low) * (share - sum) / std::max(sorted[i].second, 1e-300);
-    }
-    sum = next;
-  }
-  return sorted.back().first;
-}
-
-double AmplitudePosterior::below(const double amplitude) const
-{
-  double sum = 0.;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double low = i == 0 ? sorted[i].first : 0.5 * (sorted[i - 1].first + sorted[i].first);
-    const double high =
-        i + 1 == sorted.size() ? sorted[i].first : 0.5 * (sorted[i].first + sorted[i + 1].first);
-    if (amplitude < high)
-      return sum + sorted[i].second *
-                       std::clamp((amplitude - low) / std::max(high - low, 1e-300), 0., 1.);
-    sum += sorted[i].second;
-  }
-  return sum;
-}
-
-AmplitudePosterior amplitude_posterior(const Evidence &evidence, const std::size_t effect,
-                                       const Eigen::VectorXd &data, const Model &model)
-{
-  std::vector<double> weights;
-  for (const Evidence::Place &place : evidence.places(effect)) {
-    std::map<std::size_t, double> effects = model.best;
-    effects[effect] = place.amplitude;
-    weights.push_back(place.log_reference +
-                      (effects.size() == 1
-                           ? evidence.log_likelihood(place.hypothesis, data)
-                           : evidence.log_likelihood(
-                                 evidence.prepare(evidence.target().predict(effects)), data)));
-  }
-  return {evidence.places(effect), weights};
-}
 
 Calibration calibrate(const Evidence &evidence, const double threshold, const unsigned int draws,
                       const std::uint32_t seed)
@@ -113,17 +49,23 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
   for (unsigned int i = 0; i < draws && !usable.empty(); ++i) {
     const std::size_t truth = random.index(usable.size());
     const auto &places = evidence.places(usable[truth]);
-    const Evidence::Place &place = places[draw_place(places, random)];
+    std::vector<double> prior;
+    for (const Evidence::Place &place : places)
+      prior.push_back(std::exp(place.log_prior));
+    const Evidence::Place &place = places[Pick(prior)(random)];
     const Eigen::VectorXd data = twins.draw(place.hypothesis.prediction);
     if (evidence.log_bayes_factor(data) < threshold)
       continue;
     Trial trial{evidence.log_posterior_of_singles(data), truth};
+    Model alone;
+    alone.effects = {usable[truth]};
     const double total = log_sum(trial.log_posterior);
     const auto first = std::max_element(trial.log_posterior.begin(), trial.log_posterior.end());
     result.stated += std::exp(*first - total);
     result.right +=
         first - trial.log_posterior.begin() == static_cast<std::ptrdiff_t>(truth) ? 1. : 0.;
-    const double below = amplitude_posterior(evidence, usable[truth], data).below(place.amplitude);
+    const double below =
+        AmplitudePosterior(evidence, alone, data, usable[truth]).below(place.amplitude);
     tails.push_back(std::min(below, 1. - below));
     trials.push_back(std::move(trial));
   }

@@ -1,3 +1,4 @@
+#include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/describe.h>
 #include <eunoe/discovery/inference/predictive.h>
 
@@ -86,8 +87,7 @@ Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
   const Model &model = findings.answer.front();
   for (const std::size_t k : model.effects) {
     const Factor &effect = evidence.space().effect(k);
-    const AmplitudePosterior posterior =
-        amplitude_posterior(evidence, k, evidence.target().data(), model);
+    const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
     const double tail = findings.calibration.tail;
     const double low = posterior.quantile(tail), high = posterior.quantile(1. - tail);
     Json shape = Json::array();

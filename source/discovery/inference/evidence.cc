@@ -267,6 +267,14 @@ Model Evidence::pair(const std::size_t a, const std::size_t b, const Eigen::Vect
   return result;
 }
 
+/// Log of the prior density of an amplitude's logarithm.
+double Evidence::log_density(const std::size_t effect, const double amplitude) const
+{
+  const std::vector<Place> &places = grid[effect];
+  return place_near(effect, amplitude).log_prior -
+         std::log(places[1].amplitude / places[0].amplitude);
+}
+
 double Evidence::log_at(const std::map<std::size_t, double> &effects,
                         const Eigen::VectorXd &data) const
 {
@@ -310,16 +318,13 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
   model.log_evidence = evidence;
 }
 
-/// Log of the prior density of an amplitude's logarithm.
-double Evidence::log_density(const std::size_t effect, const double amplitude) const
+const Evidence::Place &Evidence::place_near(const std::size_t effect, const double amplitude) const
 {
   const std::vector<Place> &places = grid[effect];
   const std::size_t side = (amplitude > 0.) == (places.front().amplitude > 0.) ? 0 : n_places;
-  const double ratio = std::log(places[side + 1].amplitude / places[side].amplitude);
-  const double place = std::log(amplitude / places[side].amplitude) / ratio;
-  return places[side + static_cast<std::size_t>(std::clamp(std::lround(place), 0l, n_places - 1l))]
-             .log_prior -
-         std::log(ratio);
+  const double first = places[side].amplitude;
+  const double place = std::log(amplitude / first) / std::log(places[side + 1].amplitude / first);
+  return places[side + static_cast<std::size_t>(std::clamp(std::lround(place), 0l, n_places - 1l))];
 }
 
 std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const

@@ -268,8 +268,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
     }
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
-      const AmplitudePosterior posterior =
-          amplitude_posterior(evidence, k, evidence.target().data(), model);
+      const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
       for (const double share : run_shares) {
         points.push_back({space.origin(), few});
         points.back().position(static_cast<Eigen::Index>(k)) = posterior.quantile(share);

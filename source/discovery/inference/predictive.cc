@@ -1,70 +1,25 @@
+#include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/predictive.h>
+
+#include <boost/random/discrete_distribution.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace eunoe::discovery {
 
-namespace {
-
-/// Amplitudes near the best of a set, by a normal approximation: how far one amplitude may move
-/// until the likelihood falls to its standard error.
-double log_error(const Evidence &evidence, std::map<std::size_t, double> effects,
-                 const std::size_t moved, const Eigen::VectorXd &data)
-{
-  constexpr double step = 0.05, least = 1e-4, most = 0.7;
-  const auto at = [&](const double shift) {
-    std::map<std::size_t, double> other = effects;
-    other[moved] *= std::exp(shift);
-    return evidence.log_likelihood(evidence.prepare(evidence.target().predict(other)), data);
-  };
-  const double curvature = (2. * at(0.) - at(step) - at(-step)) / (step * step);
-  return std::min(most, 1. / std::sqrt(std::max(curvature, least)));
-}
-
-/// What a model may be at other amplitudes than the best: all places of one effect, and for several
-/// a grid about the best, as wide as the data leave them uncertain.
-std::vector<Evidence::Hypothesis> family(const Evidence &evidence, const Model &model,
-                                         const Eigen::VectorXd &data)
-{
-  std::vector<Evidence::Hypothesis> members;
-  if (model.effects.size() == 1) {
-    for (const Evidence::Place &place : evidence.places(model.effects[0]))
-      members.push_back(place.hypothesis);
-    return members;
-  }
-  constexpr int on_each_side = 4;
-  constexpr double farthest = 2.5;
-  std::vector<std::map<std::size_t, double>> grid = {model.best};
-  for (const std::size_t k : model.effects) {
-    const double error = log_error(evidence, model.best, k, data);
-    std::vector<std::map<std::size_t, double>> wider;
-    for (const auto &point : grid)
-      for (int i = -on_each_side; i <= on_each_side; ++i) {
-        wider.push_back(point);
-        wider.back()[k] = std::clamp(point.at(k) * std::exp(farthest * error * i / on_each_side),
-                                     evidence.space().lower(k), evidence.space().upper(k));
-      }
-    grid = std::move(wider);
-  }
-  for (const auto &effects : grid)
-    members.push_back(evidence.prepare(evidence.target().predict(effects)));
-  return members;
-}
-
-} // namespace
-
 double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDraws &posterior,
                 const std::uint32_t seed)
 {
   const Eigen::VectorXd &data = evidence.target().data();
-  const std::vector<Evidence::Hypothesis> members = family(evidence, model, data);
+  const std::vector<Member> all = members(evidence, model, data);
   const auto misfit = [&](const Eigen::VectorXd &values) {
     std::vector<double> likelihoods;
-    for (const Evidence::Hypothesis &member : members)
-      likelihoods.push_back(evidence.log_likelihood(member, values));
+    for (const Member &member : all)
+      likelihoods.push_back(evidence.log_likelihood(member.hypothesis, values));
     const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
-    return evidence.distance(members[static_cast<std::size_t>(best - likelihoods.begin())], values);
+    return evidence.distance(all[static_cast<std::size_t>(best - likelihoods.begin())].hypothesis,
+                             values);
   };
   Twins source(evidence, seed);
   std::vector<double> misfits;
@@ -91,22 +46,21 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
 {
   RandomStream random(seed, 31);
   const Eigen::VectorXd &data = evidence.target().data();
-  std::map<std::size_t, double> errors;
-  if (model.effects.size() > 1)
-    for (const std::size_t k : model.effects)
-      errors[k] = log_error(evidence, model.best, k, data);
-  std::optional<AmplitudePosterior> posterior;
+  std::optional<AmplitudePosterior> alone;
+  std::vector<Member> both;
   if (model.effects.size() == 1)
-    posterior = amplitude_posterior(evidence, model.effects[0], data);
+    alone.emplace(evidence, model, data, model.effects[0]);
+  else if (!model.effects.empty())
+    both = members(evidence, model, data);
+  const boost::random::discrete_distribution<std::size_t> pick(
+      both.empty() ? std::vector<double>{1.} : weights(both));
   PosteriorDraws result;
   for (unsigned int i = 0; i < draws; ++i) {
-    std::map<std::size_t, double> effects = model.best;
-    if (posterior)
-      effects[model.effects[0]] = posterior->quantile(random.uniform());
-    else
-      for (auto &[k, amplitude] : effects)
-        amplitude = std::clamp(amplitude * std::exp(errors.at(k) * random.normal()),
-                               evidence.space().lower(k), evidence.space().upper(k));
+    std::map<std::size_t, double> effects;
+    if (alone)
+      effects[model.effects[0]] = alone->quantile(random.uniform());
+    else if (!both.empty())
+      effects = both[pick(random)].effects;
     const Evidence::Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
     const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
     const Eigen::Index n = gradient.cols();

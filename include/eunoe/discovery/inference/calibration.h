@@ -7,30 +7,6 @@
 
 namespace eunoe::discovery {
 
-/// Posterior of one effect's amplitude: places in ascending order and the probability below each.
-class AmplitudePosterior
-{
-public:
-  /// @param log_weights of the places, up to a constant
-  AmplitudePosterior(const std::vector<Evidence::Place> &places,
-                     const std::vector<double> &log_weights);
-
-  /// Amplitude below which this much of the probability lies.
-  double quantile(double share) const;
-  /// Probability below an amplitude.
-  double below(double amplitude) const;
-  /// Amplitudes and their probabilities.
-  const std::vector<std::pair<double, double>> &weights() const { return sorted; }
-
-private:
-  std::vector<std::pair<double, double>> sorted;
-};
-
-/// The posterior of an effect's amplitude if it alone is missing, or beside others that have their
-/// best amplitudes.
-AmplitudePosterior amplitude_posterior(const Evidence &evidence, std::size_t effect,
-                                       const Eigen::VectorXd &data, const Model &model = {});
-
 /// What this study's own twins say of its probabilities and intervals (simulation-based
 /// calibration; Talts and others 2018): truths are drawn from the prior, and their data go through
 /// the same steps as the measured ones.

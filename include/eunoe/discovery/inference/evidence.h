@@ -62,6 +62,8 @@ public:
     Hypothesis hypothesis;
   };
   const std::vector<Place> &places(std::size_t effect) const { return grid[effect]; }
+  /// The place nearest to an amplitude.
+  const Place &place_near(std::size_t effect, double amplitude) const;
   const Hypothesis &nothing() const { return base; }
   const Target &target() const { return aim; }
   double degrees_of_freedom() const { return dof; } ///< of the t-distribution

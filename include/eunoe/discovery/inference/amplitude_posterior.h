@@ -1,0 +1,53 @@
+#ifndef eunoe_discovery_inference_amplitude_posterior_h
+#define eunoe_discovery_inference_amplitude_posterior_h
+
+#include <eunoe/discovery/inference/evidence.h>
+
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// A model at amplitudes that the data allow, and the logarithm of their posterior probability up
+/// to a constant, with Jeffreys' prior.
+struct Member
+{
+  std::map<std::size_t, double> effects;
+  Evidence::Hypothesis hypothesis;
+  double log_weight = 0.;
+};
+
+/// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.
+/// @param model with one or two effects
+std::vector<Member> members(const Evidence &evidence, const Model &model,
+                            const Eigen::VectorXd &data);
+
+/// Probabilities of members, which sum to one.
+std::vector<double> weights(const std::vector<Member> &members);
+
+/// Posterior of one effect's amplitude, whatever the other one's is: places in ascending order and
+/// the probability below each.
+class AmplitudePosterior
+{
+public:
+  AmplitudePosterior(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data,
+                     std::size_t effect);
+
+  /// Amplitude below which this much of the probability lies.
+  double quantile(double share) const;
+  /// Probability below an amplitude.
+  double below(double amplitude) const;
+  /// Amplitudes and their probabilities.
+  const std::vector<std::pair<double, double>> &weights() const { return sorted; }
+
+private:
+  /// Each place stands for the amplitudes half-way to its neighbours.
+  std::pair<double, double> cell(std::size_t place) const;
+
+  std::vector<std::pair<double, double>> sorted;
+};
+
+} // namespace eunoe::discovery
+
+#endif

@@ -1,0 +1,158 @@
+#include <eunoe/discovery/inference/amplitude_posterior.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// A grid of two effects' amplitudes: logarithms of their ratios to the best ones.
+class Grid
+{
+public:
+  /// Points on each side of the middle.
+  static constexpr int half = 10;
+
+  Grid(const Evidence &evidence, const Model &model) : evidence(evidence), best(model.best)
+  {
+    constexpr double farthest = 1.2;
+    for (const auto &[k, amplitude] : best)
+      axes[k] = Eigen::VectorXd::LinSpaced(2 * half + 1, -farthest, farthest);
+  }
+
+  /// The members at the points that are in the effects' ranges.
+  std::vector<Member> evaluate(const Eigen::VectorXd &data) const
+  {
+    std::vector<Member> result;
+    const auto &[first, rows] = *axes.begin();
+    const auto &[second, columns] = *axes.rbegin();
+    for (const double x : rows)
+      for (const double y : columns) {
+        Member member;
+        member.effects = {{first, best.at(first) * std::exp(x)},
+                          {second, best.at(second) * std::exp(y)}};
+        const auto is_in_range = [&](const auto &effect) {
+          return effect.second >= evidence.space().lower(effect.first) &&
+                 effect.second <= evidence.space().upper(effect.first);
+        };
+        if (!std::all_of(member.effects.begin(), member.effects.end(), is_in_range))
+          continue;
+        member.hypothesis = evidence.prepare(evidence.target().predict(member.effects));
+        member.log_weight = evidence.log_likelihood(member.hypothesis, data);
+        for (const auto &[k, amplitude] : member.effects)
+          member.log_weight += evidence.place_near(k, amplitude).log_reference;
+        result.push_back(std::move(member));
+      }
+    return result;
+  }
+
+  /// Fits the grid to the members that matter, with a cell around them.
+  /// @return whether it became clearly smaller
+  bool shrink(const std::vector<Member> &members)
+  {
+    constexpr double matters = 1e-4, clearly = 0.7;
+    const std::vector<double> probabilities = weights(members);
+    bool is_smaller = false;
+    for (auto &[k, axis] : axes) {
+      double low = 1e300, high = -1e300;
+      for (std::size_t i = 0; i < members.size(); ++i)
+        if (probabilities[i] > matters) {
+          const double shift = std::log(members[i].effects.at(k) / best.at(k));
+          low = std::min(low, shift);
+          high = std::max(high, shift);
+        }
+      const double cell = axis(1) - axis(0), length = axis(2 * half) - axis(0);
+      low = std::max(low - cell, axis(0));
+      high = std::min(high + cell, axis(2 * half));
+      is_smaller |= high - low < clearly * length;
+      axis = Eigen::VectorXd::LinSpaced(2 * half + 1, low, high);
+    }
+    return is_smaller;
+  }
+
+private:
+  const Evidence &evidence;
+  const std::map<std::size_t, double> best;
+  std::map<std::size_t, Eigen::VectorXd> axes;
+};
+
+} // namespace
+
+std::vector<Member> members(const Evidence &evidence, const Model &model,
+                            const Eigen::VectorXd &data)
+{
+  std::vector<Member> result;
+  if (model.effects.size() == 1) {
+    const std::size_t k = model.effects.front();
+    for (const Evidence::Place &place : evidence.places(k))
+      result.push_back({{{k, place.amplitude}},
+                        place.hypothesis,
+                        place.log_reference + evidence.log_likelihood(place.hypothesis, data)});
+    return result;
+  }
+  constexpr int most_rounds = 5;
+  Grid grid(evidence, model);
+  result = grid.evaluate(data);
+  for (int i = 0; i < most_rounds && grid.shrink(result); ++i)
+    result = grid.evaluate(data);
+  return result;
+}
+
+std::vector<double> weights(const std::vector<Member> &members)
+{
+  std::vector<double> result;
+  for (const Member &member : members)
+    result.push_back(member.log_weight);
+  const double total = result.empty() ? 0. : log_sum(result);
+  for (double &weight : result)
+    weight = std::exp(weight - total);
+  return result;
+}
+
+AmplitudePosterior::AmplitudePosterior(const Evidence &evidence, const Model &model,
+                                       const Eigen::VectorXd &data, const std::size_t effect)
+{
+  const std::vector<Member> all = members(evidence, model, data);
+  const std::vector<double> probabilities = discovery::weights(all);
+  std::map<double, double> marginal;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    marginal[all[i].effects.at(effect)] += probabilities[i];
+  sorted.assign(marginal.begin(), marginal.end());
+}
+
+std::pair<double, double> AmplitudePosterior::cell(const std::size_t place) const
+{
+  const double here = sorted[place].first;
+  return {place == 0 ? here : 0.5 * (sorted[place - 1].first + here),
+          place + 1 == sorted.size() ? here : 0.5 * (here + sorted[place + 1].first)};
+}
+
+double AmplitudePosterior::quantile(const double share) const
+{
+  double sum = 0.;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const double next = sum + sorted[i].second;
+    if (next >= share) {
+      const auto [low, high] = cell(i);
+      return low + (high - low) * (share - sum) / std::max(sorted[i].second, 1e-300);
+    }
+    sum = next;
+  }
+  return sorted.back().first;
+}
+
+double AmplitudePosterior::below(const double amplitude) const
+{
+  double sum = 0.;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const auto [low, high] = cell(i);
+    if (amplitude < high)
+      return sum + sorted[i].second *
+                       std::clamp((amplitude - low) / std::max(high - low, 1e-300), 0., 1.);
+    sum += sorted[i].second;
+  }
+  return sum;
+}
+
+} // namespace eunoe::discovery
