@@ -23,5 +23,5 @@ if [ "$(id -u)" -eq 0 ]; then
   # Root is usual in a container; Open MPI demands both variables.
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-# One more test than cores, as some tests wait for launchers and disks.
-part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(($(nproc) + 1))"
+# No more ranks than cores: ranks that have to share a core wait for each other in every step.
+part "tests" ctest --test-dir build/release --output-on-failure -LE long -j "$(nproc)"

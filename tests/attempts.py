@@ -11,6 +11,9 @@ from eunoe.launch import Failure
 
 # Factor on limits of time: 1 for a release build, more for builds that are much slower.
 PATIENCE = int(os.environ.get("EUNOE_PATIENCE", "1"))
+# Seconds after which a run of a few seconds counts as one that hangs: so many that a machine that is
+# busy with other work does not look like one.
+HANGING = 300 * PATIENCE
 
 
 class Attempts:

@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from attempts import PATIENCE
+from attempts import HANGING
 from eunoe.launch import mpirun, overrides
 
 HERE = Path(__file__).resolve().parent
@@ -34,7 +34,7 @@ class Program:
 
     def run(self, *arguments: str, ranks: int = 1) -> tuple[int, str]:
         done = subprocess.run(self.command(*arguments, ranks=ranks), cwd=self.folder, text=True,
-                              capture_output=True, check=False, timeout=300 * PATIENCE)
+                              capture_output=True, check=False, timeout=HANGING)
         return done.returncode, done.stdout + done.stderr
 
 

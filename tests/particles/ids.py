@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from attempts import PATIENCE
+from attempts import HANGING
 from bad_input.forged import forged, set_head
 from eunoe.endurance.kill_and_restart import Case
 from eunoe.vtk_files import read_pvd, read_vtu
@@ -53,7 +53,7 @@ def check_exhausted(begun: Case, folder: Path, ranks: int) -> None:
     case = continued(begun, folder, 2**32 - 4)  # the last id is 2^32 - 2
     before = {file.name: file.read_bytes() for file in case.results.glob("restart*")}
     run = subprocess.run(case.command(ranks, RESTART, "restart/frequency = 1000"), text=True,
-                         check=False, capture_output=True, timeout=120 * PATIENCE)
+                         check=False, capture_output=True, timeout=HANGING)
     assert run.returncode == 1, f"exit code {run.returncode}:\n{run.stdout}{run.stderr}"
     for part in ("4 particles are to be inserted, but of the 4294967294 ids",
                  "only 3 are left. Nothing was inserted,"):

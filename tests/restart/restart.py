@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from attempts import PATIENCE, Attempts
+from attempts import HANGING, Attempts
 from eunoe.endurance.kill_and_restart import Case, compare, kill_and_restart
 from eunoe.launch import Failure
 
@@ -106,7 +106,7 @@ def locked_semaphore(program: str, folder: Path) -> None:
     other = Case(program, CASE, folder, [])
     settings = (f"simulation control/output name = {name}", "simulation control/iteration end = 500")
     try:
-        subprocess.run(other.command(1, *settings), check=True, capture_output=True, timeout=60 * PATIENCE)
+        subprocess.run(other.command(1, *settings), check=True, capture_output=True, timeout=HANGING)
     except subprocess.SubprocessError as error:
         raise Failure(f"With a semaphore that a killed run left locked: {error}") from None
     finally:

@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from attempts import PATIENCE, Attempts
+from attempts import HANGING, Attempts
 from eunoe.endurance.kill_and_restart import Case, compare, kill_all
 from eunoe.launch import Failure
 
@@ -35,18 +35,18 @@ FILES = {
     "out_force_chains_00004.vtu.new": 2100, "restart_000000002100.checkpoint.new": 1400,
     "measurements.csv.new": LAST, "particles.csv.new": LAST, "summary.json.new": LAST,
 }
-# Tables whose first line cannot be written, and files of processes.
-AT_START = {"energies.csv": STIRRED, "force_0.csv": STIRRED,
-            "apparatus.json.new": str(TESTS / "spreading" / "tiny.prm"),
-            "layers.csv": str(TESTS / "spreading" / "tiny.prm"),
-            "heap.csv": str(TESTS / "heap" / "tiny.prm")}
+SPREADING = str(TESTS / "spreading" / "tiny.prm")
+# Tables whose first line cannot be written, and files of processes, with settings that spare time.
+FIRST_LINES = {"energies.csv": (STIRRED,), "force_0.csv": (STIRRED,), "apparatus.json.new": (SPREADING,),
+               "layers.csv": (SPREADING,),
+               "heap.csv": (str(TESTS / "heap" / "tiny.prm"), "heap/number of particles = 60")}
 
 
 def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None:
     """Runs on two ranks, which must say once that there is no space for @p what."""
     try:
         run = subprocess.run(case.command(2, *settings), text=True, check=False, capture_output=True,
-                             timeout=60 * PATIENCE)
+                             timeout=HANGING)
     except subprocess.TimeoutExpired:
         raise Failure("it hangs") from None
     if run.returncode not in codes:
@@ -69,8 +69,8 @@ def file_is_full(reference: Case, folder: Path, link: str, step: int) -> None:
     compare(reference, case, "continued")
 
 
-def start_is_full(program: str, folder: Path, link: str, prm: str) -> None:
-    case = Case(program, prm, folder, [])
+def first_line_fails(program: str, folder: Path, link: str, prm: str, *settings: str) -> None:
+    case = Case(program, prm, folder, list(settings))
     case.results.mkdir()
     (case.results / link).symlink_to("/dev/full")
     fails(case, link.removesuffix(".new"), (1, 2))
@@ -82,14 +82,14 @@ def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
     table = case.results / "energies.csv"
     process = case.start(2, "restart/checkpoint = true", "restart/frequency = 3000",
                          "simulation control/iteration end = 10000000")
-    end = time.monotonic() + 60 * PATIENCE
+    end = time.monotonic() + HANGING
     while case.last_step() == 0 and time.monotonic() < end:
         time.sleep(0.01)
     limit = table.stat().st_size + 100
     for number in case.processes():
         resource.prlimit(number, resource.RLIMIT_FSIZE, (limit, limit))
     try:
-        output = process.communicate(timeout=60 * PATIENCE)[0]
+        output = process.communicate(timeout=HANGING)[0]
     except subprocess.TimeoutExpired:
         kill_all(case, process)
         raise Failure("it hangs") from None
@@ -112,8 +112,8 @@ def main(program: str, folder: Path) -> int:
     every_step = "post-processing/energies/output frequency = 1"
     work = [(f"{link}", file_is_full, reference, folder / link, link, step)
             for link, step in FILES.items()]
-    work += [(f"{link} at the start", start_is_full, program, folder / ("start_" + link), link, prm)
-             for link, prm in AT_START.items()]
+    work += [(f"{link}, first line", first_line_fails, program, folder / ("first_" + link), link, *case)
+             for link, case in FIRST_LINES.items()]
     work.append(("tables", disk_fills, program, folder / "tables", [every_step]))
     attempts = Attempts()
     attempts.make_at_once(work)

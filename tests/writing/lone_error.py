@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from attempts import PATIENCE
+from attempts import HANGING
 from eunoe.launch import SHARED, mpirun
 
 SENTENCE = "The file is not here."
@@ -45,7 +45,7 @@ def lone_error(program: str) -> None:
     for ranks in ("0", "1", "1 2", "0 1 2"):
         place = f"Error on rank(s) {ranks} of 3"
         try:
-            run = subprocess.run([*mpirun(3, *SHARED), program, *ranks.split()], timeout=60 * PATIENCE, text=True,
+            run = subprocess.run([*mpirun(3, *SHARED), program, *ranks.split()], timeout=HANGING, text=True,
                                  capture_output=True, check=False)
         except subprocess.TimeoutExpired:
             fail(f"{place}: it hangs")
@@ -68,7 +68,7 @@ def one_sees_the_files(program: str, folder: Path) -> None:
     for before, name in ((launch, "first"), ([":"], "second")):
         command += [*before, "-np", "1", "--wdir", str(folder / name), program, "case.prm"]
     try:
-        run = subprocess.run(command, timeout=60 * PATIENCE, text=True, capture_output=True, check=False)
+        run = subprocess.run(command, timeout=HANGING, text=True, capture_output=True, check=False)
     except subprocess.TimeoutExpired:
         fail("A mesh that one rank sees: it hangs")
         return
