@@ -7,21 +7,25 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// A grid of two effects' amplitudes: logarithms of their ratios to the best ones.
+/// A grid of two effects' amplitudes: logarithms of their ratios to the best ones, which have the
+/// same signs.
 class Grid
 {
 public:
-  /// Points on each side of the middle.
-  static constexpr int half = 10;
-
   Grid(const Evidence &evidence, const Model &model) : evidence(evidence), best(model.best)
   {
-    constexpr double farthest = 1.2;
-    for (const auto &[k, amplitude] : best)
-      axes[k] = Eigen::VectorXd::LinSpaced(2 * half + 1, -farthest, farthest);
+    constexpr double around = 1.2;
+    for (const auto &[k, amplitude] : best) {
+      auto &[low, high] = ranges[k];
+      for (const Evidence::Place &place : evidence.places(k))
+        if (place.amplitude / amplitude > 0.) {
+          low = std::min(low, std::log(place.amplitude / amplitude));
+          high = std::max(high, std::log(place.amplitude / amplitude));
+        }
+      axes[k] = points(std::max(low, -around), std::min(high, around));
+    }
   }
 
-  /// The members at the points that are in the effects' ranges.
   std::vector<Member> evaluate(const Eigen::VectorXd &data) const
   {
     std::vector<Member> result;
@@ -32,12 +36,6 @@ public:
         Member member;
         member.effects = {{first, best.at(first) * std::exp(x)},
                           {second, best.at(second) * std::exp(y)}};
-        const auto is_in_range = [&](const auto &effect) {
-          return effect.second >= evidence.space().lower(effect.first) &&
-                 effect.second <= evidence.space().upper(effect.first);
-        };
-        if (!std::all_of(member.effects.begin(), member.effects.end(), is_in_range))
-          continue;
         member.hypothesis = evidence.prepare(evidence.target().predict(member.effects));
         member.log_weight = evidence.log_likelihood(member.hypothesis, data);
         for (const auto &[k, amplitude] : member.effects)
@@ -47,13 +45,14 @@ public:
     return result;
   }
 
-  /// Fits the grid to the members that matter, with a cell around them.
-  /// @return whether it became clearly smaller
-  bool shrink(const std::vector<Member> &members)
+  /// Fits the grid to the members that matter, with a cell around them, or with more where they lie
+  /// at its end.
+  /// @return whether it changed clearly
+  bool fit(const std::vector<Member> &members)
   {
-    constexpr double matters = 1e-4, clearly = 0.7;
+    constexpr double matters = 1e-4, growth = 0.5, clearly = 0.7;
     const std::vector<double> probabilities = weights(members);
-    bool is_smaller = false;
+    bool changed = false;
     for (auto &[k, axis] : axes) {
       double low = 1e300, high = -1e300;
       for (std::size_t i = 0; i < members.size(); ++i)
@@ -62,18 +61,29 @@ public:
           low = std::min(low, shift);
           high = std::max(high, shift);
         }
-      const double cell = axis(1) - axis(0), length = axis(2 * half) - axis(0);
-      low = std::max(low - cell, axis(0));
-      high = std::min(high + cell, axis(2 * half));
-      is_smaller |= high - low < clearly * length;
-      axis = Eigen::VectorXd::LinSpaced(2 * half + 1, low, high);
+      const double first = axis(0), last = axis(axis.size() - 1), cell = axis(1) - first;
+      const auto margin = [&](const double to_end) {
+        return to_end < 0.5 * cell ? growth * (last - first) : cell;
+      };
+      low = std::max(low - margin(low - first), ranges.at(k).first);
+      high = std::min(high + margin(last - high), ranges.at(k).second);
+      changed |= high - low < clearly * (last - first) || low < first - 0.5 * cell ||
+                 high > last + 0.5 * cell;
+      axis = points(low, high);
     }
-    return is_smaller;
+    return changed;
   }
 
 private:
+  static Eigen::VectorXd points(const double low, const double high)
+  {
+    constexpr int number = 21;
+    return Eigen::VectorXd::LinSpaced(number, low, high);
+  }
+
   const Evidence &evidence;
   const std::map<std::size_t, double> best;
+  std::map<std::size_t, std::pair<double, double>> ranges;
   std::map<std::size_t, Eigen::VectorXd> axes;
 };
 
@@ -91,10 +101,10 @@ std::vector<Member> members(const Evidence &evidence, const Model &model,
                         place.log_reference + evidence.log_likelihood(place.hypothesis, data)});
     return result;
   }
-  constexpr int most_rounds = 5;
+  constexpr int most_rounds = 8;
   Grid grid(evidence, model);
   result = grid.evaluate(data);
-  for (int i = 0; i < most_rounds && grid.shrink(result); ++i)
+  for (int i = 0; i < most_rounds && grid.fit(result); ++i)
     result = grid.evaluate(data);
   return result;
 }
