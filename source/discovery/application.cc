@@ -29,7 +29,8 @@ const ProgramText program = {
 
 struct ExtraArguments
 {
-  bool list_observables = false, list_effects = false, plan = false, verdict_exit_code = false;
+  bool list_observables = false, list_effects = false, plan = false, fill_table = false,
+       verdict_exit_code = false;
   std::string truth_file;
 };
 
@@ -170,7 +171,30 @@ int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm,
 }
 
 /// Tells which measurements would say most about which effect is missing.
-int make_plan(const StudyInput &study, MPI_Comm comm, Log &log)
+void make_plan(const StudyInput &study, const std::vector<std::string> &experiments,
+               DemSimulator &simulator, Log &log)
+{
+  std::map<std::string, double> cost;
+  for (const Experiment &experiment : study.experiments)
+    cost[experiment.name()] = experiment.estimate().core_seconds();
+  const auto rows =
+      plan(study.parameters.options, experiments, study.plain_factors(), simulator, log);
+  if (!rows.empty())
+    log.line("What a measurement with four repeats is expected to tell about which effect is "
+             "missing, of " +
+             format_roughly(rows[0].at("of").get<double>()) + " bits:");
+  log.line("   bits  core-seconds of a run  experiment, observable");
+  for (const auto &row : rows) {
+    const std::string experiment = row.at("experiment").get<std::string>();
+    char numbers[40];
+    std::snprintf(numbers, sizeof numbers, "%7.2f %22.1f  ", row.at("information").get<double>(),
+                  cost[experiment]);
+    log.line(numbers + experiment + ", " + row.at("observable").get<std::string>());
+  }
+}
+
+/// What can be done before anything is measured.
+int prepare(const StudyInput &study, const bool fills_table, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
   try {
@@ -178,25 +202,13 @@ int make_plan(const StudyInput &study, MPI_Comm comm, Log &log)
     DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
                            log);
     simulator.find_data_points(100000 * p.options.seed + 1);
-    std::vector<std::string> names;
-    std::map<std::string, double> cost;
-    for (const Experiment &experiment : study.experiments) {
-      names.push_back(experiment.name());
-      cost[experiment.name()] = experiment.estimate().core_seconds();
-    }
-    const auto rows = plan(p.options, names, study.plain_factors(), simulator, log);
-    if (!rows.empty())
-      log.line("What a measurement with four repeats is expected to tell about which effect is "
-               "missing, of " +
-               format_roughly(rows[0].at("of").get<double>()) + " bits:");
-    log.line("   bits  core-seconds of a run  experiment, observable");
-    for (const auto &row : rows) {
-      const std::string experiment = row.at("experiment").get<std::string>();
-      char numbers[40];
-      std::snprintf(numbers, sizeof numbers, "%7.2f %22.1f  ", row.at("information").get<double>(),
-                    cost[experiment]);
-      log.line(numbers + experiment + ", " + row.at("observable").get<std::string>());
-    }
+    std::vector<std::string> experiments;
+    for (const Experiment &experiment : study.experiments)
+      experiments.push_back(experiment.name());
+    if (fills_table)
+      fill_table(p.options, experiments, study.plain_factors(), simulator, log);
+    else
+      make_plan(study, experiments, simulator, log);
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Give the same command again to go on.");
     return exit_stopped;
@@ -240,6 +252,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
                           line.print_parameters || line.describe_parameters;
   if (const auto code = answer(line, program, !only_lists && !makes_data, comm))
     return *code;
+  const bool is_early = arguments.plan || arguments.fill_table;
   Log log(comm, line.quiet);
   StudyInput study;
   Problems problems;
@@ -252,7 +265,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
       list_effects(study.factors, log);
       return exit_success;
     }
-    if (!makes_data && !arguments.plan)
+    if (!makes_data && !is_early)
       read_data(study, comm, problems);
     refuse_if_any(problems);
     refuse_folders(study.parameters, makes_data, comm);
@@ -264,8 +277,8 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
   } catch (const UserError &error) {
     throw RefusedInput(error);
   }
-  if (arguments.plan)
-    return make_plan(study, comm, log);
+  if (is_early)
+    return prepare(study, arguments.fill_table, comm, log);
   if (!makes_data)
     return make_study(study, arguments.verdict_exit_code, comm, log);
   try {
@@ -294,6 +307,10 @@ int run_discovery(int argc, char **argv, MPI_Comm comm)
           "say which experiments and observables are expected to tell most about which effect is "
           "missing; runs the base model and all effects, and needs no measured data",
           &arguments.plan},
+         {"fill-table",
+          "before anything is measured, make as many runs as the budget has: the base model, all "
+          "effects, then where least is known. Studies with the same table of runs need few more",
+          &arguments.fill_table},
          {"verdict-exit-code",
           "end with the verdict's code: 0 none, 10 named, 11 tie, 12 off catalogue, 13 "
           "underpowered",

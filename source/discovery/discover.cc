@@ -237,10 +237,8 @@ public:
         held_out(options, rule, data, space, samples), design(options, space, samples, fit)
   {
     constexpr unsigned int most_members = 4;
-    samples.set_aside(held_out.n_runs() +
-                      options.further_experiments.size() *
-                          (runs_of_base(options.validate_runs, space.n_nuisances()) +
-                           most_members * most_runs_near(options.validate_runs)));
+    samples.set_aside(held_out.n_runs() + runs_to_test(most_members, options.validate_runs, space,
+                                                       options.further_experiments, samples));
     if (samples.n_known() > 0)
       log.line("  " + std::to_string(samples.n_known()) + " runs are in the table already");
   }

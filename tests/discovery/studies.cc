@@ -223,6 +223,29 @@ void runs_of_an_earlier_study()
   check("which it counts", again.content["runs"]["known"] == runs);
 }
 
+/// A table that is filled before anything is measured answers each measurement with few runs.
+void filled_table()
+{
+  SyntheticSimulator simulator(nature(81));
+  simulator.remember();
+  StudyOptions options = small();
+  options.budget = 900;
+  Log log(MPI_COMM_SELF, true);
+  const std::vector<std::string> all = {"spreading", "heap", "thick layers"};
+  fill_table(options, all, simulator.factors(), simulator, log);
+  check("the budget of a table is used", simulator.n_runs() == options.budget,
+        std::to_string(simulator.n_runs()));
+  options.budget = 40;
+  for (const std::string name : {"a", "c"}) {
+    const std::uint64_t before = simulator.n_runs();
+    const Amplitudes truth = {{name, simulator.amplitude_of(name, 8., both)}};
+    const Discovery d = study(simulator, simulator.measure(both, thick, truth, 4, 0.2, 1), options);
+    check("answered from a table",
+          d.model_after.count(name) == 1 && simulator.n_runs() <= before + options.budget,
+          d.content["verdict"].get<std::string>());
+  }
+}
+
 void budget()
 {
   SyntheticSimulator simulator(nature(91));
@@ -279,6 +302,7 @@ EUNOE_MPI_TEST()
   too_weak_to_see();
   withdrawn();
   runs_of_an_earlier_study();
+  filled_table();
   budget();
   plans();
 }

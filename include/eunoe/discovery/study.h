@@ -74,6 +74,12 @@ nlohmann::ordered_json plan(const StudyOptions &options,
                             const std::vector<std::string> &experiments,
                             const std::vector<Factor> &factors, Simulator &simulator, Log &log);
 
+/// Without measured data: fills the table of runs for studies to come. Runs the base model and all
+/// effects, then where the emulators know least, until the budget is spent; what is measured later
+/// is answered from the table with few runs more.
+void fill_table(const StudyOptions &options, const std::vector<std::string> &experiments,
+                const std::vector<Factor> &factors, Simulator &simulator, Log &log);
+
 } // namespace eunoe::discovery
 
 #endif

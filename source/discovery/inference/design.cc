@@ -26,6 +26,12 @@ double strength(const Target &target, const std::size_t effect, const double amp
       std::max(0., (with.mean - without.mean).squaredNorm() - n * 0.5 * with.leverage.mean()));
 }
 
+/// Error of an emulator, as a share of the deviation of what is measured.
+double unknown(const Target &target, const Target::Prediction &prediction)
+{
+  return std::sqrt(prediction.leverage.maxCoeff() / target.variance(prediction).mean());
+}
+
 } // namespace
 
 Design::Design(const StudyOptions &options, const FactorSpace &space, Samples &samples,
@@ -103,14 +109,11 @@ void Design::run_effects(const std::function<Target()> &estimate)
   }
 }
 
-std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::vector<Model> &models,
-                                         const double p_nothing) const
+std::vector<Design::Wish> Design::wishes(const Evidence &evidence,
+                                         const std::vector<Model> &models) const
 {
   const Target &target = evidence.target();
   const Eigen::VectorXd &data = target.data();
-  const auto unknown = [&](const Target::Prediction &prediction) {
-    return std::sqrt(prediction.leverage.maxCoeff() / target.variance(prediction).mean());
-  };
   // Whether a model becomes the likeliest once it is known better.
   std::vector<Wish> list;
   std::vector<double> logs;
@@ -118,7 +121,7 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::ve
     const std::vector<double> optimistic = evidence.optimistic(k, data);
     for (std::size_t i = 0; i < optimistic.size(); ++i) {
       const Evidence::Place &place = evidence.places(k)[i];
-      list.push_back({k, place.amplitude, unknown(place.hypothesis.prediction)});
+      list.push_back({k, place.amplitude, unknown(target, place.hypothesis.prediction)});
       logs.push_back(optimistic[i]);
     }
   }
@@ -127,7 +130,7 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::ve
       const Evidence::Hypothesis best = evidence.prepare(target.predict(model.best));
       const double gain = evidence.log_optimistic(best, data) - evidence.log_likelihood(best, data);
       for (const auto &[k, amplitude] : model.best) {
-        list.push_back({k, amplitude, unknown(target.predict({{k, amplitude}}))});
+        list.push_back({k, amplitude, unknown(target, target.predict({{k, amplitude}}))});
         logs.push_back(model.log_prior + model.log_evidence + gain);
       }
     }
@@ -141,21 +144,16 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const std::ve
   std::stable_sort(list.begin(), list.end(), [](const Wish &a, const Wish &b) {
     return std::pair(a.effect, a.amplitude) < std::pair(b.effect, b.amplitude);
   });
-  // The base model must be known at least as well as an effect at small amplitudes, which else
-  // would describe data without any effect better than the base model does.
-  constexpr double most = 0.5, least = 0.01;
-  const double share = std::max(least, most * std::sqrt(std::min(1., p_nothing / options.level)));
-  double others = 0.;
-  for (const Wish &wish : list)
-    others += wish.weight;
-  list.push_back({space.n_effects(), 0., others > 0. ? others * share / (1. - share) : 1.});
   return list;
 }
 
-bool Design::refine(const Evidence &evidence, const std::vector<Model> &models,
-                    const double p_nothing)
+bool Design::run(std::vector<Wish> list, const double share_of_base)
 {
-  const std::vector<Wish> list = wishes(evidence, models, p_nothing);
+  double others = 0.;
+  for (const Wish &wish : list)
+    others += wish.weight;
+  list.push_back(
+      {space.n_effects(), 0., others > 0. ? others * share_of_base / (1. - share_of_base) : 1.});
   double sum = 0.;
   for (const Wish &wish : list)
     sum += wish.weight;
@@ -176,6 +174,26 @@ bool Design::refine(const Evidence &evidence, const std::vector<Model> &models,
   const std::uint64_t before = samples.n_asked();
   samples.run(points, experiments);
   return samples.n_asked() > before;
+}
+
+bool Design::refine(const Evidence &evidence, const std::vector<Model> &models,
+                    const double p_nothing)
+{
+  // The base model must be known at least as well as an effect at small amplitudes, which else
+  // would describe data without any effect better than the base model does.
+  constexpr double most = 0.5, least = 0.01;
+  return run(wishes(evidence, models),
+             std::max(least, most * std::sqrt(std::min(1., p_nothing / options.level))));
+}
+
+bool Design::fill(const Evidence &evidence)
+{
+  constexpr double share_of_base = 0.1;
+  std::vector<Wish> list;
+  for (const std::size_t k : evidence.usable())
+    for (const Evidence::Place &place : evidence.places(k))
+      list.push_back({k, place.amplitude, unknown(evidence.target(), place.hypothesis.prediction)});
+  return run(list, share_of_base);
 }
 
 } // namespace eunoe::discovery

@@ -35,8 +35,7 @@ HeldOut::HeldOut(const StudyOptions &options, const DecisionRule &rule, const Me
 
 std::uint64_t HeldOut::n_runs() const
 {
-  return experiments.size() * (runs_of_base(options.validate_runs, space.n_nuisances()) +
-                               most_tested * most_runs_near(options.validate_runs));
+  return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
 }
 
 Predictive HeldOut::predict(const Evidence &fit, const Evidence &held_out, const Model &model) const

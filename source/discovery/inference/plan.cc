@@ -1,4 +1,5 @@
 #include <eunoe/discovery/inference/design.h>
+#include <eunoe/discovery/inference/imagined.h>
 #include <eunoe/discovery/inference/plan.h>
 
 #include <algorithm>
@@ -124,38 +125,6 @@ std::vector<Model> normalised(std::vector<Model> models)
   return models;
 }
 
-/// All data points of experiments as if each had been measured a few times without an instrument's
-/// noise.
-std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
-                                         const Samples &samples, const Simulator &simulator,
-                                         const unsigned int repeats)
-{
-  std::vector<MeasuredPoint> points;
-  for (const std::string &experiment : experiments) {
-    const auto &names = simulator.data_points(experiment);
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      std::vector<double> values;
-      bool complete = true;
-      for (const Sample &sample : samples.of(experiment)) {
-        const double value = sample.values(static_cast<Eigen::Index>(c));
-        complete = complete && std::isfinite(value);
-        if (sample.position.isZero(0.))
-          values.push_back(value);
-      }
-      double mean = 0., square = 0.;
-      for (const double value : values)
-        mean += value / static_cast<double>(values.size());
-      for (const double value : values)
-        square += std::pow(value - mean, 2);
-      const double deviation = std::sqrt(square / std::max<double>(1., values.size() - 1.));
-      if (complete && deviation > 0.)
-        points.push_back({names[c], mean, deviation, repeats});
-    }
-  }
-  std::vector<std::string> notes;
-  return sort_by_experiment(points, samples, simulator, notes);
-}
-
 /// Ranks the observables of experiments, and whole experiments, by the information that measuring
 /// them is expected to give about which model is true: the mean fall of the entropy of the models'
 /// probabilities over twins of each model (bit). The best come first.
@@ -242,16 +211,36 @@ private:
   const Eigen::Index n_nuisances;
 };
 
-} // namespace
-
+/// Most runs of an experiment that run_near makes for one model.
 unsigned int most_runs_near(const unsigned int runs)
 {
   return static_cast<unsigned int>(std::size(run_shares)) * std::max(1u, runs / 2);
 }
 
-unsigned int runs_of_base(const unsigned int runs, const std::size_t n_nuisances)
+/// What run_near needs of the base model.
+std::vector<DesignPoint> points_of_base(const unsigned int runs, const FactorSpace &space)
 {
-  return 2 * runs + 2 * static_cast<unsigned int>(n_nuisances) * std::max(1u, runs / 2);
+  std::vector<DesignPoint> points = {{space.origin(), 2 * runs}};
+  constexpr double step = 2.;
+  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
+    for (const double side : {-step, step}) {
+      points.push_back({space.origin(), std::max(1u, runs / 2)});
+      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
+    }
+  return points;
+}
+
+} // namespace
+
+std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
+                           const FactorSpace &space, const std::vector<std::string> &experiments,
+                           const Samples &samples)
+{
+  std::uint64_t result = experiments.size() * models * most_runs_near(runs);
+  for (const DesignPoint &point : points_of_base(runs, space))
+    for (const std::string &experiment : experiments)
+      result += samples.n_missing(point, {experiment});
+  return result;
 }
 
 void run_near(const Evidence &evidence, const std::vector<Model> &models, const unsigned int runs,
@@ -259,19 +248,16 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
               Samples &samples)
 {
   const unsigned int few = std::max(1u, runs / 2);
-  std::vector<DesignPoint> points = {{space.origin(), 2 * runs}};
-  constexpr double step = 2.;
-  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
-    for (const double side : {-step, step}) {
-      points.push_back({space.origin(), few});
-      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
-    }
+  std::vector<DesignPoint> points = points_of_base(runs, space);
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
       const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
       for (const double share : run_shares) {
+        const double amplitude = posterior.quantile(share);
+        if (samples.has_near(k, amplitude, most_runs_near(runs), experiments))
+          continue;
         points.push_back({space.origin(), few});
-        points.back().position(static_cast<Eigen::Index>(k)) = posterior.quantile(share);
+        points.back().position(static_cast<Eigen::Index>(k)) = amplitude;
       }
     }
   for (DesignPoint &point : points)

@@ -28,6 +28,10 @@ public:
   /// @return whether anything could be run
   bool refine(const Evidence &evidence, const std::vector<Model> &models, double p_nothing);
 
+  /// Runs where the emulators of effects know least, whatever will be measured.
+  /// @return whether anything could be run
+  bool fill(const Evidence &evidence);
+
 private:
   /// A design point that may be run, of the base model if there is no such effect.
   struct Wish
@@ -35,8 +39,8 @@ private:
     std::size_t effect;
     double amplitude, weight;
   };
-  std::vector<Wish> wishes(const Evidence &evidence, const std::vector<Model> &models,
-                           double p_nothing) const;
+  std::vector<Wish> wishes(const Evidence &evidence, const std::vector<Model> &models) const;
+  bool run(std::vector<Wish> wishes, double share_of_base);
   Eigen::VectorXd draw_nuisances();
   DesignPoint point(std::size_t effect, double amplitude);
 

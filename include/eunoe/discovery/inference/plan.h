@@ -11,16 +11,16 @@ namespace eunoe::discovery {
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
                   const FactorSpace &space, Samples &samples);
 
-/// Runs experiments at a few amplitudes of models' posteriors, with nuisances moved, and the base
-/// model.
+/// Runs experiments at a few amplitudes of models' posteriors where there are not as many runs near
+/// them already, with nuisances moved, and the base model.
 /// @param runs of each model in each experiment
 void run_near(const Evidence &evidence, const std::vector<Model> &models, unsigned int runs,
               const FactorSpace &space, const std::vector<std::string> &experiments,
               Samples &samples);
 
-/// Most runs of an experiment that run_near makes for one model, and without any.
-unsigned int most_runs_near(unsigned int runs);
-unsigned int runs_of_base(unsigned int runs, std::size_t n_nuisances);
+/// Most runs that run_near makes for a number of models.
+std::uint64_t runs_to_test(unsigned int models, unsigned int runs, const FactorSpace &space,
+                           const std::vector<std::string> &experiments, const Samples &samples);
 
 } // namespace eunoe::discovery
 

@@ -1,0 +1,37 @@
+#include <eunoe/discovery/inference/imagined.h>
+
+#include <cmath>
+
+namespace eunoe::discovery {
+
+std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
+                                         const Samples &samples, const Simulator &simulator,
+                                         const unsigned int repeats)
+{
+  std::vector<MeasuredPoint> points;
+  for (const std::string &experiment : experiments) {
+    const auto &names = simulator.data_points(experiment);
+    for (std::size_t c = 0; c < names.size(); ++c) {
+      std::vector<double> values;
+      bool complete = true;
+      for (const Sample &sample : samples.of(experiment)) {
+        const double value = sample.values(static_cast<Eigen::Index>(c));
+        complete = complete && std::isfinite(value);
+        if (sample.position.isZero(0.))
+          values.push_back(value);
+      }
+      double mean = 0., square = 0.;
+      for (const double value : values)
+        mean += value / static_cast<double>(values.size());
+      for (const double value : values)
+        square += std::pow(value - mean, 2);
+      const double deviation = std::sqrt(square / std::max<double>(1., values.size() - 1.));
+      if (complete && deviation > 0.)
+        points.push_back({names[c], mean, deviation, repeats});
+    }
+  }
+  std::vector<std::string> notes;
+  return sort_by_experiment(points, samples, simulator, notes);
+}
+
+} // namespace eunoe::discovery
