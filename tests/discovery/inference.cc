@@ -141,15 +141,14 @@ std::pair<double, double> on_fine_grid(
     return result;
   };
   const std::size_t other = model.effects[model.effects[0] == effect ? 1 : 0];
+  const AmplitudeLikelihood likelihood(evidence, model, target.data());
   std::vector<double> logs, marginal;
   for (const double u : axis(effect)) {
     logs.clear();
-    for (const double v : axis(other))
-      logs.push_back(
-          evidence.log_likelihood(evidence.prepare(target.predict({{effect, u}, {other, v}})),
-                                  target.data()) +
-          evidence.place_near(effect, u).log_reference +
-          evidence.place_near(other, v).log_reference);
+    for (const double v : axis(other)) {
+      const std::map<std::size_t, double> effects = {{effect, u}, {other, v}};
+      logs.push_back(likelihood.log(effects, target.predict(effects)));
+    }
     marginal.push_back(log_sum(logs));
   }
   double sum = 0., low = 0., high = 0.;
@@ -160,6 +159,32 @@ std::pair<double, double> on_fine_grid(
     high = sum < 0.95 ? amplitudes[i] : high;
   }
   return {high - low, low};
+}
+
+/// Data without noise of the very prediction of an effect give its amplitude, although few runs are
+/// near it and many near a smaller one.
+void unpopular_amplitude()
+{
+  Laboratory lab(nature(), 1);
+  const std::size_t c = 2;
+  const Factor &effect = lab.space.effect(c);
+  const double amplitude = lab.simulator.amplitude_of("c", 8., both),
+               truth = (amplitude - effect.null_value) / effect.scale;
+  std::vector<DesignPoint> many;
+  for (int k = 0; k < 30; ++k) {
+    many.push_back({lab.space.origin(), 2});
+    many.back().position(static_cast<Eigen::Index>(c)) = 0.5 * truth;
+  }
+  lab.samples.run(many, both);
+  const Target target = lab.target({{"c", amplitude}}, 3);
+  const Evidence evidence(target, lab.space);
+  Model model;
+  model.effects = {c};
+  const Eigen::VectorXd data = target.predict({{c, truth}}).mean;
+  evidence.log_single(c, data, &model.best[c]);
+  const double median = AmplitudePosterior(evidence, model, data, c).quantile(0.5);
+  check("an amplitude near which little was run is not disfavoured",
+        std::abs(median / truth - 1.) < 0.03, std::to_string(median / truth));
 }
 
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as
@@ -217,4 +242,5 @@ EUNOE_MPI_TEST()
   levels(lab);
   calibrations(lab);
   pairs();
+  unpopular_amplitude();
 }

@@ -12,7 +12,8 @@ namespace {
 class Grid
 {
 public:
-  Grid(const Evidence &evidence, const Model &model) : evidence(evidence), best(model.best)
+  Grid(const Evidence &evidence, const Model &model, const AmplitudeLikelihood &likelihood)
+      : evidence(evidence), likelihood(likelihood), best(model.best)
   {
     constexpr double around = 1.2;
     for (const auto &[k, amplitude] : best) {
@@ -26,7 +27,7 @@ public:
     }
   }
 
-  std::vector<Member> evaluate(const Eigen::VectorXd &data) const
+  std::vector<Member> evaluate() const
   {
     std::vector<Member> result;
     const auto &[first, rows] = *axes.begin();
@@ -37,9 +38,7 @@ public:
         member.effects = {{first, best.at(first) * std::exp(x)},
                           {second, best.at(second) * std::exp(y)}};
         member.hypothesis = evidence.prepare(evidence.target().predict(member.effects));
-        member.log_weight = evidence.log_likelihood(member.hypothesis, data);
-        for (const auto &[k, amplitude] : member.effects)
-          member.log_weight += evidence.place_near(k, amplitude).log_reference;
+        member.log_weight = likelihood.log(member.effects, member.hypothesis.prediction);
         result.push_back(std::move(member));
       }
     return result;
@@ -82,6 +81,7 @@ private:
   }
 
   const Evidence &evidence;
+  const AmplitudeLikelihood &likelihood;
   const std::map<std::size_t, double> best;
   std::map<std::size_t, std::pair<double, double>> ranges;
   std::map<std::size_t, Eigen::VectorXd> axes;
@@ -89,23 +89,42 @@ private:
 
 } // namespace
 
+AmplitudeLikelihood::AmplitudeLikelihood(const Evidence &evidence, const Model &model,
+                                         const Eigen::VectorXd &data)
+    : evidence(evidence), data(data), at_best(evidence.target().predict(model.best))
+{
+}
+
+double AmplitudeLikelihood::log(const std::map<std::size_t, double> &effects,
+                                const Target::Prediction &prediction) const
+{
+  Target::Prediction here = at_best;
+  here.mean = prediction.mean;
+  double result = evidence.log_likelihood(evidence.prepare(here), data);
+  for (const auto &[k, amplitude] : effects)
+    result += evidence.place_near(k, amplitude).log_reference;
+  return result;
+}
+
 std::vector<Member> members(const Evidence &evidence, const Model &model,
                             const Eigen::VectorXd &data)
 {
+  const AmplitudeLikelihood likelihood(evidence, model, data);
   std::vector<Member> result;
   if (model.effects.size() == 1) {
     const std::size_t k = model.effects.front();
-    for (const Evidence::Place &place : evidence.places(k))
-      result.push_back({{{k, place.amplitude}},
-                        place.hypothesis,
-                        place.log_reference + evidence.log_likelihood(place.hypothesis, data)});
+    for (const Evidence::Place &place : evidence.places(k)) {
+      const std::map<std::size_t, double> effects = {{k, place.amplitude}};
+      result.push_back(
+          {effects, place.hypothesis, likelihood.log(effects, place.hypothesis.prediction)});
+    }
     return result;
   }
   constexpr int most_rounds = 8;
-  Grid grid(evidence, model);
-  result = grid.evaluate(data);
+  Grid grid(evidence, model, likelihood);
+  result = grid.evaluate();
   for (int i = 0; i < most_rounds && grid.fit(result); ++i)
-    result = grid.evaluate(data);
+    result = grid.evaluate();
   return result;
 }
 

@@ -59,6 +59,7 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     Trial trial{evidence.log_posterior_of_singles(data), truth};
     Model alone;
     alone.effects = {usable[truth]};
+    evidence.log_single(usable[truth], data, &alone.best[usable[truth]]);
     const double total = log_sum(trial.log_posterior);
     const auto first = std::max_element(trial.log_posterior.begin(), trial.log_posterior.end());
     result.stated += std::exp(*first - total);

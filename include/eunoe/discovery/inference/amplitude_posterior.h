@@ -18,6 +18,23 @@ struct Member
   double log_weight = 0.;
 };
 
+/// Likelihood of a model's amplitudes for intervals. The variance is that at the likeliest
+/// amplitudes: with its own, each amplitude near which many runs were made, or where runs scatter
+/// less, would be favoured over others by a variance that is known no better than by a few percent.
+class AmplitudeLikelihood
+{
+public:
+  AmplitudeLikelihood(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
+
+  double log(const std::map<std::size_t, double> &effects,
+             const Target::Prediction &prediction) const;
+
+private:
+  const Evidence &evidence;
+  const Eigen::VectorXd &data;
+  const Target::Prediction at_best;
+};
+
 /// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.
 /// @param model with one or two effects
 std::vector<Member> members(const Evidence &evidence, const Model &model,
