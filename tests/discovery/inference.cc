@@ -141,13 +141,13 @@ std::pair<double, double> on_fine_grid(
     return result;
   };
   const std::size_t other = model.effects[model.effects[0] == effect ? 1 : 0];
-  const AmplitudeLikelihood likelihood(evidence, model, target.data());
+  const AmplitudeDensity density(evidence, model, target.data());
   std::vector<double> logs, marginal;
   for (const double u : axis(effect)) {
     logs.clear();
     for (const double v : axis(other)) {
       const std::map<std::size_t, double> effects = {{effect, u}, {other, v}};
-      logs.push_back(likelihood.log(effects, target.predict(effects)));
+      logs.push_back(density.log(effects, target.predict(effects)));
     }
     marginal.push_back(log_sum(logs));
   }

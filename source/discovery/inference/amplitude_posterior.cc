@@ -12,8 +12,8 @@ namespace {
 class Grid
 {
 public:
-  Grid(const Evidence &evidence, const Model &model, const AmplitudeLikelihood &likelihood)
-      : evidence(evidence), likelihood(likelihood), best(model.best)
+  Grid(const Evidence &evidence, const Model &model, const AmplitudeDensity &density)
+      : evidence(evidence), density(density), best(model.best)
   {
     constexpr double around = 1.2;
     for (const auto &[k, amplitude] : best) {
@@ -37,8 +37,8 @@ public:
         Member member;
         member.effects = {{first, best.at(first) * std::exp(x)},
                           {second, best.at(second) * std::exp(y)}};
-        member.hypothesis = evidence.prepare(evidence.target().predict(member.effects));
-        member.log_weight = likelihood.log(member.effects, member.hypothesis.prediction);
+        member.prediction = evidence.target().predict(member.effects);
+        member.log_weight = density.log(member.effects, member.prediction);
         result.push_back(std::move(member));
       }
     return result;
@@ -81,7 +81,7 @@ private:
   }
 
   const Evidence &evidence;
-  const AmplitudeLikelihood &likelihood;
+  const AmplitudeDensity &density;
   const std::map<std::size_t, double> best;
   std::map<std::size_t, std::pair<double, double>> ranges;
   std::map<std::size_t, Eigen::VectorXd> axes;
@@ -89,18 +89,19 @@ private:
 
 } // namespace
 
-AmplitudeLikelihood::AmplitudeLikelihood(const Evidence &evidence, const Model &model,
-                                         const Eigen::VectorXd &data)
-    : evidence(evidence), data(data), at_best(evidence.target().predict(model.best))
+AmplitudeDensity::AmplitudeDensity(const Evidence &evidence, const Model &model,
+                                   const Eigen::VectorXd &data)
+    : evidence(evidence), data(data),
+      at_best(evidence.prepare(evidence.target().predict(model.best)))
 {
 }
 
-double AmplitudeLikelihood::log(const std::map<std::size_t, double> &effects,
-                                const Target::Prediction &prediction) const
+double AmplitudeDensity::log(const std::map<std::size_t, double> &effects,
+                             const Target::Prediction &prediction) const
 {
-  Target::Prediction here = at_best;
-  here.mean = prediction.mean;
-  double result = evidence.log_likelihood(evidence.prepare(here), data);
+  Evidence::Hypothesis here = at_best;
+  here.prediction.mean = prediction.mean;
+  double result = evidence.log_likelihood(here, data);
   for (const auto &[k, amplitude] : effects)
     result += evidence.place_near(k, amplitude).log_reference;
   return result;
@@ -109,19 +110,19 @@ double AmplitudeLikelihood::log(const std::map<std::size_t, double> &effects,
 std::vector<Member> members(const Evidence &evidence, const Model &model,
                             const Eigen::VectorXd &data)
 {
-  const AmplitudeLikelihood likelihood(evidence, model, data);
+  const AmplitudeDensity density(evidence, model, data);
   std::vector<Member> result;
   if (model.effects.size() == 1) {
     const std::size_t k = model.effects.front();
     for (const Evidence::Place &place : evidence.places(k)) {
       const std::map<std::size_t, double> effects = {{k, place.amplitude}};
-      result.push_back(
-          {effects, place.hypothesis, likelihood.log(effects, place.hypothesis.prediction)});
+      const Target::Prediction &prediction = place.hypothesis.prediction;
+      result.push_back({effects, prediction, density.log(effects, prediction)});
     }
     return result;
   }
   constexpr int most_rounds = 8;
-  Grid grid(evidence, model, likelihood);
+  Grid grid(evidence, model, density);
   result = grid.evaluate();
   for (int i = 0; i < most_rounds && grid.fit(result); ++i)
     result = grid.evaluate();

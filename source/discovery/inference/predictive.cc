@@ -12,14 +12,15 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
                 const std::uint32_t seed)
 {
   const Eigen::VectorXd &data = evidence.target().data();
-  const std::vector<Member> all = members(evidence, model, data);
+  std::vector<Evidence::Hypothesis> all;
+  for (const Member &member : members(evidence, model, data))
+    all.push_back(evidence.prepare(member.prediction));
   const auto misfit = [&](const Eigen::VectorXd &values) {
     std::vector<double> likelihoods;
-    for (const Member &member : all)
-      likelihoods.push_back(evidence.log_likelihood(member.hypothesis, values));
+    for (const Evidence::Hypothesis &one : all)
+      likelihoods.push_back(evidence.log_likelihood(one, values));
     const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
-    return evidence.distance(all[static_cast<std::size_t>(best - likelihoods.begin())].hypothesis,
-                             values);
+    return evidence.distance(all[static_cast<std::size_t>(best - likelihoods.begin())], values);
   };
   Twins source(evidence, seed);
   std::vector<double> misfits;

@@ -14,25 +14,26 @@ namespace eunoe::discovery {
 struct Member
 {
   std::map<std::size_t, double> effects;
-  Evidence::Hypothesis hypothesis;
+  Target::Prediction prediction;
   double log_weight = 0.;
 };
 
-/// Likelihood of a model's amplitudes for intervals. The variance is that at the likeliest
-/// amplitudes: with its own, each amplitude near which many runs were made, or where runs scatter
-/// less, would be favoured over others by a variance that is known no better than by a few percent.
-class AmplitudeLikelihood
+/// Posterior density of a model's amplitudes, with Jeffreys' prior. The variance is that at the
+/// likeliest amplitudes: with the variance of each, those near which many runs were made, or where
+/// runs scatter less, would be favoured, by an error that is itself known roughly.
+class AmplitudeDensity
 {
 public:
-  AmplitudeLikelihood(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
+  AmplitudeDensity(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
 
+  /// Its logarithm up to a constant, where @p prediction is that of these amplitudes.
   double log(const std::map<std::size_t, double> &effects,
              const Target::Prediction &prediction) const;
 
 private:
   const Evidence &evidence;
   const Eigen::VectorXd &data;
-  const Target::Prediction at_best;
+  const Evidence::Hypothesis at_best;
 };
 
 /// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.
