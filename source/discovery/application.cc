@@ -194,7 +194,7 @@ void make_plan(const StudyInput &study, const std::vector<std::string> &experime
 }
 
 /// What can be done before anything is measured.
-int prepare(const StudyInput &study, const bool fills_table, MPI_Comm comm, Log &log)
+int prepare(const StudyInput &study, const ExtraArguments &arguments, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
   try {
@@ -205,9 +205,9 @@ int prepare(const StudyInput &study, const bool fills_table, MPI_Comm comm, Log 
     std::vector<std::string> experiments;
     for (const Experiment &experiment : study.experiments)
       experiments.push_back(experiment.name());
-    if (fills_table)
+    if (arguments.fill_table)
       fill_table(p.options, experiments, study.plain_factors(), simulator, log);
-    else
+    if (arguments.plan)
       make_plan(study, experiments, simulator, log);
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Give the same command again to go on.");
@@ -252,7 +252,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
                           line.print_parameters || line.describe_parameters;
   if (const auto code = answer(line, program, !only_lists && !makes_data, comm))
     return *code;
-  const bool is_early = arguments.plan || arguments.fill_table;
+  const bool needs_no_data = arguments.plan || arguments.fill_table;
   Log log(comm, line.quiet);
   StudyInput study;
   Problems problems;
@@ -265,7 +265,7 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
       list_effects(study.factors, log);
       return exit_success;
     }
-    if (!makes_data && !is_early)
+    if (!makes_data && !needs_no_data)
       read_data(study, comm, problems);
     refuse_if_any(problems);
     refuse_folders(study.parameters, makes_data, comm);
@@ -277,8 +277,8 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
   } catch (const UserError &error) {
     throw RefusedInput(error);
   }
-  if (is_early)
-    return prepare(study, arguments.fill_table, comm, log);
+  if (needs_no_data)
+    return prepare(study, arguments, comm, log);
   if (!makes_data)
     return make_study(study, arguments.verdict_exit_code, comm, log);
   try {
@@ -308,8 +308,10 @@ int run_discovery(int argc, char **argv, MPI_Comm comm)
           "missing; runs the base model and all effects, and needs no measured data",
           &arguments.plan},
          {"fill-table",
-          "before anything is measured, make as many runs as the budget has: the base model, all "
-          "effects, then where least is known. Studies with the same table of runs need few more",
+          "before anything is measured, fill the table with as many runs as the budget says: of "
+          "the "
+          "base model, of all effects, then where least is known. Studies with this table need few "
+          "more. With --plan: before that",
           &arguments.fill_table},
          {"verdict-exit-code",
           "end with the verdict's code: 0 none, 10 named, 11 tie, 12 off catalogue, 13 "

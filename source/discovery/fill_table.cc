@@ -1,5 +1,5 @@
-#include <eunoe/discovery/inference/design.h>
-#include <eunoe/discovery/inference/imagined.h>
+#include <eunoe/core/problems.h>
+#include <eunoe/discovery/inference/unmeasured.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,24 +32,27 @@ std::pair<std::string, double> least_known(const Evidence &evidence)
 void fill_table(const StudyOptions &options, const std::vector<std::string> &experiments,
                 const std::vector<Factor> &factors, Simulator &simulator, Log &log)
 {
-  constexpr unsigned int repeats = 4;
-  const FactorSpace space(factors);
-  Samples samples(options, space, simulator, experiments);
-  Design design(options, space, samples, experiments);
-  design.run_base();
-  const auto estimate = [&] {
-    return Target(imagined(experiments, samples, simulator, repeats), samples, space, 0.);
-  };
-  design.run_effects(estimate);
+  if (options.budget == 0)
+    throw UserError("Without a limit a table is never full. Set 'budget of runs' to the number of "
+                    "runs that it shall have.");
+  Unmeasured unmeasured(options, experiments, factors, simulator);
+  Samples &samples = unmeasured.samples;
+  samples.set_aside(samples.n_known());
+  if (samples.remaining() == 0) {
+    log.line("The table has " + std::to_string(samples.n_known()) +
+             " runs already. Increase 'budget of runs' to add more.");
+    return;
+  }
+  unmeasured.run();
   bool goes_on = true;
   while (goes_on) {
-    const Target target = estimate();
-    const Evidence evidence(target, space);
+    const Target target = unmeasured.target();
+    const Evidence evidence(target, unmeasured.space);
     const auto [effect, error] = least_known(evidence);
     log.line("  " + std::to_string(samples.n_known() + samples.n_asked()) +
              " runs: least known is " + effect + ", within " + format_roughly(error) +
              " of the scatter of a measurement");
-    goes_on = design.fill(evidence);
+    goes_on = unmeasured.design.fill(evidence);
   }
 }
 

@@ -174,6 +174,22 @@ def check_plan(program: Program) -> None:
            0, "bits  core-seconds of a run", "box, all", "short, all")
 
 
+def check_fill(program: Program) -> None:
+    """A table is filled up to its size, however often the command is given, and answers a study."""
+    table = program.folder / "filled.sqlite"
+    filled = ("study.prm", "--fill-table", *settings(measured_data="none.csv", table_of_runs="filled.sqlite",
+                                                     budget_of_runs="180"))
+    expect(program.run(*filled, ranks=2), 0, "180 runs: least known is")
+    rows = n_rows(table)
+    expect(program.run(*filled), 0, "The table has 180 runs already")
+    assert n_rows(table) == rows, "a table that is full has grown"
+    expect(program.run("study.prm", "--fill-table", *settings(measured_data="none.csv", budget_of_runs="0")),
+           FAILED, "Without a limit a table is never full")
+    expect(program.run("study.prm", "--verdict-exit-code",
+                       *settings(output_path="from_filled", table_of_runs="filled.sqlite", budget_of_runs="40")), NAMED)
+    assert n_rows(table) <= rows + 41, "the study made many runs of its own"  # one looks at the data points
+
+
 def check_full_disk(program: Program) -> None:
     """A result that cannot be written ends all ranks; where there is space again, the study goes on.
     Results that are new or thrown away cost no simulation that is in the table."""
@@ -209,6 +225,7 @@ def main() -> None:
     check_full_disk(program)
     check_second_measurement(program)
     check_plan(program)
+    check_fill(program)
     print("ok")
 
 

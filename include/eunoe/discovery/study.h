@@ -74,9 +74,10 @@ nlohmann::ordered_json plan(const StudyOptions &options,
                             const std::vector<std::string> &experiments,
                             const std::vector<Factor> &factors, Simulator &simulator, Log &log);
 
-/// Without measured data: fills the table of runs for studies to come. Runs the base model and all
-/// effects, then where the emulators know least, until the budget is spent; what is measured later
-/// is answered from the table with few runs more.
+/// Without measured data: fills the table of runs for studies to come, until it has as many as the
+/// budget says. Runs the base model and all effects, then where the emulators know least; what is
+/// measured later is answered from the table with few runs more.
+/// @throws UserError if the budget has no limit, or is less than the base model needs
 void fill_table(const StudyOptions &options, const std::vector<std::string> &experiments,
                 const std::vector<Factor> &factors, Simulator &simulator, Log &log);
 

@@ -1,6 +1,5 @@
-#include <eunoe/discovery/inference/design.h>
-#include <eunoe/discovery/inference/imagined.h>
 #include <eunoe/discovery/inference/plan.h>
+#include <eunoe/discovery/inference/unmeasured.h>
 
 #include <algorithm>
 #include <cmath>
@@ -307,17 +306,13 @@ nlohmann::ordered_json plan(const StudyOptions &options,
                             const std::vector<std::string> &experiments,
                             const std::vector<Factor> &factors, Simulator &simulator, Log &log)
 {
-  constexpr unsigned int draws = 60, repeats = 4;
-  const FactorSpace space(factors);
-  Samples samples(options, space, simulator, experiments);
-  Design design(options, space, samples, experiments);
-  design.run_base();
-  const auto estimate = [&] {
-    return Target(imagined(experiments, samples, simulator, repeats), samples, space, 0.);
-  };
-  design.run_effects(estimate);
+  constexpr unsigned int draws = 60;
+  Unmeasured unmeasured(options, experiments, factors, simulator);
+  unmeasured.run();
+  const Samples &samples = unmeasured.samples;
   log.line("  " + std::to_string(samples.n_known() + samples.n_asked()) + " runs");
-  const Target target = estimate();
+  const FactorSpace &space = unmeasured.space;
+  const Target target = unmeasured.target();
   const Evidence evidence(target, space);
   RandomStream random(options.seed, 37);
   std::vector<Model> models;

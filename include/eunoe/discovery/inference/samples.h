@@ -85,7 +85,7 @@ public:
   std::uint64_t remaining() const;
   /// Keeps runs of the budget for later.
   void set_aside(std::uint64_t runs) { reserved = runs; }
-  Simulator &simulator() { return source; }
+  Simulator &simulator() const { return source; }
 
 private:
   void add(const RunRequest &request, const RunResult &result);

@@ -1,4 +1,4 @@
-#include <eunoe/discovery/inference/imagined.h>
+#include <eunoe/discovery/inference/unmeasured.h>
 
 #include <cmath>
 
@@ -32,6 +32,25 @@ std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experim
   }
   std::vector<std::string> notes;
   return sort_by_experiment(points, samples, simulator, notes);
+}
+
+Unmeasured::Unmeasured(const StudyOptions &options, const std::vector<std::string> &experiments,
+                       const std::vector<Factor> &factors, Simulator &simulator)
+    : experiments(experiments), space(factors), samples(options, space, simulator, experiments),
+      design(options, space, samples, experiments)
+{
+}
+
+void Unmeasured::run()
+{
+  design.run_base();
+  design.run_effects([this] { return target(); });
+}
+
+Target Unmeasured::target() const
+{
+  constexpr unsigned int repeats = 4;
+  return {imagined(experiments, samples, samples.simulator(), repeats), samples, space, 0.};
 }
 
 } // namespace eunoe::discovery
