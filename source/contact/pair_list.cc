@@ -54,6 +54,9 @@ void PairList::lay_out_memory()
         }
     memory.end_move();
   }
+  // Contacts begin anywhere in the pool; in order, memory streams.
+  if (!dense && near.is_of_other_pairs)
+    memory.sort_pool(record);
   near.is_of_other_pairs = false;
   for (std::size_t place = 0; place < near.size(); ++place)
     near.in_reach[place / PairBlock::size] |=

@@ -50,6 +50,22 @@ public:
     std::copy_n(values, length, pool[record - first_of_pool]);
   }
 
+  /// Lays out the records of the pool in the order in which they stand in a list, whose other
+  /// entries are none or in lanes; they get new numbers.
+  void sort_pool(std::vector<std::int32_t> &records)
+  {
+    std::vector<std::int32_t *> living;
+    living.reserve(pool.n_living());
+    for (std::int32_t &record : records)
+      if (!is_in_lanes(record)) {
+        record -= first_of_pool;
+        living.push_back(&record);
+      }
+    pool.sort(living);
+    for (std::int32_t *const record : living)
+      *record += first_of_pool;
+  }
+
   bool has_pooled() const { return pool.n_living() > 0; }
 
   /// Makes new lanes, of zeros; until `end_move` the old ones are still there, from which records
