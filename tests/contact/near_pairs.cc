@@ -68,9 +68,10 @@ bool same(const std::vector<Quad> &a, const std::vector<Quad> &b)
   return true;
 }
 
-} // namespace
-
-EUNOE_MPI_TEST()
+/// @param skin separation up to which the list is taken to have pairs (m): the larger, the longer
+/// is
+///             a list of near pairs good, and the fewer of its pairs touch
+void check_flight(const std::string &name, const double skin, const bool is_dense)
 {
   ContactModelNames names;
   names.rolling = "epsd";
@@ -86,7 +87,7 @@ EUNOE_MPI_TEST()
   double longest = 0.;
   for (unsigned int step = 0; step < 400; ++step) {
     // Something is left out of account for a while, as after an insertion.
-    near.near.note_step(move(p, step), 2. * radius, near.near.share());
+    near.near.note_step(move(p, step), skin, near.near.share());
     all.near.forget();
     if (step % 150 == 149)
       near.near.forget();
@@ -104,11 +105,20 @@ EUNOE_MPI_TEST()
     }
     longest = std::max(longest, static_cast<double>(near.near.size()));
   }
-  check("contacts come and go", n_ended > 50);
-  check("few pairs are near", longest < 0.1 * static_cast<double>(all.size()));
-  check("a list lasts for some steps", n_lists > 5 && n_lists < 200);
-  check("forces and torques", forces);
-  check("the same contacts are known", memory);
+  check(name + ": contacts come and go", n_ended > 50);
+  check(name + ": the way along the pairs", near.near.is_dense() == is_dense);
+  check(name + ": few pairs are near", longest < 0.1 * static_cast<double>(all.size()));
+  check(name + ": a list lasts for some steps", n_lists > 5 && n_lists < 200);
+  check(name + ": forces and torques", forces);
+  check(name + ": the same contacts are known", memory);
+}
+
+} // namespace
+
+EUNOE_MPI_TEST()
+{
+  check_flight("dense", 2. * radius, true);
+  check_flight("sparse", 100. * radius, false);
 
   NearPairs unknown;
   unknown.note_step(std::numeric_limits<double>::infinity(), radius, unknown.share());
