@@ -68,9 +68,8 @@ bool same(const std::vector<Quad> &a, const std::vector<Quad> &b)
   return true;
 }
 
-/// @param skin separation up to which the list is taken to have pairs (m): the larger, the longer
-/// is
-///             a list of near pairs good, and the fewer of its pairs touch
+/// @param skin separation up to which the list is taken to have pairs (m): the larger, the longer a
+///             list of near pairs lasts, and the fewer of its pairs touch
 void check_flight(const std::string &name, const double skin, const bool is_dense)
 {
   ContactModelNames names;

@@ -47,23 +47,6 @@ public:
 
   std::size_t n_living() const { return static_cast<std::size_t>(n_records) - free.size(); }
 
-  /// Puts the living records into a new order, in which each gets its place as its number.
-  /// @param records numbers of all that live, replaced by the new ones
-  void sort(const std::vector<std::int32_t *> &records)
-  {
-    decltype(quads) sorted;
-    sorted.reserve(quads.capacity());
-    std::int32_t place = 0;
-    for (std::int32_t *const record : records) {
-      const auto from = quads.begin() + *record * quads_per_record;
-      sorted.insert(sorted.end(), from, from + quads_per_record);
-      *record = place++;
-    }
-    quads.swap(sorted);
-    free.clear();
-    n_records = place;
-  }
-
   /// Gives the room back of records that all have been released.
   void give_back()
   {

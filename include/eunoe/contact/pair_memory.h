@@ -5,6 +5,7 @@
 #include <eunoe/contact/contact_memory.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace eunoe {
 
@@ -54,16 +55,17 @@ public:
   /// entries are none or in lanes; they get new numbers.
   void sort_pool(std::vector<std::int32_t> &records)
   {
-    std::vector<std::int32_t *> living;
-    living.reserve(pool.n_living());
+    const std::size_t n = pool.n_living();
+    ContactMemory sorted;
+    sorted.clear(length);
+    sorted.reserve(n + n / 5);
     for (std::int32_t &record : records)
       if (!is_in_lanes(record)) {
-        record -= first_of_pool;
-        living.push_back(&record);
+        const std::int32_t place = sorted.create();
+        std::copy_n(pool[record - first_of_pool], length, sorted[place]);
+        record = first_of_pool + place;
       }
-    pool.sort(living);
-    for (std::int32_t *const record : living)
-      *record += first_of_pool;
+    pool = std::move(sorted);
   }
 
   bool has_pooled() const { return pool.n_living() > 0; }
