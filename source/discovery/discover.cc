@@ -180,7 +180,7 @@ Json describe_calibration(const Calibration &c)
           {"mean stated", c.stated},
           {"right", c.right},
           {"coverage of plain intervals", c.coverage},
-          {"tail", c.tail}};
+          {"interval", c.interval}};
 }
 
 std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points)

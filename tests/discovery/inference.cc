@@ -187,6 +187,41 @@ void unpopular_amplitude()
         std::abs(median / truth - 1.) < 0.03, std::to_string(median / truth));
 }
 
+/// An interval reaches the end of an effect's range where the data lie there, as two quantiles never
+/// do; inside the range it is that between two quantiles.
+void intervals(Laboratory &lab)
+{
+  constexpr std::size_t b = 1;
+  constexpr double inside = 0.95;
+  const Target target = lab.target({}, 3);
+  const Evidence evidence(target, lab.space);
+  Model model;
+  model.effects = {b};
+  const auto &places = evidence.places(b);
+  const auto of_data_from = [&](const std::size_t place) {
+    const Eigen::VectorXd data = places[place].hypothesis.prediction.mean;
+    evidence.log_single(b, data, &model.best[b]);
+    return AmplitudePosterior(evidence, model, data, b);
+  };
+  const double end = places.back().amplitude;
+  const AmplitudePosterior at_end = of_data_from(places.size() - 1);
+  check("an interval reaches the range's end", at_end.likeliest(inside).second == end,
+        std::to_string(at_end.likeliest(inside).second / end));
+  check("nothing is likelier than the range's end", at_end.likelier_than(end) == 0.,
+        std::to_string(at_end.likelier_than(end)));
+
+  const std::size_t middle = 2 * places.size() / 3;
+  const AmplitudePosterior within = of_data_from(middle);
+  const auto [low, high] = within.likeliest(inside);
+  const double width = (high - low) / (within.quantile(0.975) - within.quantile(0.025));
+  check("an interval inside the range is about as wide as that between quantiles",
+        std::abs(width - 1.) < 0.15, std::to_string(width));
+  check("an interval holds what is likelier than its ends",
+        within.likelier_than(0.5 * (low + places[middle].amplitude)) < inside &&
+            within.likelier_than(0.9 * low) > inside && within.likelier_than(1.1 * high) > inside,
+        std::to_string(within.likelier_than(0.9 * low)));
+}
+
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as
 /// the data allow where an effect is hardly determined.
 void pairs()
@@ -241,6 +276,7 @@ EUNOE_MPI_TEST()
   likelihoods(lab);
   levels(lab);
   calibrations(lab);
+  intervals(lab);
   pairs();
   unpopular_amplitude();
 }

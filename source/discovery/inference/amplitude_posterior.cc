@@ -149,6 +149,9 @@ AmplitudePosterior::AmplitudePosterior(const Evidence &evidence, const Model &mo
   for (std::size_t i = 0; i < all.size(); ++i)
     marginal[all[i].effects.at(effect)] += probabilities[i];
   sorted.assign(marginal.begin(), marginal.end());
+  for (const auto &[amplitude, probability] : sorted)
+    log_likelihood.push_back(std::log(std::max(probability, 1e-300)) -
+                             evidence.place_near(effect, amplitude).log_reference);
 }
 
 std::pair<double, double> AmplitudePosterior::cell(const std::size_t place) const
@@ -156,6 +159,59 @@ std::pair<double, double> AmplitudePosterior::cell(const std::size_t place) cons
   const double here = sorted[place].first;
   return {place == 0 ? here : 0.5 * (sorted[place - 1].first + here),
           place + 1 == sorted.size() ? here : 0.5 * (here + sorted[place + 1].first)};
+}
+
+std::vector<AmplitudePosterior::Slice> AmplitudePosterior::slices() const
+{
+  constexpr int in_cell = 8;
+  std::vector<Slice> result;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const auto [low, high] = cell(i);
+    for (int k = 0; k < in_cell; ++k) {
+      const double width = (high - low) / in_cell, start = low + k * width;
+      result.push_back({start, start + width, sorted[i].second / in_cell,
+                        log_likelihood_at(start + 0.5 * width)});
+    }
+  }
+  return result;
+}
+
+double AmplitudePosterior::log_likelihood_at(const double amplitude) const
+{
+  const auto above = std::lower_bound(
+      sorted.begin(), sorted.end(), amplitude,
+      [](const std::pair<double, double> &place, double value) { return place.first < value; });
+  if (above == sorted.begin() || above == sorted.end())
+    return above == sorted.begin() ? log_likelihood.front() : log_likelihood.back();
+  const auto i = static_cast<std::size_t>(above - sorted.begin());
+  const double share = (amplitude - sorted[i - 1].first) / (above->first - sorted[i - 1].first);
+  return (1. - share) * log_likelihood[i - 1] + share * log_likelihood[i];
+}
+
+double AmplitudePosterior::likelier_than(const double amplitude) const
+{
+  const double here = log_likelihood_at(amplitude);
+  double result = 0.;
+  for (const Slice &slice : slices())
+    result += slice.log_likelihood > here ? slice.probability : 0.;
+  return result;
+}
+
+std::pair<double, double> AmplitudePosterior::likeliest(const double probability) const
+{
+  std::vector<Slice> all = slices();
+  std::sort(all.begin(), all.end(), [](const Slice &a, const Slice &b) {
+    return a.log_likelihood > b.log_likelihood;
+  });
+  double low = all.front().low, high = all.front().high, sum = 0.;
+  for (const Slice &slice : all) {
+    if (sum >= probability)
+      break;
+    sum += slice.probability;
+    low = std::min(low, slice.low);
+    high = std::max(high, slice.high);
+  }
+  return {low, high};
 }
 
 double AmplitudePosterior::quantile(const double share) const
@@ -170,19 +226,6 @@ double AmplitudePosterior::quantile(const double share) const
     sum = next;
   }
   return sorted.back().first;
-}
-
-double AmplitudePosterior::below(const double amplitude) const
-{
-  double sum = 0.;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const auto [low, high] = cell(i);
-    if (amplitude < high)
-      return sum + sorted[i].second *
-                       std::clamp((amplitude - low) / std::max(high - low, 1e-300), 0., 1.);
-    sum += sorted[i].second;
-  }
-  return sum;
 }
 
 } // namespace eunoe::discovery

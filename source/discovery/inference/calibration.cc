@@ -45,7 +45,7 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
       usable.push_back(k);
   Calibration result;
   std::vector<Trial> trials;
-  std::vector<double> tails;
+  std::vector<double> likelier;
   for (unsigned int i = 0; i < draws && !usable.empty(); ++i) {
     const std::size_t truth = random.index(usable.size());
     const auto &places = evidence.places(usable[truth]);
@@ -65,9 +65,8 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     result.stated += std::exp(*first - total);
     result.right +=
         first - trial.log_posterior.begin() == static_cast<std::ptrdiff_t>(truth) ? 1. : 0.;
-    const double below =
-        AmplitudePosterior(evidence, alone, data, usable[truth]).below(place.amplitude);
-    tails.push_back(std::min(below, 1. - below));
+    likelier.push_back(
+        AmplitudePosterior(evidence, alone, data, usable[truth]).likelier_than(place.amplitude));
     trials.push_back(std::move(trial));
   }
   result.twins = static_cast<unsigned int>(trials.size());
@@ -82,12 +81,12 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
       highest = score;
       result.temperature = temperature;
     }
-  std::sort(tails.begin(), tails.end());
-  constexpr double outside = 0.05;
-  result.tail = std::min(0.5 * outside, tails[static_cast<std::size_t>(outside * n)]);
-  result.coverage = static_cast<double>(std::count_if(tails.begin(), tails.end(),
-                                                      [](double t) { return t > 0.5 * outside; })) /
+  std::sort(likelier.begin(), likelier.end());
+  constexpr double inside = 0.95;
+  result.coverage = static_cast<double>(std::count_if(likelier.begin(), likelier.end(),
+                                                      [](double p) { return p < inside; })) /
                     n;
+  result.interval = std::max(inside, likelier[static_cast<std::size_t>(inside * n)]);
   return result;
 }
 

@@ -88,8 +88,7 @@ Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
   for (const std::size_t k : model.effects) {
     const Factor &effect = evidence.space().effect(k);
     const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
-    const double tail = findings.calibration.tail;
-    const double low = posterior.quantile(tail), high = posterior.quantile(1. - tail);
+    const auto [low, high] = posterior.likeliest(findings.calibration.interval);
     Json shape = Json::array();
     constexpr double least = 1e-3;
     for (const auto &[position, weight] : posterior.weights())

@@ -45,7 +45,7 @@ std::vector<Member> members(const Evidence &evidence, const Model &model,
 std::vector<double> weights(const std::vector<Member> &members);
 
 /// Posterior of one effect's amplitude, whatever the other one's is: places in ascending order and
-/// the probability below each.
+/// the probability of each.
 class AmplitudePosterior
 {
 public:
@@ -54,8 +54,13 @@ public:
 
   /// Amplitude below which this much of the probability lies.
   double quantile(double share) const;
-  /// Probability below an amplitude.
-  double below(double amplitude) const;
+  /// Smallest range that holds this much of the probability, of the amplitudes with the highest
+  /// likelihood. A range between two quantiles would always leave out the end of the effect's
+  /// range, though it be the likeliest amplitude of all.
+  std::pair<double, double> likeliest(double probability) const;
+  /// Probability of all amplitudes that are likelier than this one: it lies in every range that
+  /// holds more.
+  double likelier_than(double amplitude) const;
   /// Amplitudes and their probabilities.
   const std::vector<std::pair<double, double>> &weights() const { return sorted; }
 
@@ -63,7 +68,16 @@ private:
   /// Each place stands for the amplitudes half-way to its neighbours.
   std::pair<double, double> cell(std::size_t place) const;
 
+  /// Part of a cell.
+  struct Slice
+  {
+    double low, high, probability, log_likelihood;
+  };
+  std::vector<Slice> slices() const;
+  double log_likelihood_at(double amplitude) const;
+
   std::vector<std::pair<double, double>> sorted;
+  std::vector<double> log_likelihood; ///< at each place: its probability over Jeffreys' prior
 };
 
 } // namespace eunoe::discovery
