@@ -210,7 +210,12 @@ class Scores(InFolder):
         self.assertEqual(rates["deleted effect recognised as off the catalogue"], (1, 1))
         self.assertEqual(rates["confident and wrong"], (1, 4))
         self.assertEqual(rates["amplitude within its interval"], (1, 1))
-        self.assertIn("1 of 2", (self.folder / "scores_study.md").read_text())
+        page = (self.folder / "scores_study.md").read_text()
+        self.assertIn("1 of 2", page)
+        for row in ("| nothing |  | named | cohesion |  |",
+                    "| cohesion 0.00012 | 4.0 | named | cohesion | 0.00011 (9e-05 to 0.00013) |",
+                    "| rolling resistance 0.1 | 4.0 | tie | cohesion, rolling resistance |  |"):
+            self.assertIn(row, page)
 
     def test_what_held_out_data_refute(self) -> None:
         held_out = {"members of the tie": [{"effects": "a", "p": 0.4}, {"effects": "b", "p": 1e-3},

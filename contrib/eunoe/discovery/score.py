@@ -25,8 +25,32 @@ def table(head: list[str], rows: list[list[str]]) -> str:
     return as_markdown([head, *rows]) + "\n"
 
 
-def page(scores: Scores, label: str, n: int) -> str:
-    text = f"# Scores of {label}: {n} cases\n\n"
+def truth_of(outcome: Outcome) -> str:
+    effects = [f"{name.replace('_', ' ')} {value:.3g}" for name, value in outcome.case.amplitudes.items()]
+    return " and ".join(effects or ["nothing"]) + (", left out of the catalogue" if outcome.case.excluded else "")
+
+
+def answer_of(outcome: Outcome) -> str:
+    """Names of the effects among which the answer leaves the choice, the likeliest first."""
+    return ", ".join(" and ".join(sorted(name.replace("_", " ") for name in members))
+                     for members in outcome.covering if members)
+
+
+def interval_of(outcome: Outcome) -> str:
+    """Amplitudes of the effects that are rightly named, or lead."""
+    return ", ".join(f"{row['amplitude']:.3g} ({row['lower']:.3g} to {row['upper']:.3g})"
+                     for name, row in outcome.amplitudes.items() if name in outcome.truth_in_catalogue)
+
+
+def each_truth(outcomes: list[Outcome]) -> str:
+    ordered = sorted(outcomes, key=lambda o: (o.case.kind, sorted(o.truth), o.strength))
+    return table(["truth", "strength", "verdict", "answer", "amplitude of a true effect"],
+                 [[truth_of(o), f"{o.strength:.1f}" if o.truth else "", o.verdict, answer_of(o), interval_of(o)]
+                  for o in ordered])
+
+
+def page(scores: Scores, label: str, outcomes: list[Outcome]) -> str:
+    text = f"# Scores of {label}: {len(outcomes)} cases\n\n"
     text += table(["", "rate", "95 % interval (Wilson)", "cases", "target"],
                   [r.row() for r in scores.rates]) + "\n"
     text += table(["", "value"], [[name, f"{value:.3g}"] for name, value in scores.numbers.items()])
@@ -44,7 +68,7 @@ def page(scores: Scores, label: str, n: int) -> str:
         text += table(["runs", "right", "studies that go on"],
                       [[str(runs), f"{100. * right / number:.0f} %, {right} of {number}", str(going)]
                        for runs, number, right, going in scores.learning])
-    return text
+    return text + "\n## Each truth\n\n" + each_truth(outcomes)
 
 
 def rows_of_cases(outcomes: list[Outcome]) -> list[list]:
@@ -56,7 +80,7 @@ def rows_of_cases(outcomes: list[Outcome]) -> list[list]:
 
 
 def write(outcomes: list[Outcome], label: str, folder: Path) -> None:
-    text = page(score(outcomes), label, len(outcomes))
+    text = page(score(outcomes), label, outcomes)
     (folder / f"scores_{label}.md").write_text(text, encoding="utf-8")
     write_csv(folder / f"scores_{label}.csv", rows_of_cases(outcomes))
     print(text)
