@@ -21,7 +21,8 @@ const std::string effect_section = "effect";
 /// `subsection effect` of an effect's file.
 struct EffectParameters : public ParameterSection
 {
-  std::string mechanism, parameter, unit = "1", source, sign = "above", experiments = "all";
+  std::string mechanism, family, parameter, unit = "1", source, sign = "above",
+      experiments = "all";
   double null_value = 0., scale = 0.;
   std::vector<double> range = {0., 0.};
   std::vector<std::string> confounders;
@@ -30,6 +31,9 @@ struct EffectParameters : public ParameterSection
   {
     declare::enter(prm, effect_section);
     declare::entry(prm, "mechanism", mechanism, "What happens in the powder or the machine.");
+    declare::entry(prm, "family", family,
+                   "What it has in common with other effects. An answer that cannot tell these "
+                   "apart says how likely one of them is.");
     declare::entry(prm, "parameter", parameter, "What the amplitude is.");
     declare::entry(prm, "unit", unit, "Unit of the amplitude.");
     declare::entry(prm, "null value", null_value, "Amplitude at which the effect is absent.");
@@ -109,6 +113,7 @@ Effect read_effect(const std::string &text, const std::string &file, Problems &p
   factor.upper = parameters.range[1];
   factor.sign = sign_of(parameters.sign);
   factor.mechanism = parameters.mechanism;
+  factor.family = parameters.family;
   factor.unit = parameters.unit;
   factor.source = parameters.source;
   factor.confounders = parameters.confounders;

@@ -67,6 +67,19 @@ class PageOfAStudy(InFolder):
         study.content["p of the fit"] = 0.03
         self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
 
+    def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        self.assertNotIn("in common", " ".join(verdict_text(study)))
+        for name in ("cohesion", "rolling_resistance"):
+            study.effects[name]["family"] = "contacts that hold"
+        self.assertIn("All of them have one thing in common, contacts that hold; one of these is missing with a "
+                      "probability of 100", " ".join(verdict_text(study)))
+        study.content["tie"] += [{"effects": "none of the catalogue", "probability": 0.1}]
+        self.assertIn("cohesion, rolling resistance have one thing in common", " ".join(verdict_text(study)))
+        study.content["tie"][2]["probability"] = 1.5
+        self.assertNotIn("in common", " ".join(verdict_text(study)))
+
     def test_small_probabilities_are_told(self) -> None:
         make_study(self.folder / "study", "named")
         study = Study(self.folder / "study")
@@ -216,6 +229,25 @@ class Scores(InFolder):
                     "| cohesion 0.00012 | 4.0 | named | cohesion | 0.00011 (9e-05 to 0.00013) |",
                     "| rolling resistance 0.1 | 4.0 | tie | cohesion, rolling resistance |  |"):
             self.assertIn(row, page)
+
+    def test_families(self) -> None:
+        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
+                "excluded": [], "amplitudes": {"a": 1.}}
+        answer = {"verdict": "tie", "gaps": {}, "candidates": [{"effect": "c", "confidence": 0.4}],
+                  "tie": [{"effects": "c", "probability": 0.4}, {"effects": "a", "probability": 0.3},
+                          {"effects": "b", "probability": 0.3}],
+                  "amplitudes": [], "runs": {"asked for": 100},
+                  "catalogue": [{"name": "a", "family": "f"}, {"name": "b", "family": "f"},
+                                {"name": "c", "family": ""}]}
+
+        def right() -> tuple[int, int]:
+            rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+            return rates["family right, named or leading, strength 4 and more"]
+        self.assertEqual(right(), (1, 1))
+        answer["tie"][0]["probability"] = 0.7
+        self.assertEqual(right(), (0, 1))
+        answer["catalogue"] = []
+        self.assertEqual(right(), (0, 0))
 
     def test_what_held_out_data_refute(self) -> None:
         held_out = {"members of the tie": [{"effects": "a", "p": 0.4}, {"effects": "b", "p": 1e-3},

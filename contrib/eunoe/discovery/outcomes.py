@@ -26,6 +26,7 @@ MOST_CANDIDATES = 5
 SCORED_ROWS = {"candidates": ("effect", "confidence"),
                "amplitudes": ("effect", "amplitude", "lower", "upper"),
                "tie": ("effects", "probability"),
+               "catalogue": ("name", "family"),
                "learning curve": ("runs", "verdict", "first", "probability", "p of nothing missing")}
 
 
@@ -45,6 +46,8 @@ class Outcome:
     # What held-out data say of models, by their p-values: of those that the fit has named, and of others.
     names_tested: list[tuple[set[str], float]] = field(default_factory=list)
     others_tested: list[tuple[set[str], float]] = field(default_factory=list)
+    families: dict[str, str] = field(default_factory=dict)  # of effects that have one
+    probabilities: list[float] = field(default_factory=list)  # of the sets in covering
 
     @property
     def stands_apart(self) -> bool:
@@ -69,6 +72,18 @@ class Outcome:
     def wrong_p(self, tested: list[tuple[set[str], float]]) -> list[float]:
         """p-values of those models that have no effect of the truth."""
         return [p for effects, p in tested if not effects & self.truth_in_catalogue]
+
+    @property
+    def leading_families(self) -> set[str]:
+        """Of the families that the answer leaves the choice among, those with the most probability."""
+        sums: Counter = Counter()
+        for effects, probability in zip(self.covering, self.probabilities):
+            sums[frozenset(self.families.get(name) or name for name in effects)] += probability
+        return set(max(sums, key=lambda key: sums[key])) if sums else set()
+
+    @property
+    def true_families(self) -> set[str]:
+        return {self.families.get(name) or name for name in self.truth}
 
     @property
     def covers(self) -> bool:
@@ -98,7 +113,7 @@ def read(folder: Path, label: str) -> dict | None:
                                     if key != "envelopes"}}
     return {"case": asdict(case), "nuisances": sealed["nuisances"],
             "answer": {key: content[key] for key in ("verdict", "p of nothing missing", "gaps", "runs")}
-            | {key: [{word: row[word] for word in words if word in row} for row in content[key]]
+            | {key: [{word: row[word] for word in words if word in row} for row in content.get(key, [])]
                for key, words in SCORED_ROWS.items()}}
 
 
@@ -117,6 +132,7 @@ def outcome(case: Case, content: dict) -> Outcome:
     rows = {row["effect"]: row for row in content["amplitudes"]}
     named = set(rows) if content["verdict"] == "named" else set()
     covering = [named] if named else [set(row["effects"].split(" + ")) for row in content["tie"]]
+    probabilities = [1.] if named else [row.get("probability", 0.) for row in content["tie"]]
     held_out = content["gaps"].get("held-out", {})
 
     def tested(key: str) -> list[tuple[set[str], float]]:
@@ -129,7 +145,9 @@ def outcome(case: Case, content: dict) -> Outcome:
                    content.get("separation of the truth"),
                    [(row["runs"], set(row["first"].split(" + ")) if row["verdict"] in SOMETHING else set())
                     for row in content.get("learning curve", [])],
-                   names, [row for row in tested("could have refuted") if row not in names])
+                   names, [row for row in tested("could have refuted") if row not in names],
+                   {row["name"]: row["family"] for row in content.get("catalogue", []) if row.get("family")},
+                   probabilities)
 
 
 def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
@@ -202,6 +220,8 @@ def score(outcomes: list[Outcome]) -> Scores:
         rate("first name correct at strength 4 and more", strong,
              lambda o: o.detected and o.first in o.truth),
         rate("set covers the truth", answered, lambda o: o.covers, "at least 97 %"),
+        rate("family right, named or leading, strength 4 and more", [o for o in strong if o.families],
+             lambda o: o.detected and o.leading_families == o.true_families),
         rate("two effects: detected", two, lambda o: o.detected),
         rate("two effects: first name correct", two, lambda o: o.detected and o.first in o.truth),
         rate("two effects: off the catalogue", two, lambda o: o.verdict == "off catalogue"),

@@ -52,10 +52,28 @@ def _named(study: Study) -> list[str]:
     return sentences
 
 
+def _in_common(study: Study) -> list[str]:
+    """What is likely although the effects cannot be told apart: a family that most of them belong to."""
+    tie = study.content["tie"]
+    families: dict[str, list[dict]] = {}
+    for row in tie:
+        for family in {study.effects.get(name, {}).get("family", "") for name in row["effects"].split(" + ")}:
+            families.setdefault(family, []).append(row)
+    for family, rows in families.items():
+        share = sum(row["probability"] for row in rows)
+        if family and len(rows) > 1 and share > 0.5 * sum(row["probability"] for row in tie):
+            which = ("All of them have" if len(rows) == len(tie) else
+                     ", ".join(plain(row["effects"]) for row in rows) + " have")
+            return [f"{which} one thing in common, {family}; one of these is missing with a probability of "
+                    f"{percent(share, 0)}."]
+    return []
+
+
 def _tie(study: Study) -> list[str]:
     members = ", ".join(f"{plain(row['effects'])} ({percent(row['probability'], 0)})"
                         for row in study.content["tie"])
-    sentences = [f"Something is missing, and the data cannot say which of these it is: {members}."]
+    sentences = [f"Something is missing, and the data cannot say which of these it is: {members}.",
+                 *_in_common(study)]
     fit, held_out = study.content.get("p of the fit", 1.), study.content["gaps"].get("held-out", {}).get("p after", 1.)
     if min(fit, held_out) < DOUBTFUL:
         sentences.append(f"The likeliest describes the {'data' if fit <= held_out else 'held-out data'} badly "
