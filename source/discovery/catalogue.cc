@@ -21,8 +21,7 @@ const std::string effect_section = "effect";
 /// `subsection effect` of an effect's file.
 struct EffectParameters : public ParameterSection
 {
-  std::string mechanism, family, parameter, unit = "1", source, sign = "above",
-      experiments = "all";
+  std::string mechanism, family, parameter, unit = "1", source, sign = "above", experiments = "all";
   double null_value = 0., scale = 0.;
   std::vector<double> range = {0., 0.};
   std::vector<std::string> confounders;

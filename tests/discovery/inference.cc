@@ -187,8 +187,8 @@ void unpopular_amplitude()
         std::abs(median / truth - 1.) < 0.03, std::to_string(median / truth));
 }
 
-/// An interval reaches the end of an effect's range where the data lie there, as two quantiles never
-/// do; inside the range it is that between two quantiles.
+/// An interval reaches the end of an effect's range where the data lie there, as two quantiles
+/// never do; inside the range it is that between two quantiles.
 void intervals(Laboratory &lab)
 {
   constexpr std::size_t b = 1;

@@ -31,7 +31,7 @@ struct Factor
   Sign sign = Sign::above;
   double prior_deviation = 0.; ///< a nuisance's standard deviation about its null value
   std::string mechanism, unit, source;
-  std::string family; ///< what it has in common with other effects; may be empty
+  std::string family;                   ///< what it has in common with other effects; may be empty
   std::vector<std::string> confounders; ///< names of effects that are likely to look alike
   std::string parameter;                ///< what the amplitude is
 };

@@ -200,9 +200,8 @@ double AmplitudePosterior::likelier_than(const double amplitude) const
 std::pair<double, double> AmplitudePosterior::likeliest(const double probability) const
 {
   std::vector<Slice> all = slices();
-  std::sort(all.begin(), all.end(), [](const Slice &a, const Slice &b) {
-    return a.log_likelihood > b.log_likelihood;
-  });
+  std::sort(all.begin(), all.end(),
+            [](const Slice &a, const Slice &b) { return a.log_likelihood > b.log_likelihood; });
   double low = all.front().low, high = all.front().high, sum = 0.;
   for (const Slice &slice : all) {
     if (sum >= probability)

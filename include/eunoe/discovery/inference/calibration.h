@@ -15,8 +15,8 @@ struct Calibration
   unsigned int twins = 0;         ///< in which something was detected
   double temperature = 1.;        ///< probabilities are raised to its inverse
   double stated = 0., right = 0.; ///< mean probability of the first name; how often it was right
-  double interval = 0.95; ///< probability that an interval must hold for 95 % coverage
-  double coverage = 0.;   ///< of intervals that hold 95 %
+  double interval = 0.95;         ///< probability that an interval must hold for 95 % coverage
+  double coverage = 0.;           ///< of intervals that hold 95 %
 };
 
 /// @param threshold of the log Bayes factor for a detection
