@@ -244,6 +244,10 @@ class Scores(InFolder):
             rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
             return rates["family right, named or leading, strength 4 and more"]
         self.assertEqual(right(), (1, 1))
+        answer["gaps"] = {"held-out": {"members of the tie": [{"effects": "b", "p": 1e-3}, {"effects": "c", "p": 0.2}]}}
+        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
+        self.assertEqual(rates["name of a wrong family refuted by held-out data"], (0, 1))
         answer["tie"][0]["probability"] = 0.7
         self.assertEqual(right(), (0, 1))
         answer["catalogue"] = []

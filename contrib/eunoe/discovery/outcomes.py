@@ -73,17 +73,21 @@ class Outcome:
         """p-values of those models that have no effect of the truth."""
         return [p for effects, p in tested if not effects & self.truth_in_catalogue]
 
+    def p_of_wrong_families(self, tested: list[tuple[set[str], float]]) -> list[float]:
+        """p-values of those models that have no effect of the truth's families."""
+        return [p for effects, p in tested if not self.families_of(effects) & self.families_of(self.truth)]
+
     @property
     def leading_families(self) -> set[str]:
         """Of the families that the answer leaves the choice among, those with the most probability."""
         sums: Counter = Counter()
         for effects, probability in zip(self.covering, self.probabilities):
-            sums[frozenset(self.families.get(name) or name for name in effects)] += probability
+            sums[frozenset(self.families_of(effects))] += probability
         return set(max(sums, key=lambda key: sums[key])) if sums else set()
 
-    @property
-    def true_families(self) -> set[str]:
-        return {self.families.get(name) or name for name in self.truth}
+    def families_of(self, effects: set[str]) -> set[str]:
+        """Families of effects; an effect without one stands for itself."""
+        return {self.families.get(name) or name for name in effects}
 
     @property
     def covers(self) -> bool:
@@ -221,7 +225,7 @@ def score(outcomes: list[Outcome]) -> Scores:
              lambda o: o.detected and o.first in o.truth),
         rate("set covers the truth", answered, lambda o: o.covers, "at least 97 %"),
         rate("family right, named or leading, strength 4 and more", [o for o in strong if o.families],
-             lambda o: o.detected and o.leading_families == o.true_families),
+             lambda o: o.detected and o.leading_families == o.families_of(o.truth)),
         rate("two effects: detected", two, lambda o: o.detected),
         rate("two effects: first name correct", two, lambda o: o.detected and o.first in o.truth),
         rate("two effects: off the catalogue", two, lambda o: o.verdict == "off catalogue"),
@@ -239,6 +243,8 @@ def score(outcomes: list[Outcome]) -> Scores:
     known = single + two + deleted
     rates += [_refuted("wrong name refuted by held-out data", [p for o in known for p in o.wrong_p(o.names_tested)],
                        "at least 70 %"),
+              _refuted("name of a wrong family refuted by held-out data",
+                       [p for o in single + two if o.families for p in o.p_of_wrong_families(o.names_tested)]),
               _refuted("any wrong model refuted by held-out data",
                        [p for o in known for p in o.wrong_p(o.names_tested + o.others_tested)])]
     rates += _rates_apart(strong, two, deleted)
