@@ -299,8 +299,11 @@ def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcom
 
 
 def _covers_amplitudes(o: Outcome) -> bool:
-    return all(o.amplitudes[name]["lower"] <= o.case.amplitudes[name] <= o.amplitudes[name]["upper"]
-               for name in o.truth)
+    def covers(row: dict, truth: float) -> bool:
+        # An interval that reaches the range's end is rounded like any product of numbers.
+        rounding = 1e-9 * abs(truth)
+        return row["lower"] - rounding <= truth <= row["upper"] + rounding
+    return all(covers(o.amplitudes[name], o.case.amplitudes[name]) for name in o.truth)
 
 
 def learning(outcomes: list[Outcome]) -> list[tuple[int, int, int, int]]:
