@@ -73,8 +73,8 @@ class PageOfAStudy(InFolder):
         self.assertNotIn("in common", " ".join(verdict_text(study)))
         for name in ("cohesion", "rolling_resistance"):
             study.effects[name]["family"] = "contacts that hold"
-        self.assertIn("All of them have one thing in common, contacts that hold; one of these is missing with a "
-                      "probability of 100", " ".join(verdict_text(study)))
+        self.assertIn("All of them have one thing in common, contacts that hold: an effect of this kind is missing "
+                      "with a probability of 100", " ".join(verdict_text(study)))
         study.content["tie"] += [{"effects": "none of the catalogue", "probability": 0.1}]
         self.assertIn("cohesion, rolling resistance have one thing in common", " ".join(verdict_text(study)))
         study.content["tie"][2]["probability"] = 1.5

@@ -57,15 +57,16 @@ def _in_common(study: Study) -> list[str]:
     tie = study.content["tie"]
     families: dict[str, list[dict]] = {}
     for row in tie:
-        for family in {study.effects.get(name, {}).get("family", "") for name in row["effects"].split(" + ")}:
+        names = row["effects"].split(" + ")
+        for family in dict.fromkeys(study.effects.get(name, {}).get("family", "") for name in names):
             families.setdefault(family, []).append(row)
     for family, rows in families.items():
         share = sum(row["probability"] for row in rows)
         if family and len(rows) > 1 and share > 0.5 * sum(row["probability"] for row in tie):
             which = ("All of them have" if len(rows) == len(tie) else
                      ", ".join(plain(row["effects"]) for row in rows) + " have")
-            return [f"{which} one thing in common, {family}; one of these is missing with a probability of "
-                    f"{percent(share, 0)}."]
+            return [f"{which} one thing in common, {family}: an effect of this kind is missing with a "
+                    f"probability of {percent(share, 0)}."]
     return []
 
 

@@ -54,9 +54,9 @@ public:
 
   /// Amplitude below which this much of the probability lies.
   double quantile(double share) const;
-  /// Smallest range that holds this much of the probability, of the amplitudes with the highest
-  /// likelihood. A range between two quantiles would always leave out the end of the effect's
-  /// range, though it be the likeliest amplitude of all.
+  /// From the smallest to the largest of the amplitudes with the highest likelihood that hold this
+  /// much of the probability together. A range between two quantiles would always leave out the end
+  /// of the effect's range, though it be the likeliest amplitude of all.
   std::pair<double, double> likeliest(double probability) const;
   /// Probability of all amplitudes that are likelier than this one: it lies in every range that
   /// holds more.
