@@ -4,6 +4,7 @@
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/predictive.h>
 
+#include "suite.h"
 #include "synthetic.h"
 
 #include <mpi.h>
@@ -17,8 +18,8 @@ const std::vector<std::string> both = {"spreading", "heap"};
 /// Runs of a synthetic model, and an evaluation of data of a truth.
 struct Laboratory
 {
-  Laboratory(const Nature &nature, unsigned int seed)
-      : simulator(nature), options(), space(simulator.factors()),
+  Laboratory(const Nature &nature, unsigned int seed, const StudyOptions &study = {})
+      : simulator(nature), options(study), space(simulator.factors()),
         samples(options, space, simulator, both), design(options, space, samples, both)
   {
     options.seed = seed;
@@ -106,6 +107,40 @@ void levels(Laboratory &lab)
         std::to_string(refuted));
   const double a = lab.simulator.amplitude_of("b", 8., both);
   check("a wrong prediction is refuted", predictive.p(lab.target({{"b", a}}, 5).data()) < 1e-4);
+}
+
+/// Most runs have one effect, as where a study has followed a false trail. Data without any effect,
+/// but with nuisances, must not look like it.
+void false_trail()
+{
+  Nature more = nature();
+  more.n_nuisances = 2;
+  StudyOptions few;
+  few.null_runs = 16;
+  few.nuisance_runs = 4;
+  Laboratory lab(more, 1, few);
+  RandomStream random(6, 1);
+  const std::size_t b = 1;
+  std::vector<DesignPoint> points;
+  for (int k = 0; k < 150; ++k) {
+    Eigen::VectorXd position = lab.space.origin();
+    position(static_cast<Eigen::Index>(b)) = 0.01 * lab.space.upper(b) * (1. + random.uniform());
+    for (Eigen::Index q = static_cast<Eigen::Index>(lab.space.n_effects()); q < position.size();
+         ++q)
+      position(q) = random.normal();
+    points.push_back({position, 2});
+  }
+  lab.samples.run(points, both);
+  constexpr int number = 60;
+  int alarms = 0;
+  for (std::uint32_t k = 0; k < number; ++k) {
+    SuiteCase one = draw_case(lab.simulator, {"none"}, both, k, random);
+    const Target target = lab.target(one.truth, 100 + k);
+    const Evidence evidence(target, lab.space);
+    alarms +=
+        null_distribution(evidence, 100, 1).p(evidence.log_bayes_factor(target.data())) < 0.05;
+  }
+  check("runs with an effect make no false alarms of it", alarms <= 8, std::to_string(alarms));
 }
 
 void calibrations(Laboratory &lab)
@@ -275,6 +310,7 @@ EUNOE_MPI_TEST()
   Laboratory lab(nature(), 1);
   likelihoods(lab);
   levels(lab);
+  false_trail();
   calibrations(lab);
   intervals(lab);
   pairs();

@@ -130,6 +130,75 @@ void interactions()
         std::to_string(process.predict(1.).gradient(0, 0)));
 }
 
+using Points = std::vector<GaussianProcess::Point>;
+
+/// Points of an effect, at nuisances of both signs.
+Points points_of(const double slope, RandomStream &random)
+{
+  Points points;
+  for (const double u : {0.1, 0.3, 1., 2.}) {
+    const double v = random.normal();
+    points.push_back({u, Eigen::VectorXd::Constant(1, v),
+                      Eigen::VectorXd::Constant(6, 4. + slope * u + 3. * v) + random.normals(6, 1),
+                      0.5});
+  }
+  return points;
+}
+
+/// The base model and each effect by all runs together, beside one normal distribution of all of
+/// them.
+void shared_base()
+{
+  RandomStream random(9, 1);
+  const LinearBase first{Eigen::MatrixXd::Constant(2, 6, 3.5),
+                         Eigen::Vector2d(0.1, 0.4).asDiagonal()};
+  const std::vector<Points> points = {points_of(8., random), points_of(0., random)};
+  std::vector<GaussianProcess> processes;
+  for (const Points &one : points)
+    processes.emplace_back(one, first);
+
+  // What is predicted comes last: the base model's terms, and the first effect's outcome.
+  constexpr Eigen::Index n = 8;
+  constexpr double u = 0.6;
+  Eigen::MatrixXd terms(n + 3, 2), covariance = Eigen::MatrixXd::Zero(n + 3, n + 3), values(n, 6);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto &point = points[static_cast<std::size_t>(i / 4)][static_cast<std::size_t>(i % 4)];
+    const auto &kernel = processes[static_cast<std::size_t>(i / 4)].kernel();
+    terms.row(i) << 1., point.nuisances(0);
+    values.row(i) = point.mean.transpose();
+    for (Eigen::Index j = 4 * (i / 4); j < 4 * (i / 4) + 4; ++j) {
+      const auto &other = points[static_cast<std::size_t>(i / 4)][static_cast<std::size_t>(j % 4)];
+      covariance(i, j) = kernel.at(point.amplitude, other.amplitude) *
+                             (1. + kernel.interaction * point.nuisances(0) * other.nuisances(0)) +
+                         (i == j ? point.variance : 0.);
+    }
+    if (i < 4)
+      covariance(i, n + 2) = covariance(n + 2, i) = kernel.at(u, point.amplitude);
+  }
+  terms.bottomRows(3) << 1., 0., 0., 1., 1., 0.;
+  covariance += terms * first.covariance * terms.transpose();
+  const Eigen::MatrixXd weights =
+      covariance.topLeftCorner(n, n).ldlt().solve(covariance.topRightCorner(n, 3)).transpose();
+  const Eigen::MatrixXd means = terms.bottomRows(3) * first.coefficients +
+                                weights * (values - terms.topRows(n) * first.coefficients);
+
+  BaseInformation all{first.covariance.inverse(), first.covariance.inverse() * first.coefficients};
+  const BaseInformation without = all, of_first = processes[0].about_base(),
+                        of_second = processes[1].about_base();
+  all.precision += of_first.precision + of_second.precision;
+  all.weighted += of_first.weighted + of_second.weighted;
+  check("every run tells of the base model",
+        (all.solve().coefficients - means.topRows(2)).norm() < 1e-8);
+  processes[0].set_base(BaseInformation{without.precision + of_second.precision,
+                                        without.weighted + of_second.weighted}
+                            .solve());
+  check("an effect knows of the base model what other runs say",
+        (processes[0].predict(u).mean - means.row(2).transpose()).norm() < 1e-8);
+  check("and no more, where it is not there",
+        (processes[0].predict(0.).mean - means.row(0).transpose()).norm() < 1e-8 &&
+            (processes[0].predict(0.).gradient - means.row(1).transpose()).norm() < 1e-8);
+}
+
 void tails()
 {
   RandomStream random(8, 1);
@@ -192,6 +261,7 @@ EUNOE_TEST()
   covariances();
   gaussian_processes();
   interactions();
+  shared_base();
   tails();
   modes_and_noise();
 }

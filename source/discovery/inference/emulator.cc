@@ -46,7 +46,8 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   estimate_covariance(groups);
   fit_scatter(groups);
   estimate_covariance(groups);
-  fit_base(groups);
+  const BaseInformation without_effects = information_of_base(groups);
+  base = without_effects.solve();
   for (std::size_t k = 0; k < n_effects; ++k) {
     std::vector<GaussianProcess::Point> with;
     for (const Group &group : groups)
@@ -58,6 +59,7 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
       }
     processes.emplace_back(std::move(with), base);
   }
+  share_base(without_effects);
 }
 
 std::vector<ExperimentEmulator::Group> ExperimentEmulator::make_groups(
@@ -177,25 +179,41 @@ double ExperimentEmulator::scatter_at(const std::size_t effect, const double amp
 }
 
 /// Regression of the runs without effects on the nuisances.
-void ExperimentEmulator::fit_base(const std::vector<Group> &groups)
+BaseInformation ExperimentEmulator::information_of_base(const std::vector<Group> &groups) const
 {
   const auto n_terms = static_cast<Eigen::Index>(n_nuisances + 1);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(n_terms, n_terms);
   // A nuisance that could not be run changes nothing, with the uncertainty of a strong effect.
   constexpr double weak = 1e-4;
-  normal.diagonal().setConstant(weak);
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(n_terms, size());
+  BaseInformation result{weak * Eigen::MatrixXd::Identity(n_terms, n_terms),
+                         Eigen::MatrixXd::Zero(n_terms, size())};
   for (const Group &group : groups) {
     if (group.effect != -1)
       continue;
     Eigen::VectorXd terms(n_terms);
     terms << 1., group.position.tail(static_cast<Eigen::Index>(n_nuisances));
     const auto weight = static_cast<double>(group.rows.rows());
-    normal += weight * terms * terms.transpose();
-    right += weight * terms * (whitening * group.mean).transpose();
+    result.precision += weight * terms * terms.transpose();
+    result.weighted += weight * terms * (whitening * group.mean).transpose();
   }
-  base.covariance = normal.inverse();
-  base.coefficients = base.covariance * right;
+  return result;
+}
+
+/// Runs with any effect tell of the base model, too, mostly of its nuisances. All emulators share
+/// that: one that knew more of the base model than the others would describe data in which nothing
+/// is missing better than they do.
+void ExperimentEmulator::share_base(BaseInformation all)
+{
+  std::vector<BaseInformation> parts;
+  for (const GaussianProcess &process : processes) {
+    parts.push_back(process.about_base());
+    all.precision += parts.back().precision;
+    all.weighted += parts.back().weighted;
+  }
+  base = all.solve();
+  for (std::size_t k = 0; k < n_effects; ++k)
+    processes[k].set_base(
+        BaseInformation{all.precision - parts[k].precision, all.weighted - parts[k].weighted}
+            .solve());
 }
 
 GaussianProcess::Prediction ExperimentEmulator::predict(

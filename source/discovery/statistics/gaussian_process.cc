@@ -18,6 +18,13 @@ Eigen::VectorXd base_terms(const Eigen::VectorXd &nuisances)
 
 } // namespace
 
+LinearBase BaseInformation::solve() const
+{
+  const Eigen::LLT<Eigen::MatrixXd> llt(precision);
+  return {llt.solve(weighted),
+          llt.solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()))};
+}
+
 double GaussianProcess::Kernel::at(const double a, const double b) const
 {
   const double s = std::pow(std::abs(a), power), t = std::pow(std::abs(b), power);
@@ -29,40 +36,60 @@ double GaussianProcess::Kernel::at(const double a, const double b) const
 GaussianProcess::GaussianProcess(std::vector<Point> points, const LinearBase &base)
     : all(std::move(points)), base(base)
 {
+  const auto n = static_cast<Eigen::Index>(all.size());
+  terms.resize(n, base.coefficients.rows());
+  values.resize(n, base.coefficients.cols());
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Point &point = all[static_cast<std::size_t>(k)];
+    terms.row(k) = base_terms(point.nuisances).transpose();
+    values.row(k) = point.mean.transpose();
+  }
   if (all.empty())
     return;
-  residuals.resize(static_cast<Eigen::Index>(all.size()), base.coefficients.cols());
-  for (std::size_t k = 0; k < all.size(); ++k)
-    residuals.row(static_cast<Eigen::Index>(k)) =
-        all[k].mean.transpose() - base_terms(all[k].nuisances).transpose() * base.coefficients;
   choose_kernel();
-  solver.compute(covariance(best));
-  weights = solver.solve(residuals);
+  set_base(base);
 }
 
-Eigen::MatrixXd GaussianProcess::covariance(const Kernel &kernel) const
+void GaussianProcess::set_base(const LinearBase &others)
+{
+  base = others;
+  if (all.empty())
+    return;
+  solver.compute(effect_covariance(best) + terms * base.covariance * terms.transpose());
+  weights = solver.solve(values - terms * base.coefficients);
+}
+
+BaseInformation GaussianProcess::about_base() const
+{
+  const Eigen::LLT<Eigen::MatrixXd> llt(effect_covariance(best));
+  const Eigen::MatrixXd weighted = llt.solve(terms).transpose();
+  return {weighted * terms, weighted * values};
+}
+
+/// Covariance of the points for a given base model.
+Eigen::MatrixXd GaussianProcess::effect_covariance(const Kernel &kernel) const
 {
   const auto n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd result(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       const Point &a = all[static_cast<std::size_t>(i)], &b = all[static_cast<std::size_t>(j)];
-      result(i, j) = result(j, i) =
-          kernel.at(a.amplitude, b.amplitude) *
-              (1. + kernel.interaction * a.nuisances.dot(b.nuisances)) +
-          base_terms(a.nuisances).dot(base.covariance * base_terms(b.nuisances)) +
-          (i == j ? a.variance : 0.);
+      result(i, j) = result(j, i) = kernel.at(a.amplitude, b.amplitude) *
+                                        (1. + kernel.interaction * a.nuisances.dot(b.nuisances)) +
+                                    (i == j ? a.variance : 0.);
     }
   return result;
 }
 
 void GaussianProcess::choose_kernel()
 {
+  const Eigen::MatrixXd residuals = values - terms * base.coefficients,
+                        of_base = terms * base.covariance * terms.transpose();
   const auto n_values = static_cast<double>(residuals.cols());
   double highest = -std::numeric_limits<double>::infinity();
   const bool has_nuisances = all.front().nuisances.size() > 0;
   const auto consider = [&](const Kernel &kernel) {
-    const Eigen::LLT<Eigen::MatrixXd> llt(covariance(kernel));
+    const Eigen::LLT<Eigen::MatrixXd> llt(effect_covariance(kernel) + of_base);
     const double log_determinant =
         2. * Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
     const double distance = llt.matrixL().solve(residuals).squaredNorm();

@@ -67,7 +67,8 @@ private:
                                  const std::vector<Eigen::Index> &columns) const;
   void estimate_covariance(const std::vector<Group> &groups);
   void fit_scatter(const std::vector<Group> &groups);
-  void fit_base(const std::vector<Group> &groups);
+  BaseInformation information_of_base(const std::vector<Group> &groups) const;
+  void share_base(BaseInformation all);
   double scatter_at(std::size_t effect, double amplitude) const;
 
   std::size_t n_effects, n_nuisances;

@@ -13,6 +13,16 @@ struct LinearBase
   Eigen::MatrixXd coefficients, covariance;
 };
 
+/// What some runs say of the base model: the normal equations of a regression, to which those of
+/// other runs can be added.
+struct BaseInformation
+{
+  Eigen::MatrixXd precision; ///< terms x terms
+  Eigen::MatrixXd weighted;  ///< terms x values: precision times coefficients
+
+  LinearBase solve() const;
+};
+
 /// Gaussian process of the outcome of one experiment along the amplitude of one effect. The change
 /// from the base model is linear plus a Brownian motion, both in |u|^p, so that the response may be
 /// steep near zero and has no preferred shape beyond; it may depend on the nuisances. Values are
@@ -49,16 +59,21 @@ public:
   };
   Prediction predict(double amplitude) const;
 
+  /// What the points say of the base model, as far as the effect may be unknown between them.
+  BaseInformation about_base() const;
+  /// Replaces what other runs say of the base model. The kernel stays.
+  void set_base(const LinearBase &others);
+
   const std::vector<Point> &points() const { return all; }
   const Kernel &kernel() const { return best; }
 
 private:
-  Eigen::MatrixXd covariance(const Kernel &kernel) const;
+  Eigen::MatrixXd effect_covariance(const Kernel &kernel) const;
   void choose_kernel();
 
   std::vector<Point> all;
   LinearBase base;
-  Eigen::MatrixXd residuals; ///< points x values: means less the base model's
+  Eigen::MatrixXd terms, values; ///< a row for each point: terms of the base model, means
   Kernel best;
   Eigen::LLT<Eigen::MatrixXd> solver;
   Eigen::MatrixXd weights; ///< covariance^-1 residuals
