@@ -46,14 +46,14 @@ Discovery study(SyntheticSimulator &simulator, const MeasuredData &data,
 void false_alarms()
 {
   int alarms = 0;
-  const int n = 10;
+  const int n = 30;
   for (std::uint32_t seed = 1; seed <= n; ++seed) {
     SyntheticSimulator simulator(nature(1000 + seed));
     const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, seed));
     alarms += d.verdict != Verdict::none && d.verdict != Verdict::underpowered;
   }
-  // More than 2 of 10 at a true rate of 5 % would be a chance of 1.2 %.
-  check("false alarms", alarms <= 2, std::to_string(alarms) + " of 10");
+  // More than 4 of 30 at a true rate of 5 % would be a chance of 1.6 %.
+  check("false alarms", alarms <= 4, std::to_string(alarms) + " of 30");
 }
 
 void named_with_amplitude()
@@ -138,15 +138,22 @@ void tie_and_how_to_break_it()
   const Amplitudes truth = {{"b", simulator.amplitude_of("b", 8., {"heap"})}};
   StudyOptions options = small();
   options.further_experiments = {"spreading"};
-  const Discovery heap =
-      study(simulator, simulator.measure({"heap"}, {}, truth, 4, 0.2, 2), options);
-  check("a tie from the heap alone", heap.verdict == Verdict::tie,
-        heap.content["verdict"].get<std::string>() + ": " + heap.content["models"].dump());
-  std::set<std::string> names;
-  for (const auto &row : heap.content["tie"])
-    names.insert(row["effects"].get<std::string>());
-  check("between the two that are alike there", names.count("b") == 1 && names.count("c") == 1);
-  const auto &rows = heap.content["measurements that would break the tie"];
+  // A study may end before it knows the other effect well enough.
+  int ties = 0;
+  nlohmann::ordered_json rows;
+  for (const std::uint32_t seed : {1, 2, 3, 4}) {
+    const Discovery heap =
+        study(simulator, simulator.measure({"heap"}, {}, truth, 4, 0.2, seed), options);
+    std::set<std::string> names;
+    for (const auto &row : heap.content["tie"])
+      names.insert(row["effects"].get<std::string>());
+    if (heap.verdict == Verdict::tie && names.count("b") == 1 && names.count("c") == 1) {
+      ++ties;
+      rows = heap.content["measurements that would break the tie"];
+    }
+  }
+  check("a tie from the heap alone, between the two that are alike there", ties >= 3,
+        std::to_string(ties) + " of 4");
   check("the spreading would tell most", !rows.empty() && rows[0]["experiment"] == "spreading",
         rows.dump());
   const Discovery more = study(simulator, simulator.measure(both, {}, truth, 4, 0.2, 2));

@@ -147,8 +147,9 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence,
   return list;
 }
 
-bool Design::run(std::vector<Wish> list, const double share_of_base)
+bool Design::run(std::vector<Wish> list)
 {
+  constexpr double share_of_base = 0.1;
   double others = 0.;
   for (const Wish &wish : list)
     others += wish.weight;
@@ -176,24 +177,18 @@ bool Design::run(std::vector<Wish> list, const double share_of_base)
   return samples.n_asked() > before;
 }
 
-bool Design::refine(const Evidence &evidence, const std::vector<Model> &models,
-                    const double p_nothing)
+bool Design::refine(const Evidence &evidence, const std::vector<Model> &models)
 {
-  // The base model must be known at least as well as an effect at small amplitudes, which else
-  // would describe data without any effect better than the base model does.
-  constexpr double most = 0.5, least = 0.01;
-  return run(wishes(evidence, models),
-             std::max(least, most * std::sqrt(std::min(1., p_nothing / options.level))));
+  return run(wishes(evidence, models));
 }
 
 bool Design::fill(const Evidence &evidence)
 {
-  constexpr double share_of_base = 0.1;
   std::vector<Wish> list;
   for (const std::size_t k : evidence.usable())
     for (const Evidence::Place &place : evidence.places(k))
       list.push_back({k, place.amplitude, unknown(evidence.target(), place.hypothesis.prediction)});
-  return run(list, share_of_base);
+  return run(std::move(list));
 }
 
 } // namespace eunoe::discovery

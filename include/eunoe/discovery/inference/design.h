@@ -26,7 +26,7 @@ public:
   /// Runs where it is expected to tell most: near the amplitudes at which models would be the
   /// likeliest if they were known better, by the error of their emulator.
   /// @return whether anything could be run
-  bool refine(const Evidence &evidence, const std::vector<Model> &models, double p_nothing);
+  bool refine(const Evidence &evidence, const std::vector<Model> &models);
 
   /// Runs where the emulators of effects know least, whatever will be measured.
   /// @return whether anything could be run
@@ -40,7 +40,7 @@ private:
     double amplitude, weight;
   };
   std::vector<Wish> wishes(const Evidence &evidence, const std::vector<Model> &models) const;
-  bool run(std::vector<Wish> wishes, double share_of_base);
+  bool run(std::vector<Wish> wishes);
   Eigen::VectorXd draw_nuisances();
   DesignPoint point(std::size_t effect, double amplitude);
 
