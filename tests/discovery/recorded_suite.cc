@@ -5,7 +5,12 @@
 // Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
 // are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
 // and no study); ideal (how often an observer who knows all fingerprints detects single effects and
-// names them rightly, and no study); table=FILE.
+// names them rightly, and no study); level (how often data without any effect seem to have one, for
+// the runs of one study each, see observe_level); table=FILE.
+
+#include <eunoe/discovery/inference/decision.h>
+#include <eunoe/discovery/inference/design.h>
+#include <eunoe/discovery/inference/twins.h>
 
 #include "ideal_observer.h"
 #include "recorded_cases.h"
@@ -82,10 +87,54 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
   }
 }
 
+/// Makes the runs of a study without any effect until its budget is used, and evaluates many other
+/// data without any effect by them: p of nothing missing must be as often below a level as the
+/// level says, whatever trail the study has followed.
+void observe_level(const RecordedTable &table, StudyOptions options, const std::uint32_t seed)
+{
+  constexpr std::uint32_t n_data = 200, first_data = 0x10000000u;
+  constexpr unsigned int n_twins = 400;
+  options.seed = seed;
+  DrawnCase drawn(table, {"none"}, seed);
+  const FactorSpace space(drawn.simulator.factors());
+  Samples samples(options, space, drawn.simulator, table.fit);
+  Design design(options, space, samples, table.fit);
+  std::vector<std::string> notes;
+  const auto target = [&](const MeasuredData &data) {
+    return Target(sort_by_experiment(data.fit, samples, samples.simulator(), notes), samples, space,
+                  options.model_tolerance);
+  };
+  design.run_base();
+  design.run_effects([&] { return target(drawn.data); });
+  while (true) {
+    const Target now = target(drawn.data);
+    const Evidence evidence(now, space);
+    if (!design.refine(evidence, weigh(evidence, options, DecisionRule().quick()).models))
+      break;
+  }
+  std::map<double, unsigned int> below = {{0.05, 0}, {0.01, 0}, {0.001, 0}};
+  for (std::uint32_t k = 0; k < n_data; ++k) {
+    const std::uint32_t other = first_data + 1000u * seed + k;
+    const Amplitudes nuisances = DrawnCase(table, {"none"}, other).one.truth;
+    const Target fresh = target(
+        drawn.simulator.measure(table.fit, {}, nuisances, drawn.repeats, drawn.instrument, other));
+    const Evidence evidence(fresh, space);
+    const double p =
+        null_distribution(evidence, n_twins, seed).p(evidence.log_bayes_factor(fresh.data()));
+    for (auto &[level, number] : below)
+      number += p <= level;
+  }
+  std::printf("seed %u, %lu runs:", seed, static_cast<unsigned long>(samples.n_asked()));
+  for (const auto &[level, number] : below)
+    std::printf(" p <= %g in %u of %u;", level, number, n_data);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
 void run(const SuiteOptions &options)
 {
   std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt";
-  bool simulated = false, only_describe = false, ideal = false;
+  bool simulated = false, only_describe = false, ideal = false, level = false;
   for (const std::string &option : options.others) {
     if (option == "simulated")
       simulated = true;
@@ -93,6 +142,8 @@ void run(const SuiteOptions &options)
       only_describe = true;
     else if (option == "ideal")
       ideal = true;
+    else if (option == "level")
+      level = true;
     else if (option.rfind("table=", 0) == 0)
       path = option.substr(6);
     else
@@ -105,6 +156,10 @@ void run(const SuiteOptions &options)
     return observe(table, options);
   for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
     const std::uint32_t seed = options.first_seed + k;
+    if (level) {
+      observe_level(table, options.study, seed);
+      continue;
+    }
     if (simulated) {
       for (const auto &left_out : simulated_data(table)) {
         const RecordedStudy study = simulated_study(table, left_out, seed, options.study);
