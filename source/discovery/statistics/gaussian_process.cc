@@ -25,16 +25,12 @@ LinearBase BaseInformation::solve() const
           llt.solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()))};
 }
 
-double GaussianProcess::Kernel::bent(const double amplitude) const
+double GaussianProcess::Kernel::at(const double a, const double b) const
 {
-  return std::copysign(std::pow(std::abs(amplitude), power), amplitude);
-}
-
-double GaussianProcess::Kernel::between(const double bent_a, const double bent_b) const
-{
-  const bool same_side = (bent_a < 0.) == (bent_b < 0.);
-  return variance * (bent_a * bent_b +
-                     (same_side ? roughness * std::min(std::abs(bent_a), std::abs(bent_b)) : 0.));
+  const double s = std::pow(std::abs(a), power), t = std::pow(std::abs(b), power);
+  const bool same_side = (a < 0.) == (b < 0.);
+  return variance *
+         ((same_side ? 1. : -1.) * s * t + (same_side ? roughness * std::min(s, t) : 0.));
 }
 
 GaussianProcess::GaussianProcess(std::vector<Point> points, const LinearBase &base)
@@ -75,13 +71,10 @@ Eigen::MatrixXd GaussianProcess::effect_covariance(const Kernel &kernel) const
 {
   const auto n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXd result(n, n);
-  Eigen::VectorXd bent(n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    bent(i) = kernel.bent(all[static_cast<std::size_t>(i)].amplitude);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       const Point &a = all[static_cast<std::size_t>(i)], &b = all[static_cast<std::size_t>(j)];
-      result(i, j) = result(j, i) = kernel.between(bent(i), bent(j)) *
+      result(i, j) = result(j, i) = kernel.at(a.amplitude, b.amplitude) *
                                         (1. + kernel.interaction * a.nuisances.dot(b.nuisances)) +
                                     (i == j ? a.variance : 0.);
     }

@@ -43,10 +43,7 @@ public:
   struct Kernel
   {
     double power = 1., roughness = 0., variance = 0., interaction = 0.;
-    double at(double a, double b) const { return between(bent(a), bent(b)); }
-    /// An amplitude in the coordinate in which the change is linear plus a Brownian motion.
-    double bent(double amplitude) const;
-    double between(double bent_a, double bent_b) const;
+    double at(double a, double b) const;
   };
 
   /// @param points with the effect; none: the effect changes nothing
