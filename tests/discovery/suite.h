@@ -24,8 +24,8 @@ struct StudyKind
 inline const std::vector<StudyKind> &standard_kinds()
 {
   static const std::vector<StudyKind> kinds = {
-      {"none"},       {"single", 2., 1},  {"single", 4., 1},    {"single", 8., 1},
-      {"two", 6., 2}, {"deleted", 8., 1}, {"confounded", 8., 1}};
+      {"none"},       {"single", 2., 1}, {"single", 4., 1},  {"single", 8., 1},
+      {"two", 6., 2}, {"two", 8., 2},    {"deleted", 8., 1}, {"confounded", 8., 1}};
   return kinds;
 }
 
