@@ -2,8 +2,9 @@
 #define eunoe_tests_discovery_ideal_observer_h
 
 // The ceiling of detection and naming: an observer who knows the fingerprint and the scatter of
-// every effect at every amplitude exactly, and the noise of the instrument, but neither amplitude
-// nor nuisances. No study can detect or name more effects rightly.
+// every effect at every amplitude exactly, and the noise of the instrument, but neither amplitudes
+// nor nuisances. No study can detect or name more effects rightly. Of two effects he thinks with
+// the same prior as a study.
 
 #include <eunoe/discovery/inference/evidence.h>
 
@@ -24,10 +25,45 @@ public:
       part.values.conservativeResize(part.values.size() + 1);
       part.values(part.values.size() - 1) = point.value;
     }
+    covariance_of_nuisances();
     for (const Factor &f : simulator.factors())
-      if (f.kind == Factor::Kind::effect)
+      if (f.kind == Factor::Kind::effect) {
+        find_places(f);
         effects.emplace_back(log_evidence(f), f.name);
+      }
     std::sort(effects.begin(), effects.end());
+  }
+
+  using Names = std::set<std::string>;
+
+  /// Which effects a study would name that knew as much: one or two, of the models that together
+  /// have a probability. Without those that have one effect more than a likelier model; one model
+  /// is a name, more are a tie. The first is the likeliest of all.
+  std::vector<Names> models(const double probability) const
+  {
+    const Prior prior;
+    const auto n = static_cast<double>(effects.size());
+    std::vector<std::pair<double, Names>> all;
+    for (const auto &[log, name] : effects)
+      all.emplace_back(std::log(prior.one_effect / n) + log, Names{name});
+    for (const auto &[names, log] : log_evidence_of_pairs())
+      all.emplace_back(std::log(prior.two_effects / (0.5 * n * (n - 1.))) + log, names);
+    std::sort(all.rbegin(), all.rend());
+    std::vector<double> logs;
+    for (const auto &[log, names] : all)
+      logs.push_back(log);
+    const double total = log_sum(logs);
+    double sum = 0.;
+    std::vector<Names> result;
+    for (auto it = all.begin(); it != all.end() && sum < probability; ++it) {
+      sum += std::exp(it->first - total);
+      if (std::none_of(result.begin(), result.end(), [&](const Names &likelier) {
+            return std::includes(it->second.begin(), it->second.end(), likelier.begin(),
+                                 likelier.end());
+          }))
+        result.push_back(it->second);
+    }
+    return result;
   }
 
   /// The likeliest single effects, which together have a probability; the likeliest first.
@@ -61,6 +97,17 @@ private:
     Eigen::VectorXd values;
   };
 
+  /// An effect at one strength, and its change in units in which the covariance of the base model's
+  /// data is the unit matrix.
+  struct Place
+  {
+    double strength = 0., side = 1., strongest = 0.;
+    Amplitudes amplitude;
+    Eigen::VectorXd change;
+  };
+
+  static constexpr double just_visible = 1.;
+
   std::vector<std::string> experiments() const
   {
     std::vector<std::string> names;
@@ -69,64 +116,188 @@ private:
     return names;
   }
 
-  /// Log of the mean likelihood over strengths in a geometric sequence, from the smallest that can
-  /// be seen to that of the end of the range.
-  double log_evidence(const Factor &f) const
+  /// Strengths in a geometric sequence, from the smallest that can be seen to that of the end of
+  /// the range.
+  void find_places(const Factor &f)
   {
-    constexpr int places = 30;
-    constexpr double just_visible = 1., strongest = 50.;
-    std::vector<double> logs;
+    constexpr int number = 30;
+    constexpr double strongest = 50.;
     for (const double limit : {f.lower, f.upper}) {
       const double side = limit < f.null_value ? -1. : 1.;
       if (limit == f.null_value ||
           f.sign == (side > 0. ? Factor::Sign::below : Factor::Sign::above))
         continue;
       const double last = std::min(strongest, simulator.strength({{f.name, limit}}, experiments()));
-      for (int k = 0; k < places && just_visible < last; ++k) {
-        const double strength = just_visible * std::pow(last / just_visible, k / (places - 1.));
-        logs.push_back(log_likelihood(
-            {{f.name, simulator.amplitude_of(f.name, strength, experiments(), side)}}));
+      for (int k = 0; k < number && just_visible < last; ++k) {
+        Place place{
+            just_visible * std::pow(last / just_visible, k / (number - 1.)), side, last, {}, {}};
+        place.amplitude = amplitude(f.name, place, 0.);
+        place.change = base.matrixL().solve(mean(place.amplitude) - mean({}));
+        places[f.name].push_back(place);
       }
     }
+  }
+
+  /// The amplitude whose strength is e^shift times that of a place.
+  Amplitudes amplitude(const std::string &name, const Place &place, const double shift) const
+  {
+    return {{name, simulator.amplitude_of(name, place.strength * std::exp(shift), experiments(),
+                                          place.side)}};
+  }
+
+  /// Log of the mean likelihood over the places.
+  double log_evidence(const Factor &f) const
+  {
+    std::vector<double> logs;
+    if (const auto found = places.find(f.name); found != places.end())
+      for (const Place &place : found->second)
+        logs.push_back(log_likelihood(place.amplitude));
     return logs.empty() ? -1e300 : log_sum(logs) - std::log(static_cast<double>(logs.size()));
+  }
+
+  /// Pairs that can matter: first with the scatter of the base model at all places, then, around
+  /// the best of them, with the right one (Laplace).
+  std::map<Names, double> log_evidence_of_pairs() const
+  {
+    constexpr double matters = 25.;
+    struct Rough
+    {
+      double least = 1e300;
+      const Place *a = nullptr, *b = nullptr;
+    };
+    const Eigen::VectorXd deviation = base.matrixL().solve(data() - mean({}));
+    std::map<Names, Rough> all;
+    double least = 1e300;
+    for (auto first = places.begin(); first != places.end(); ++first)
+      for (auto second = places.begin(); second != first; ++second) {
+        Rough &rough = all[{first->first, second->first}];
+        for (const Place &p : first->second)
+          for (const Place &q : second->second)
+            if (const double distance = (deviation - p.change - q.change).squaredNorm();
+                distance < rough.least)
+              rough = {distance, &p, &q};
+        least = std::min(least, rough.least);
+      }
+    std::map<Names, double> result;
+    for (const auto &[names, rough] : all)
+      if (0.5 * (rough.least - least) < matters)
+        result[names] = laplace(rough.a->amplitude.begin()->first, *rough.a,
+                                rough.b->amplitude.begin()->first, *rough.b);
+    return result;
+  }
+
+  /// Log evidence of a pair, from the curvature of its likelihood in the logarithms of strengths,
+  /// whose prior is uniform.
+  double laplace(const std::string &a, const Place &p, const std::string &b, const Place &q) const
+  {
+    constexpr double step = 0.05, longest = 0.3;
+    constexpr int iterations = 4;
+    Eigen::Vector2d at = Eigen::Vector2d::Zero();
+    const auto f = [&](const double x, const double y) {
+      Amplitudes both = amplitude(a, p, at(0) + x);
+      both.merge(amplitude(b, q, at(1) + y));
+      return log_likelihood(both);
+    };
+    double value = 0., determinant = 0.;
+    for (int i = 0; i <= iterations; ++i) {
+      value = f(0., 0.);
+      const double left = f(-step, 0.), right = f(step, 0.), down = f(0., -step), up = f(0., step);
+      const double cross =
+          (f(step, step) + f(-step, -step) + 2. * value - left - right - down - up) /
+          (2. * step * step);
+      Eigen::Matrix2d curvature;
+      curvature << (2. * value - left - right) / (step * step), -cross, -cross,
+          (2. * value - down - up) / (step * step);
+      // At least as wide as the prior.
+      curvature.diagonal() = curvature.diagonal().cwiseMax(0.1);
+      determinant = std::max(curvature.determinant(), 0.01);
+      const Eigen::Vector2d slope((right - left) / (2. * step), (up - down) / (2. * step));
+      if (i < iterations)
+        at += (curvature.inverse() * slope).cwiseMin(longest).cwiseMax(-longest);
+    }
+    const auto log_prior = [&](const std::string &name, const Place &place) {
+      const double sides = static_cast<double>(places.at(name).size()) / 30.;
+      return -std::log(sides * std::log(place.strongest / just_visible));
+    };
+    return value + log_prior(a, p) + log_prior(b, q) + std::log(2. * M_PI) -
+           0.5 * std::log(determinant);
+  }
+
+  Eigen::Index size() const
+  {
+    Eigen::Index sum = 0;
+    for (const auto &[experiment, part] : parts)
+      sum += part.values.size();
+    return sum;
+  }
+
+  template <typename Values>
+  Eigen::VectorXd joined(const Values &of_experiment) const
+  {
+    Eigen::VectorXd result(size());
+    Eigen::Index first = 0;
+    for (const auto &[experiment, part] : parts) {
+      result.segment(first, part.values.size()) = of_experiment(experiment, part);
+      first += part.values.size();
+    }
+    return result;
+  }
+
+  Eigen::VectorXd data() const
+  {
+    return joined([](const std::string &, const Part &part) { return part.values; });
+  }
+
+  Eigen::VectorXd mean(const Amplitudes &truth) const
+  {
+    return joined([&](const std::string &experiment, const Part &) {
+      return simulator.mean(experiment, truth);
+    });
+  }
+
+  /// What nuisances add, which move all experiments together; and the covariance of all that is not
+  /// an effect's.
+  void covariance_of_nuisances()
+  {
+    nuisances = Eigen::MatrixXd::Zero(size(), size());
+    for (const Factor &f : simulator.factors())
+      if (f.kind == Factor::Kind::nuisance) {
+        const Eigen::VectorXd column =
+            mean({{f.name, f.null_value + f.prior_deviation}}) - mean({});
+        nuisances += column * column.transpose();
+      }
+    base.compute(covariance({}));
+  }
+
+  Eigen::MatrixXd covariance(const Amplitudes &truth) const
+  {
+    Eigen::MatrixXd result = nuisances;
+    Eigen::Index first = 0;
+    for (const auto &[experiment, part] : parts) {
+      const Eigen::Index n = part.values.size();
+      const Eigen::MatrixXd one_run = simulator.covariance(experiment);
+      result.block(first, first, n, n) +=
+          one_run * std::pow(simulator.growth(experiment, truth), 2) / repeats;
+      result.diagonal().segment(first, n) += instrument * instrument / repeats * one_run.diagonal();
+      first += n;
+    }
+    return result;
   }
 
   double log_likelihood(const Amplitudes &truth) const
   {
-    // Nuisances move all experiments together.
-    Eigen::Index size = 0;
-    for (const auto &[experiment, part] : parts)
-      size += part.values.size();
-    Eigen::VectorXd deviation(size);
-    Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
-    Eigen::Index first = 0;
-    std::vector<Eigen::VectorXd> columns(simulator.factors().size(), Eigen::VectorXd::Zero(size));
-    for (const auto &[experiment, part] : parts) {
-      const Eigen::Index n = part.values.size();
-      deviation.segment(first, n) = part.values - simulator.mean(experiment, truth);
-      const Eigen::MatrixXd one_run =
-          simulator.covariance(experiment) * std::pow(simulator.growth(experiment, truth), 2);
-      covariance.block(first, first, n, n) = one_run / repeats;
-      covariance.diagonal().segment(first, n) +=
-          instrument * instrument / repeats * simulator.covariance(experiment).diagonal();
-      for (std::size_t q = 0; q < columns.size(); ++q)
-        if (const Factor &f = simulator.factors()[q]; f.kind == Factor::Kind::nuisance)
-          columns[q].segment(first, n) =
-              simulator.mean(experiment, {{f.name, f.null_value + f.prior_deviation}}) -
-              simulator.mean(experiment, {});
-      first += n;
-    }
-    for (const Eigen::VectorXd &column : columns)
-      covariance += column * column.transpose();
-    const Eigen::LLT<Eigen::MatrixXd> llt(covariance);
-    return -0.5 * llt.matrixL().solve(deviation).squaredNorm() -
-           Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
+    const Eigen::LLT<Eigen::MatrixXd> llt(covariance(truth));
+    return -0.5 * llt.matrixL().solve(data() - mean(truth)).squaredNorm() -
+           llt.matrixLLT().diagonal().array().log().sum();
   }
 
   const RecordedSimulator &simulator;
   const unsigned int repeats;
   const double instrument;
   std::map<std::string, Part> parts;
+  Eigen::MatrixXd nuisances;
+  Eigen::LLT<Eigen::MatrixXd> base; ///< of the covariance without effects
+  std::map<std::string, std::vector<Place>> places;
   std::vector<std::pair<double, std::string>> effects; ///< log evidence and name
 };
 

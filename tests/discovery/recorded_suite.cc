@@ -5,8 +5,8 @@
 // Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
 // are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
 // and no study); ideal (how often an observer who knows all fingerprints detects single effects and
-// names them rightly, and no study); level (how often data without any effect seem to have one, for
-// the runs of one study each, see observe_level); table=FILE.
+// names them and two effects rightly, and no study); level (how often data without any effect seem
+// to have one, for the runs of one study each, see observe_level); table=FILE.
 
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
@@ -47,6 +47,26 @@ IdealObserver observer_of(const DrawnCase &drawn)
   return {drawn.simulator, drawn.data.fit, drawn.repeats, drawn.instrument};
 }
 
+/// How often the ideal observer names both of two effects.
+void observe_pairs(const RecordedTable &table, const StudyKind &kind, const SuiteOptions &options)
+{
+  constexpr double credible = 0.95;
+  unsigned int named = 0, first = 0, covered = 0;
+  for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
+    const DrawnCase drawn(table, kind, options.first_seed + k);
+    IdealObserver::Names truth;
+    for (const auto &[name, strength] : drawn.one.strengths)
+      truth.insert(name);
+    const std::vector<IdealObserver::Names> models = observer_of(drawn).models(credible);
+    first += models.front() == truth;
+    named += models.size() == 1 && models.front() == truth;
+    covered += std::count(models.begin(), models.end(), truth) > 0;
+  }
+  std::printf("two of strength %g: both named in %u of %u, leading in %u, among the models in %u\n",
+              kind.strength, named, options.n_seeds, first, covered);
+  std::fflush(stdout);
+}
+
 /// How often the ideal observer detects and names the right effect, on the data of the studies with
 /// the same seeds. What he takes for a detection is more than all but 5 % or 2 % of such data show
 /// in which nothing is missing.
@@ -55,12 +75,15 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
   constexpr std::uint32_t n_nulls = 1000, first_null = 0x20000000u;
   constexpr double levels[] = {0.05, 0.02};
   std::vector<double> nothing;
-  for (std::uint32_t k = 0; k < n_nulls; ++k)
-    nothing.push_back(observer_of({table, {"none"}, first_null + k}).log_bayes_factor());
-  std::sort(nothing.rbegin(), nothing.rend());
   for (const StudyKind &kind : standard_kinds()) {
+    if (kind.kind == "two" && options.wants(kind))
+      observe_pairs(table, kind, options);
     if (kind.kind != "single" || !options.wants(kind))
       continue;
+    if (nothing.empty())
+      for (std::uint32_t k = 0; k < n_nulls; ++k)
+        nothing.push_back(observer_of({table, {"none"}, first_null + k}).log_bayes_factor());
+    std::sort(nothing.rbegin(), nothing.rend());
     constexpr double credible = 0.95;
     unsigned int right = 0, covered = 0;
     std::size_t size = 0;
