@@ -80,7 +80,7 @@ public:
   static bool could_be_detected(const Round &round)
   {
     const Eigen::VectorXd &data = round.target.data();
-    const double needed = round.findings.threshold + round.evidence.log_nothing(data);
+    const double needed = round.findings.threshold + round.evidence.log_nothing(data)(0);
     const std::vector<std::size_t> effects = round.evidence.usable();
     return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
       return log_sum(round.evidence.optimistic(k, data)) > needed;
@@ -110,8 +110,8 @@ public:
     double largest = 0.;
     for (const Model &model : round.findings.answer) {
       const Target::Prediction prediction = round.target.predict(model.best);
-      largest = std::max(largest,
-                         prediction.leverage.maxCoeff() / round.target.variance(prediction).mean());
+      largest = std::max(
+          largest, prediction.leverage.cwiseQuotient(round.target.variance(prediction)).mean());
     }
     return largest < well_known;
   }

@@ -143,7 +143,7 @@ void observe_level(const RecordedTable &table, StudyOptions options, const std::
         drawn.simulator.measure(table.fit, {}, nuisances, drawn.repeats, drawn.instrument, other));
     const Evidence evidence(fresh, space);
     const double p =
-        null_distribution(evidence, n_twins, seed).p(evidence.log_bayes_factor(fresh.data()));
+        null_distribution(evidence, n_twins, seed).p(evidence.log_bayes_factors(fresh.data())(0));
     for (auto &[level, number] : below)
       number += p <= level;
   }

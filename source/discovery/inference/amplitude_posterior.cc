@@ -99,9 +99,7 @@ AmplitudeDensity::AmplitudeDensity(const Evidence &evidence, const Model &model,
 double AmplitudeDensity::log(const std::map<std::size_t, double> &effects,
                              const Target::Prediction &prediction) const
 {
-  Evidence::Hypothesis here = at_best;
-  here.prediction.mean = prediction.mean;
-  double result = evidence.log_likelihood(here, data);
+  double result = evidence.log_likelihoods_about(at_best, prediction.mean, data)(0);
   for (const auto &[k, amplitude] : effects)
     result += evidence.place_near(k, amplitude).log_reference;
   return result;

@@ -44,29 +44,40 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     if (!evidence.places(k).empty())
       usable.push_back(k);
   Calibration result;
-  std::vector<Trial> trials;
-  std::vector<double> likelier;
-  for (unsigned int i = 0; i < draws && !usable.empty(); ++i) {
-    const std::size_t truth = random.index(usable.size());
-    const auto &places = evidence.places(usable[truth]);
+  if (usable.empty())
+    return result;
+  std::vector<std::size_t> truths;
+  std::vector<double> amplitudes;
+  Eigen::MatrixXd data(evidence.target().data().size(), draws);
+  for (unsigned int i = 0; i < draws; ++i) {
+    truths.push_back(random.index(usable.size()));
+    const auto &places = evidence.places(usable[truths.back()]);
     std::vector<double> prior;
     for (const Evidence::Place &place : places)
       prior.push_back(std::exp(place.log_prior));
     const Evidence::Place &place = places[Pick(prior)(random)];
-    const Eigen::VectorXd data = twins.draw(place.hypothesis.prediction);
-    if (evidence.log_bayes_factor(data) < threshold)
+    amplitudes.push_back(place.amplitude);
+    data.col(i) = twins.draw(place.hypothesis.prediction);
+  }
+  const Eigen::ArrayXXd posterior = evidence.log_posterior_of_singles(data);
+  const Eigen::ArrayXd factors = log_sums(posterior) - evidence.log_nothing(data);
+  std::vector<Trial> trials;
+  std::vector<double> likelier;
+  for (unsigned int i = 0; i < draws; ++i) {
+    if (factors(i) < threshold)
       continue;
-    Trial trial{evidence.log_posterior_of_singles(data), truth};
+    const std::size_t effect = usable[truths[i]];
+    const Eigen::ArrayXd logs = posterior.col(i);
+    Trial trial{{logs.begin(), logs.end()}, truths[i]};
     Model alone;
-    alone.effects = {usable[truth]};
-    evidence.log_single(usable[truth], data, &alone.best[usable[truth]]);
-    const double total = log_sum(trial.log_posterior);
-    const auto first = std::max_element(trial.log_posterior.begin(), trial.log_posterior.end());
-    result.stated += std::exp(*first - total);
-    result.right +=
-        first - trial.log_posterior.begin() == static_cast<std::ptrdiff_t>(truth) ? 1. : 0.;
+    alone.effects = {effect};
+    alone.best[effect] = evidence.best_amplitude(effect, data.col(i));
+    Eigen::Index first = 0;
+    const double highest = logs.maxCoeff(&first);
+    result.stated += std::exp(highest - log_sum(trial.log_posterior));
+    result.right += first == static_cast<Eigen::Index>(truths[i]) ? 1. : 0.;
     likelier.push_back(
-        AmplitudePosterior(evidence, alone, data, usable[truth]).likelier_than(place.amplitude));
+        AmplitudePosterior(evidence, alone, data.col(i), effect).likelier_than(amplitudes[i]));
     trials.push_back(std::move(trial));
   }
   result.twins = static_cast<unsigned int>(trials.size());
@@ -93,7 +104,7 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
 std::optional<double> detectable(const Evidence &evidence, const std::size_t effect,
                                  const bool above, const double threshold, const std::uint32_t seed)
 {
-  constexpr int draws = 25;
+  constexpr unsigned int draws = 25;
   constexpr double power = 0.8;
   std::vector<const Evidence::Place *> side;
   for (const Evidence::Place &place : evidence.places(effect))
@@ -101,10 +112,9 @@ std::optional<double> detectable(const Evidence &evidence, const std::size_t eff
       side.push_back(&place);
   const auto is_seen = [&](const Evidence::Place &place) {
     Twins twins(evidence, seed);
-    int seen = 0;
-    for (int k = 0; k < draws; ++k)
-      seen += evidence.log_bayes_factor(twins.draw(place.hypothesis.prediction)) >= threshold;
-    return seen >= power * draws;
+    const Eigen::ArrayXd factors =
+        evidence.log_bayes_factors(twins.draw(place.hypothesis.prediction, draws));
+    return static_cast<double>((factors >= threshold).count()) >= power * draws;
   };
   if (side.empty() || !is_seen(*side.back()))
     return std::nullopt;

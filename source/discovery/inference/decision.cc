@@ -52,7 +52,7 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
   Findings findings;
   const Eigen::VectorXd &data = evidence.target().data();
   findings.null_distribution = null_distribution(evidence, rule.null_draws, options.seed);
-  findings.log_bayes_factor = evidence.log_bayes_factor(data);
+  findings.log_bayes_factor = evidence.log_bayes_factors(data)(0);
   findings.p_nothing = findings.null_distribution.p(findings.log_bayes_factor);
   findings.detected = findings.p_nothing <= options.level;
   findings.threshold = findings.null_distribution.quantile(options.level);

@@ -35,7 +35,7 @@ Eigen::VectorXd point_variance(const Target::Part &part, const Target::Predictio
                                const Eigen::Index e)
 {
   return (part.point_ratio.cwiseMax(prediction.scatter(e)).array() / part.measured.repeats.array() +
-          prediction.leverage(e))
+          prediction.leverage.segment(part.first, part.emulator.size()).mean())
       .matrix();
 }
 
@@ -69,10 +69,9 @@ Json describe_candidates(const Evidence &evidence, const Findings &findings)
                 {"unit", effect.unit},
                 {"source", effect.source}};
     if (!evidence.places(k).empty()) {
-      double best = 0.;
       row["log Bayes factor alone"] =
-          evidence.log_single(k, data, &best) - evidence.log_nothing(data);
-      row["amplitude alone"] = amplitude_of(effect, best);
+          (evidence.log_single(k, data) - evidence.log_nothing(data))(0);
+      row["amplitude alone"] = amplitude_of(effect, evidence.best_amplitude(k, data));
     }
     rows.push_back(row);
   }
@@ -134,7 +133,7 @@ Json describe_power(const Evidence &evidence, const Findings &findings, const st
     const Factor &effect = space.effect(k);
     bool is_seen = false;
     Json row = {{"effect", effect.name}, {"simulated", !evidence.places(k).empty()}};
-    double highest = evidence.log_nothing(data);
+    double highest = evidence.log_nothing(data)(0);
     for (const Evidence::Place &place : evidence.places(k))
       highest = std::max(highest, evidence.log_likelihood(place.hypothesis, data));
     for (const bool above : {false, true}) {
@@ -180,8 +179,8 @@ Json describe_fingerprints(const Evidence &evidence)
               .cwiseQuotient(part.emulator.base_deviation());
       for (const double value : moved) {
         change.push_back(value);
-        error.push_back(
-            std::sqrt(last.hypothesis.prediction.leverage(static_cast<Eigen::Index>(e))));
+        error.push_back(std::sqrt(
+            last.hypothesis.prediction.leverage.segment(part.first, part.emulator.size()).mean()));
       }
     }
     rows.push_back({{"effect", effect.name},

@@ -21,15 +21,14 @@ double strength(const Target &target, const std::size_t effect, const double amp
 {
   const Target::Prediction with = target.predict({{effect, amplitude}}),
                            without = target.predict({});
-  const auto n = static_cast<double>(with.mean.size());
   return std::sqrt(
-      std::max(0., (with.mean - without.mean).squaredNorm() - n * 0.5 * with.leverage.mean()));
+      std::max(0., (with.mean - without.mean).squaredNorm() - 0.5 * with.leverage.sum()));
 }
 
 /// Error of an emulator, as a share of the deviation of what is measured.
 double unknown(const Target &target, const Target::Prediction &prediction)
 {
-  return std::sqrt(prediction.leverage.maxCoeff() / target.variance(prediction).mean());
+  return std::sqrt(prediction.leverage.cwiseQuotient(target.variance(prediction)).mean());
 }
 
 } // namespace

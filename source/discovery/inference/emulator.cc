@@ -47,7 +47,6 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   fit_scatter(groups);
   estimate_covariance(groups);
   const BaseInformation without_effects = information_of_base(groups);
-  base = without_effects.solve();
   for (std::size_t k = 0; k < n_effects; ++k) {
     std::vector<GaussianProcess::Point> with;
     for (const Group &group : groups)
@@ -57,7 +56,7 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
                         whitening * group.mean,
                         scatter_at(k, u) / static_cast<double>(group.rows.rows())});
       }
-    processes.emplace_back(std::move(with), base);
+    processes.emplace_back(std::move(with), without_effects);
   }
   share_base(without_effects);
 }
@@ -184,18 +183,18 @@ BaseInformation ExperimentEmulator::information_of_base(const std::vector<Group>
   const auto n_terms = static_cast<Eigen::Index>(n_nuisances + 1);
   // A nuisance that could not be run changes nothing, with the uncertainty of a strong effect.
   constexpr double weak = 1e-4;
-  BaseInformation result{weak * Eigen::MatrixXd::Identity(n_terms, n_terms),
-                         Eigen::MatrixXd::Zero(n_terms, size())};
+  Eigen::MatrixXd precision = weak * Eigen::MatrixXd::Identity(n_terms, n_terms),
+                  weighted = Eigen::MatrixXd::Zero(n_terms, size());
   for (const Group &group : groups) {
     if (group.effect != -1)
       continue;
     Eigen::VectorXd terms(n_terms);
     terms << 1., group.position.tail(static_cast<Eigen::Index>(n_nuisances));
     const auto weight = static_cast<double>(group.rows.rows());
-    result.precision += weight * terms * terms.transpose();
-    result.weighted += weight * terms * (whitening * group.mean).transpose();
+    precision += weight * terms * terms.transpose();
+    weighted += weight * terms * (whitening * group.mean).transpose();
   }
-  return result;
+  return {std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(size()), precision), weighted};
 }
 
 /// Runs with any effect tell of the base model, too, mostly of its nuisances. All emulators share
@@ -206,29 +205,27 @@ void ExperimentEmulator::share_base(BaseInformation all)
   std::vector<BaseInformation> parts;
   for (const GaussianProcess &process : processes) {
     parts.push_back(process.about_base());
-    all.precision += parts.back().precision;
-    all.weighted += parts.back().weighted;
+    all += parts.back();
   }
-  base = all.solve();
-  for (std::size_t k = 0; k < n_effects; ++k)
-    processes[k].set_base(
-        BaseInformation{all.precision - parts[k].precision, all.weighted - parts[k].weighted}
-            .solve());
+  alone = GaussianProcess({}, all).predict(0.);
+  for (std::size_t k = 0; k < n_effects; ++k) {
+    BaseInformation others = all;
+    others -= parts[k];
+    processes[k].set_base(others);
+  }
 }
 
 GaussianProcess::Prediction ExperimentEmulator::predict(
     const std::map<std::size_t, double> &effects) const
 {
-  const GaussianProcess nothing({}, base);
-  GaussianProcess::Prediction result = nothing.predict(0.);
-  const GaussianProcess::Prediction alone = result;
+  GaussianProcess::Prediction result = alone;
   for (const auto &[k, amplitude] : effects) {
     const GaussianProcess::Prediction one = processes[k].predict(amplitude);
     result.mean += one.mean - alone.mean;
     result.gradient += one.gradient - alone.gradient;
     result.leverage += one.leverage - alone.leverage;
   }
-  result.leverage = std::max(result.leverage, 1e-4);
+  result.leverage = result.leverage.cwiseMax(1e-4);
   return result;
 }
 

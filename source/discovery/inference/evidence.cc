@@ -10,11 +10,6 @@ namespace {
 /// Places on each side of an effect's null value, and how many of them are left out in pairs.
 constexpr int n_places = 60, pair_stride = 4;
 
-Eigen::MatrixXd lower_inverse_times(const Eigen::MatrixXd &matrix, const Eigen::MatrixXd &right)
-{
-  return Eigen::LLT<Eigen::MatrixXd>(matrix).matrixL().solve(right);
-}
-
 Target::Prediction sum(const Target::Prediction &a, const Target::Prediction &b,
                        const Target::Prediction &base)
 {
@@ -43,6 +38,13 @@ double log_sum(const std::vector<double> &logarithms)
   return largest + std::log(sum);
 }
 
+Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms)
+{
+  const Eigen::ArrayXd largest = logarithms.colwise().maxCoeff().transpose();
+  return largest +
+         (logarithms.rowwise() - largest.transpose()).exp().colwise().sum().transpose().log();
+}
+
 Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
     : aim(target), factors(space), prior(prior), dof(degrees_of_t(target)),
       base(prepare(target.predict({}))), grid(space.n_effects())
@@ -54,49 +56,73 @@ Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &
 
 Evidence::Hypothesis Evidence::prepare(const Target::Prediction &prediction) const
 {
-  Hypothesis result;
-  result.prediction = prediction;
-  result.inverse = aim.variance(prediction).cwiseInverse();
-  const Eigen::MatrixXd scaled = prediction.gradient.transpose() * result.inverse.asDiagonal();
-  const Eigen::Index n = prediction.gradient.cols();
-  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + scaled * prediction.gradient;
-  result.constant = 0.5 * result.inverse.array().log().sum();
-  if (n > 0) {
-    result.half = lower_inverse_times(inner, scaled);
-    result.constant -= Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(inner).matrixL())
-                           .diagonal()
-                           .array()
-                           .log()
-                           .sum();
+  constexpr auto levels = static_cast<Eigen::Index>(Target::n_noise_levels);
+  const Eigen::Index n = prediction.gradient.cols(), size = prediction.mean.size();
+  Hypothesis result{prediction, Eigen::MatrixXd(levels, size), Eigen::MatrixXd(levels * n, size),
+                    Eigen::VectorXd(levels)};
+  for (Eigen::Index l = 0; l < levels; ++l) {
+    const Eigen::VectorXd inverse =
+        aim.variance(prediction, static_cast<std::size_t>(l)).cwiseInverse();
+    result.inverse.row(l) = inverse.transpose();
+    result.constant(l) = 0.5 * inverse.array().log().sum();
+    if (n == 0)
+      continue;
+    const Eigen::MatrixXd scaled = prediction.gradient.transpose() * inverse.asDiagonal();
+    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
+                                            scaled * prediction.gradient);
+    result.half.middleRows(l * n, n) = inner.matrixL().solve(scaled);
+    result.constant(l) -= inner.matrixLLT().diagonal().array().log().sum();
   }
   return result;
 }
 
-double Evidence::distance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+Eigen::MatrixXd Evidence::Hypothesis::distances(
+    const Eigen::Ref<const Eigen::MatrixXd> &deviations) const
 {
-  const Eigen::VectorXd d = data - hypothesis.prediction.mean;
-  return (d.array().square() * hypothesis.inverse.array()).sum() -
-         (hypothesis.half.rows() > 0 ? (hypothesis.half * d).squaredNorm() : 0.);
+  Eigen::MatrixXd result = inverse * deviations.cwiseAbs2();
+  if (half.rows() == 0)
+    return result;
+  const Eigen::MatrixXd explained = (half * deviations).cwiseAbs2();
+  const Eigen::Index n = half.rows() / inverse.rows();
+  for (Eigen::Index l = 0; l < result.rows(); ++l)
+    result.row(l) -= explained.middleRows(l * n, n).colwise().sum();
+  return result;
 }
 
-double Evidence::t_log_likelihood(const double constant, const double distance) const
+Eigen::ArrayXXd Evidence::log_of_levels(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
+                                        const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return constant -
-         0.5 * (dof + static_cast<double>(aim.data().size())) * std::log1p(distance / dof);
+  const Eigen::ArrayXXd distances = hypothesis.distances(data.colwise() - mean).array();
+  const double exponent = 0.5 * (dof + static_cast<double>(aim.data().size()));
+  return (-exponent * (1. + distances / dof).log()).colwise() + hypothesis.constant.array();
 }
 
-double Evidence::log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+Eigen::ArrayXd Evidence::log_likelihoods_about(const Hypothesis &hypothesis,
+                                               const Eigen::VectorXd &mean,
+                                               const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return t_log_likelihood(hypothesis.constant, distance(hypothesis, data));
+  return log_sums(log_of_levels(hypothesis, mean, data)) -
+         std::log(static_cast<double>(Target::n_noise_levels));
+}
+
+Eigen::VectorXd Evidence::inverse_variance(const Hypothesis &hypothesis,
+                                           const Eigen::VectorXd &data) const
+{
+  const Eigen::ArrayXd logs = log_of_levels(hypothesis, hypothesis.prediction.mean, data).col(0);
+  const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp();
+  return hypothesis.inverse.transpose() * (weights / weights.sum()).matrix();
 }
 
 double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
 {
   Target::Prediction known = hypothesis.prediction;
   known.leverage = known.leverage.cwiseMin(base.prediction.leverage);
-  const Eigen::VectorXd share = 1. - aim.variance(known).array() * hypothesis.inverse.array();
+  const Eigen::VectorXd share =
+      1. - aim.variance(known).array() / aim.variance(hypothesis.prediction).array();
   known.mean += share.cwiseProduct(data - known.mean);
-  return log_likelihood(prepare(known), data);
+  // The mean will not lie where the data pull it, but scatters about that by what is left of its
+  // error: otherwise those who know least would hope for more than the truth can have.
+  return log_likelihood(prepare(known), data) - 0.5 * share.sum();
 }
 
 std::vector<double> Evidence::optimistic(const std::size_t effect,
@@ -118,11 +144,7 @@ std::vector<double> Evidence::strengths(const std::vector<Place> &places) const
   double largest = prior.just_visible;
   for (const Place &place : places) {
     const Target::Prediction &with = place.hypothesis.prediction;
-    double noise = 0.;
-    for (std::size_t e = 0; e < aim.n_experiments(); ++e)
-      noise += with.leverage(static_cast<Eigen::Index>(e)) *
-               static_cast<double>(aim.experiments()[e].emulator.size());
-    const double square = (with.mean - base.prediction.mean).squaredNorm() - noise;
+    const double square = (with.mean - base.prediction.mean).squaredNorm() - with.leverage.sum();
     result.push_back(largest = std::max(largest, std::sqrt(std::max(0., square))));
   }
   return result;
@@ -179,7 +201,7 @@ void Evidence::make_discrepancy()
   for (const auto &places : grid)
     for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
       const Eigen::VectorXd change = places[i].hypothesis.prediction.mean - base.prediction.mean;
-      const double noise = places[i].hypothesis.prediction.leverage.mean() * static_cast<double>(n);
+      const double noise = places[i].hypothesis.prediction.leverage.sum();
       const double square = change.squaredNorm();
       if (square > noise)
         along += change * change.transpose() / square * (1. - noise / square);
@@ -188,36 +210,53 @@ void Evidence::make_discrepancy()
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
   if (trace > 0.)
     shape = 0.5 * shape + 0.5 * along / trace;
-  Eigen::MatrixXd noise = base.prediction.gradient * base.prediction.gradient.transpose();
-  noise.diagonal() += base.inverse.cwiseInverse();
-  for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
-       strength *= 2.)
-    discrepancies.emplace_back(noise + strength * strength * shape);
-}
-
-double Evidence::log_single(const std::size_t effect, const Eigen::VectorXd &data,
-                            double *best) const
-{
-  std::vector<double> values;
-  for (const Place &place : grid[effect])
-    values.push_back(place.log_prior + log_likelihood(place.hypothesis, data));
-  if (best != nullptr)
-    *best = grid[effect][static_cast<std::size_t>(std::max_element(values.begin(), values.end()) -
-                                                  values.begin())]
-                .amplitude;
-  return log_sum(values);
-}
-
-double Evidence::log_discrepancy(const Eigen::VectorXd &data) const
-{
-  const Eigen::VectorXd d = data - base.prediction.mean;
-  std::vector<double> values;
-  for (const auto &llt : discrepancies) {
-    const double half_determinant = Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
-    values.push_back(t_log_likelihood(-half_determinant, llt.matrixL().solve(d).squaredNorm()) -
-                     std::log(static_cast<double>(discrepancies.size())));
+  for (Eigen::Index l = 0; l < base.inverse.rows(); ++l) {
+    Eigen::MatrixXd noise = base.prediction.gradient * base.prediction.gradient.transpose();
+    noise.diagonal() += base.inverse.row(l).cwiseInverse().transpose();
+    for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
+         strength *= 2.)
+      discrepancies.emplace_back(noise + strength * strength * shape);
   }
-  return log_sum(values);
+}
+
+Eigen::ArrayXXd Evidence::log_of_places(const std::size_t effect,
+                                        const Eigen::Ref<const Eigen::MatrixXd> &data) const
+{
+  Eigen::ArrayXXd result(static_cast<Eigen::Index>(grid[effect].size()), data.cols());
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const Place &place = grid[effect][static_cast<std::size_t>(i)];
+    result.row(i) = place.log_prior + log_likelihoods(place.hypothesis, data).transpose();
+  }
+  return result;
+}
+
+Eigen::ArrayXd Evidence::log_single(const std::size_t effect,
+                                    const Eigen::Ref<const Eigen::MatrixXd> &data) const
+{
+  return log_sums(log_of_places(effect, data));
+}
+
+double Evidence::best_amplitude(const std::size_t effect, const Eigen::VectorXd &data) const
+{
+  Eigen::Index best = 0;
+  log_of_places(effect, data).col(0).maxCoeff(&best);
+  return grid[effect][static_cast<std::size_t>(best)].amplitude;
+}
+
+Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
+{
+  const Eigen::MatrixXd deviations = data.colwise() - base.prediction.mean;
+  const double exponent = 0.5 * (dof + static_cast<double>(aim.data().size()));
+  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(discrepancies.size()), data.cols());
+  for (Eigen::Index i = 0; i < logs.rows(); ++i) {
+    const Eigen::LLT<Eigen::MatrixXd> &llt = discrepancies[static_cast<std::size_t>(i)];
+    const Eigen::ArrayXd distances =
+        llt.matrixL().solve(deviations).colwise().squaredNorm().transpose();
+    logs.row(i) =
+        (-llt.matrixLLT().diagonal().array().log().sum() - exponent * (1. + distances / dof).log())
+            .transpose();
+  }
+  return log_sums(logs) - std::log(static_cast<double>(discrepancies.size()));
 }
 
 std::vector<std::size_t> Evidence::usable() const
@@ -229,20 +268,23 @@ std::vector<std::size_t> Evidence::usable() const
   return result;
 }
 
-std::vector<double> Evidence::log_posterior_of_singles(const Eigen::VectorXd &data) const
+Eigen::ArrayXXd Evidence::log_posterior_of_singles(
+    const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  std::vector<double> values;
   const std::vector<std::size_t> effects = usable();
-  for (const std::size_t k : effects)
-    values.push_back(std::log(prior.one_effect / static_cast<double>(effects.size())) +
-                     log_single(k, data));
-  values.push_back(std::log(prior.none_of_these) + log_discrepancy(data));
-  return values;
+  const auto n = static_cast<Eigen::Index>(effects.size());
+  Eigen::ArrayXXd result(n + 1, data.cols());
+  for (Eigen::Index i = 0; i < n; ++i)
+    result.row(i) = (std::log(prior.one_effect / static_cast<double>(n)) +
+                     log_single(effects[static_cast<std::size_t>(i)], data))
+                        .transpose();
+  result.row(n) = (std::log(prior.none_of_these) + log_discrepancy(data)).transpose();
+  return result;
 }
 
-double Evidence::log_bayes_factor(const Eigen::VectorXd &data) const
+Eigen::ArrayXd Evidence::log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return log_sum(log_posterior_of_singles(data)) - log_nothing(data);
+  return log_sums(log_posterior_of_singles(data)) - log_nothing(data);
 }
 
 Model Evidence::pair(const std::size_t a, const std::size_t b, const Eigen::VectorXd &data) const
@@ -332,14 +374,15 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   std::vector<Model> all(1);
   all[0].is_discrepancy = true;
   all[0].log_prior = std::log(prior.none_of_these);
-  all[0].log_evidence = log_discrepancy(data);
+  all[0].log_evidence = log_discrepancy(data)(0);
   const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<double>(effects.size());
   for (const std::size_t k : effects) {
     Model one;
     one.effects = {k};
     one.log_prior = std::log(prior.one_effect / n);
-    one.log_evidence = log_single(k, data, &one.best[k]);
+    one.log_evidence = log_single(k, data)(0);
+    one.best[k] = best_amplitude(k, data);
     all.push_back(one);
   }
   for (std::size_t i = 0; i < effects.size(); ++i)

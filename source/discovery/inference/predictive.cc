@@ -15,31 +15,33 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
   std::vector<Evidence::Hypothesis> all;
   for (const Member &member : members(evidence, model, data))
     all.push_back(evidence.prepare(member.prediction));
-  const auto misfit = [&](const Eigen::VectorXd &values) {
-    std::vector<double> likelihoods;
+  const auto misfits = [&](const Eigen::Ref<const Eigen::MatrixXd> &values) {
+    Eigen::ArrayXd highest = Eigen::ArrayXd::Constant(values.cols(), -1e300);
     for (const Evidence::Hypothesis &one : all)
-      likelihoods.push_back(evidence.log_likelihood(one, values));
-    const auto best = std::max_element(likelihoods.begin(), likelihoods.end());
-    return evidence.distance(all[static_cast<std::size_t>(best - likelihoods.begin())], values);
+      highest = highest.max(evidence.log_likelihoods(one, values));
+    return Eigen::ArrayXd(-highest);
   };
   Twins source(evidence, seed);
-  std::vector<double> misfits;
+  Eigen::MatrixXd drawn(data.size(), static_cast<Eigen::Index>(posterior.effects.size()));
   for (std::size_t i = 0; i < posterior.effects.size(); ++i) {
     Target::Prediction truth = evidence.target().predict(posterior.effects[i]);
     truth.mean += truth.gradient * posterior.nuisances[i];
     truth.gradient.resize(truth.mean.size(), 0);
-    misfits.push_back(misfit(source.draw(truth)));
+    drawn.col(static_cast<Eigen::Index>(i)) = source.draw(truth);
   }
-  return Tail(std::move(misfits)).p(misfit(data));
+  const Eigen::ArrayXd of_twins = misfits(drawn);
+  return Tail({of_twins.begin(), of_twins.end()}).p(misfits(data)(0));
 }
 
 Eigen::VectorXd best_nuisances(const Evidence &evidence, const Evidence::Hypothesis &hypothesis)
 {
+  const Eigen::VectorXd &data = evidence.target().data();
   const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
-  const Eigen::MatrixXd scaled = gradient.transpose() * hypothesis.inverse.asDiagonal();
+  const Eigen::MatrixXd scaled =
+      gradient.transpose() * evidence.inverse_variance(hypothesis, data).asDiagonal();
   const Eigen::MatrixXd inner =
       Eigen::MatrixXd::Identity(gradient.cols(), gradient.cols()) + scaled * gradient;
-  return inner.llt().solve(scaled * (evidence.target().data() - hypothesis.prediction.mean));
+  return inner.llt().solve(scaled * (data - hypothesis.prediction.mean));
 }
 
 PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
@@ -65,9 +67,9 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
     const Evidence::Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
     const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
     const Eigen::Index n = gradient.cols();
-    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
-                                            gradient.transpose() * hypothesis.inverse.asDiagonal() *
-                                                gradient);
+    const Eigen::LLT<Eigen::MatrixXd> inner(
+        Eigen::MatrixXd::Identity(n, n) +
+        gradient.transpose() * evidence.inverse_variance(hypothesis, data).asDiagonal() * gradient);
     result.effects.push_back(effects);
     result.nuisance_means.push_back(best_nuisances(evidence, hypothesis));
     result.nuisance_roots.emplace_back(inner.matrixU().solve(Eigen::MatrixXd::Identity(n, n)));
@@ -84,7 +86,8 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
   const Target &target = evidence.target();
   const Eigen::Index n = target.data().size();
   const auto draws = static_cast<Eigen::Index>(posterior.effects.size());
-  Eigen::MatrixXd means(n, draws), variances(n, draws); // a column for each draw
+  Eigen::MatrixXd means(n, draws), twins(n, draws); // a column for each draw
+  Eigen::MatrixXd variances = Eigen::MatrixXd::Zero(n, Target::n_noise_levels);
   for (Eigen::Index i = 0; i < draws; ++i) {
     const auto k = static_cast<std::size_t>(i);
     Target::Prediction prediction = target.predict(posterior.effects[k]);
@@ -92,26 +95,39 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
     one.mean = prediction.mean + prediction.gradient * posterior.nuisance_means[k];
     one.columns = prediction.gradient * posterior.nuisance_roots[k];
     prediction.mean += prediction.gradient * posterior.nuisances[k];
-    one.variance = variances.col(i) = target.variance(prediction);
+    one.variance = target.variance(prediction);
+    for (Eigen::Index l = 0; l < variances.cols(); ++l)
+      variances.col(l) +=
+          target.variance(prediction, static_cast<std::size_t>(l)) / static_cast<double>(draws);
     means.col(i) = prediction.mean;
     prediction.gradient.resize(n, 0);
-    one.twin = source.draw(prediction);
+    one.twin = twins.col(i) = source.draw(prediction);
     all.push_back(one);
   }
   centre = means.rowwise().mean();
-  Eigen::MatrixXd covariance = (means.colwise() - centre) * (means.colwise() - centre).transpose() /
-                               static_cast<double>(draws);
-  covariance.diagonal() += variances.rowwise().mean();
-  llt.compute(covariance);
-  std::vector<double> distances;
-  for (const Conditional &one : all)
-    distances.push_back(distance(one.twin));
-  tail = Tail(std::move(distances));
+  const Eigen::MatrixXd spread = (means.colwise() - centre) *
+                                 (means.colwise() - centre).transpose() /
+                                 static_cast<double>(draws);
+  const auto with = [&](const Eigen::VectorXd &variance) {
+    return Eigen::MatrixXd(spread + Eigen::MatrixXd(variance.asDiagonal()));
+  };
+  llt.compute(with(variances.rowwise().mean()));
+  for (Eigen::Index l = 0; l < variances.cols(); ++l)
+    levels.emplace_back(with(variances.col(l)));
+  const Eigen::ArrayXd surprises = surprise(twins);
+  tail = Tail({surprises.begin(), surprises.end()});
 }
 
-double Predictive::distance(const Eigen::VectorXd &data) const
+Eigen::ArrayXd Predictive::surprise(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return llt.matrixL().solve(data - centre).squaredNorm();
+  const Eigen::MatrixXd deviations = data.colwise() - centre;
+  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(levels.size()), data.cols());
+  for (Eigen::Index l = 0; l < logs.rows(); ++l) {
+    const Eigen::LLT<Eigen::MatrixXd> &level = levels[static_cast<std::size_t>(l)];
+    logs.row(l) = -level.matrixLLT().diagonal().array().log().sum() -
+                  0.5 * level.matrixL().solve(deviations).colwise().squaredNorm().array();
+  }
+  return -log_sums(logs);
 }
 
 double Predictive::refuted_by(const Predictive &truth, const double level) const

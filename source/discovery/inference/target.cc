@@ -118,30 +118,42 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
                                 one.least_deviation);
     const Eigen::VectorXd unit = emulator.base_deviation();
     const Eigen::Index size = emulator.size();
-    const Repeats repeats = {one.deviation.cwiseQuotient(unit), one.repeats};
-    std::vector<ExcessVariance> excess =
-        excess_variances(emulator.modes(), emulator.mode_covariance(), repeats);
-    Eigen::VectorXd ratio = Eigen::VectorXd::Ones(unit.size());
-    for (std::size_t g = 0; g < excess.size(); ++g)
-      for (const Eigen::Index c : emulator.modes().groups()[g].points)
-        ratio(c) += excess[g].mean();
-    const Eigen::VectorXd error =
-        (ratio.array() - 1.) / one.repeats.array() +
-        (model_tolerance * emulator.base_mean().cwiseQuotient(unit)).array().square();
-    const Eigen::MatrixXd instrument =
-        emulator.whiten_scaled(Eigen::MatrixXd(error.cwiseSqrt().matrix().asDiagonal()));
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(instrument * instrument.transpose());
+    InstrumentNoise noise(emulator.modes(), emulator.mode_covariance(),
+                          {one.deviation.cwiseQuotient(unit), one.repeats});
+    Eigen::MatrixXd excess = Eigen::MatrixXd::Zero(unit.size(), n_noise_levels); // of each point
+    for (std::size_t l = 0; l < n_noise_levels; ++l) {
+      const Eigen::VectorXd of_groups = noise.at((static_cast<double>(l) + 0.5) / n_noise_levels);
+      for (Eigen::Index g = 0; g < of_groups.size(); ++g)
+        for (const Eigen::Index c : emulator.modes().groups()[static_cast<std::size_t>(g)].points)
+          excess(c, static_cast<Eigen::Index>(l)) = of_groups(g);
+    }
+    const Eigen::VectorXd mean_excess = excess.rowwise().mean();
+    const auto covariance = [&](const Eigen::VectorXd &of_points) -> Eigen::MatrixXd {
+      const Eigen::VectorXd error =
+          of_points.array() / one.repeats.array() +
+          (model_tolerance * emulator.base_mean().cwiseQuotient(unit)).array().square();
+      const Eigen::MatrixXd root =
+          emulator.whiten_scaled(Eigen::MatrixXd(error.cwiseSqrt().matrix().asDiagonal()));
+      return root * root.transpose();
+    };
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance(mean_excess));
+    const Eigen::MatrixXd rotation = eigen.eigenvectors().transpose();
+    // All levels have nearly the same axes.
+    Eigen::MatrixXd instrument(size, n_noise_levels);
+    for (Eigen::Index l = 0; l < instrument.cols(); ++l)
+      instrument.col(l) =
+          (rotation * covariance(excess.col(l)) * rotation.transpose()).diagonal().cwiseMax(0.);
     Part part{std::move(one),
               std::move(emulator),
-              eigen.eigenvectors().transpose(),
-              eigen.eigenvalues().cwiseMax(0.),
-              ratio,
-              std::move(excess),
+              std::move(noise),
+              rotation,
+              std::move(instrument),
+              mean_excess.array() + 1.,
               1.,
               1.,
               n};
     part.repeats = 1. / part.measured.repeats.cwiseInverse().mean();
-    part.ratio = ratio.mean();
+    part.ratio = part.point_ratio.mean();
     n += size;
     parts.push_back(std::move(part));
   }
@@ -169,7 +181,7 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
   Prediction result;
   const auto n_parts = static_cast<Eigen::Index>(parts.size());
   result.mean.resize(all.size());
-  result.leverage.resize(n_parts);
+  result.leverage.resize(all.size());
   result.scatter.resize(n_parts);
   for (Eigen::Index e = 0; e < n_parts; ++e) {
     const Part &part = parts[static_cast<std::size_t>(e)];
@@ -178,13 +190,22 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
       result.gradient.resize(all.size(), one.gradient.cols());
     result.mean.segment(part.first, part.emulator.size()) = part.rotation * one.mean;
     result.gradient.middleRows(part.first, part.emulator.size()) = part.rotation * one.gradient;
-    result.leverage(e) = one.leverage;
+    result.leverage.segment(part.first, part.emulator.size()) =
+        part.rotation.cwiseAbs2() * one.leverage;
     result.scatter(e) = part.emulator.scatter(effects);
   }
   return result;
 }
 
 Eigen::VectorXd Target::variance(const Prediction &prediction) const
+{
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(all.size());
+  for (std::size_t l = 0; l < n_noise_levels; ++l)
+    result += variance(prediction, l) / n_noise_levels;
+  return result;
+}
+
+Eigen::VectorXd Target::variance(const Prediction &prediction, const std::size_t noise_level) const
 {
   Eigen::VectorXd result(all.size());
   for (std::size_t e = 0; e < parts.size(); ++e) {
@@ -193,7 +214,10 @@ Eigen::VectorXd Target::variance(const Prediction &prediction) const
     const double scatter = prediction.scatter(k);
     const double left = part.share_of_instrument(scatter);
     result.segment(part.first, part.emulator.size()) =
-        (scatter / part.repeats + prediction.leverage(k) + left * part.instrument.array()).matrix();
+        (scatter / part.repeats +
+         prediction.leverage.segment(part.first, part.emulator.size()).array() +
+         left * part.instrument.col(static_cast<Eigen::Index>(noise_level)).array())
+            .matrix();
   }
   return result;
 }

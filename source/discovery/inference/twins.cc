@@ -6,15 +6,17 @@
 namespace eunoe::discovery {
 
 /// Noise of an instrument that is not known, either, in whitened modes.
-Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter)
+Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter,
+                                  const double quantile)
 {
   Eigen::VectorXd noise(part.measured.repeats.size());
   const auto &groups = part.emulator.modes().groups();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    const double variance = part.excess[g].draw(random) * part.share_of_instrument(scatter);
+  const Eigen::VectorXd excess =
+      part.noise.draw(quantile, random) * part.share_of_instrument(scatter);
+  for (std::size_t g = 0; g < groups.size(); ++g)
     for (const Eigen::Index c : groups[g].points)
-      noise(c) = std::sqrt(variance / part.measured.repeats(c)) * random.normal();
-  }
+      noise(c) = std::sqrt(excess(static_cast<Eigen::Index>(g)) / part.measured.repeats(c)) *
+                 random.normal();
   return part.emulator.whiten_scaled(noise);
 }
 
@@ -23,6 +25,7 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
   Eigen::VectorXd result = truth.mean;
   for (Eigen::Index q = 0; q < truth.gradient.cols(); ++q)
     result += random.normal() * truth.gradient.col(q);
+  const double quantile = random.uniform();
   const auto &parts = evidence.target().experiments();
   for (std::size_t e = 0; e < parts.size(); ++e) {
     const Target::Part &part = parts[e];
@@ -38,10 +41,20 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
     for (int r = 0; r < repeats; ++r)
       scatter += row().transpose();
     scatter *= std::sqrt(truth.scatter(k) / part.repeats / repeats);
-    const Eigen::VectorXd error = std::sqrt(truth.leverage(k)) * row().transpose();
-    result.segment(part.first, n) += part.rotation * (scatter + error);
-    result.segment(part.first, n) += part.rotation * instrument(part, truth.scatter(k));
+    result.segment(part.first, n) += part.rotation * scatter;
+    result.segment(part.first, n) += truth.leverage.segment(part.first, n)
+                                         .cwiseSqrt()
+                                         .cwiseProduct(part.rotation * row().transpose());
+    result.segment(part.first, n) += part.rotation * instrument(part, truth.scatter(k), quantile);
   }
+  return result;
+}
+
+Eigen::MatrixXd Twins::draw(const Target::Prediction &truth, const unsigned int number)
+{
+  Eigen::MatrixXd result(truth.mean.size(), number);
+  for (Eigen::Index k = 0; k < result.cols(); ++k)
+    result.col(k) = draw(truth);
   return result;
 }
 
@@ -79,10 +92,9 @@ double Tail::quantile(const double p) const
 Tail null_distribution(const Evidence &evidence, const unsigned int draws, const std::uint32_t seed)
 {
   Twins twins(evidence, seed);
-  std::vector<double> values;
-  for (unsigned int k = 0; k < draws; ++k)
-    values.push_back(evidence.log_bayes_factor(twins.draw(evidence.nothing().prediction)));
-  return Tail(std::move(values));
+  const Eigen::ArrayXd values =
+      evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction, draws));
+  return Tail({values.begin(), values.end()});
 }
 
 } // namespace eunoe::discovery

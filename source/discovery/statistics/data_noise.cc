@@ -46,13 +46,14 @@ ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freed
     average = values[0];
     return;
   }
-  constexpr double first = 0.01, last = 1e8, step = 1.3;
-  double sum = 0., highest = -1e300, before = 0.;
+  constexpr double first = 0.003, last = 1e8, step = 1.3;
+  double sum = 0., prior = 0., highest = -1e300, before = 0.;
   std::vector<double> logs;
   for (double value = first; value < last; value *= step) {
     // Each value stands for those since the last one.
     logs.push_back(std::log(value - before) - value / expected -
                    0.5 * degrees_of_freedom * (std::log1p(value) + ratio / (1. + value)));
+    prior += (value - before) * std::exp(-value / expected);
     values.push_back(value);
     highest = std::max(highest, logs.back());
     before = value;
@@ -63,6 +64,7 @@ ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freed
     below.push_back(sum += weight);
   }
   average /= sum;
+  log_of_all = highest + std::log(sum / prior);
   for (double &share : below)
     share /= sum;
 }
@@ -73,26 +75,57 @@ double ExcessVariance::draw(RandomStream &random) const
   return values[static_cast<std::size_t>(std::min(place, below.end() - 1) - below.begin())];
 }
 
-std::vector<ExcessVariance> excess_variances(const Modes &modes,
-                                             const Eigen::MatrixXd &replicate_covariance,
-                                             const Repeats &repeats)
+InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
+                                 const Repeats &repeats)
 {
-  // An instrument is chosen such that its noise is a small part of the scatter, as a rule.
-  constexpr double usual = 0.1, far = 10.;
-  std::vector<Witness> witnesses;
-  double sum = 0., weight = 1.;
-  for (const Modes::Group &group : modes.groups()) {
-    witnesses.push_back(witness(group, replicate_covariance, repeats));
-    // An observable that hardly varies between runs says nothing about the others.
-    if (witnesses.back().ratio > far)
-      continue;
-    sum += witnesses.back().degrees_of_freedom * (witnesses.back().ratio - 1.);
-    weight += witnesses.back().degrees_of_freedom;
+  // An instrument is chosen such that its noise is a small part of the scatter, as a rule: half of
+  // the prior (half of a Cauchy distribution) is below `usual`.
+  constexpr double usual = 0.1, lowest = 0.01, highest = 10., step = 1.35;
+  std::vector<double> logs;
+  for (double common = lowest; common < highest; common *= step) {
+    Level one{0., {}};
+    double log = std::log(common) - std::log1p(std::pow(common / usual, 2));
+    for (const Modes::Group &group : modes.groups()) {
+      const Witness w = witness(group, replicate_covariance, repeats);
+      // An observable that hardly varies between runs says nothing about the others.
+      const bool is_far = w.ratio > highest;
+      one.groups.emplace_back(w.ratio, w.degrees_of_freedom, is_far ? w.ratio : common);
+      log += is_far ? 0. : one.groups.back().log_evidence();
+    }
+    logs.push_back(log);
+    levels.push_back(std::move(one));
   }
-  const double common = usual + std::max(0., sum / weight);
-  std::vector<ExcessVariance> result;
-  for (const Witness &one : witnesses)
-    result.emplace_back(one.ratio, one.degrees_of_freedom, one.ratio > far ? one.ratio : common);
+  const double largest = *std::max_element(logs.begin(), logs.end());
+  double sum = 0.;
+  for (std::size_t k = 0; k < levels.size(); ++k)
+    levels[k].below = sum += std::exp(logs[k] - largest);
+  for (Level &one : levels)
+    one.below /= sum;
+}
+
+const InstrumentNoise::Level &InstrumentNoise::level(const double quantile) const
+{
+  const auto place =
+      std::lower_bound(levels.begin(), levels.end(), quantile,
+                       [](const Level &one, const double share) { return one.below < share; });
+  return *std::min(place, levels.end() - 1);
+}
+
+Eigen::VectorXd InstrumentNoise::at(const double quantile) const
+{
+  const Level &one = level(quantile);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(one.groups.size()));
+  for (std::size_t g = 0; g < one.groups.size(); ++g)
+    result(static_cast<Eigen::Index>(g)) = one.groups[g].mean();
+  return result;
+}
+
+Eigen::VectorXd InstrumentNoise::draw(const double quantile, RandomStream &random) const
+{
+  const Level &one = level(quantile);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(one.groups.size()));
+  for (std::size_t g = 0; g < one.groups.size(); ++g)
+    result(static_cast<Eigen::Index>(g)) = one.groups[g].draw(random);
   return result;
 }
 

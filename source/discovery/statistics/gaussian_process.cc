@@ -16,128 +16,241 @@ Eigen::VectorXd base_terms(const Eigen::VectorXd &nuisances)
   return terms;
 }
 
+/// The distribution over columns from which rows come whose log-likelihoods these are: by
+/// expectation and maximisation, with a little of each column in advance.
+/// @return log-likelihood of all rows
+double fit_mixture(const Eigen::MatrixXd &logs, Eigen::MatrixXd &probabilities)
+{
+  constexpr int iterations = 20;
+  constexpr double in_advance = 0.5;
+  const Eigen::VectorXd largest = logs.rowwise().maxCoeff();
+  const Eigen::MatrixXd likelihoods = (logs.colwise() - largest).array().exp();
+  Eigen::VectorXd shares =
+      Eigen::VectorXd::Constant(logs.cols(), 1. / static_cast<double>(logs.cols()));
+  Eigen::VectorXd sums;
+  for (int i = 0; i < iterations; ++i) {
+    sums = likelihoods * shares;
+    probabilities = sums.cwiseInverse().asDiagonal() * likelihoods * shares.asDiagonal();
+    shares = probabilities.colwise().sum().transpose().array() + in_advance;
+    shares /= shares.sum();
+  }
+  return (sums.array().log() + largest.array()).sum() + in_advance * shares.array().log().sum();
+}
+
 } // namespace
+
+BaseInformation &BaseInformation::operator+=(const BaseInformation &other)
+{
+  for (std::size_t v = 0; v < precision.size(); ++v)
+    precision[v] += other.precision[v];
+  weighted += other.weighted;
+  return *this;
+}
+
+BaseInformation &BaseInformation::operator-=(const BaseInformation &other)
+{
+  for (std::size_t v = 0; v < precision.size(); ++v)
+    precision[v] -= other.precision[v];
+  weighted -= other.weighted;
+  return *this;
+}
 
 LinearBase BaseInformation::solve() const
 {
-  const Eigen::LLT<Eigen::MatrixXd> llt(precision);
-  return {llt.solve(weighted),
-          llt.solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()))};
+  LinearBase result{weighted, {}};
+  for (std::size_t v = 0; v < precision.size(); ++v) {
+    const Eigen::LLT<Eigen::MatrixXd> llt(precision[v]);
+    const auto column = static_cast<Eigen::Index>(v);
+    result.coefficients.col(column) = llt.solve(weighted.col(column));
+    result.covariance.emplace_back(
+        llt.solve(Eigen::MatrixXd::Identity(weighted.rows(), weighted.rows())));
+  }
+  return result;
 }
 
 double GaussianProcess::Kernel::at(const double a, const double b) const
 {
   const double s = std::pow(std::abs(a), power), t = std::pow(std::abs(b), power);
   const bool same_side = (a < 0.) == (b < 0.);
-  return variance *
-         ((same_side ? 1. : -1.) * s * t + (same_side ? roughness * std::min(s, t) : 0.));
+  return (same_side ? 1. : -1.) * s * t + (same_side ? roughness * std::min(s, t) : 0.);
 }
 
-GaussianProcess::GaussianProcess(std::vector<Point> points, const LinearBase &base)
-    : all(std::move(points)), base(base)
+std::vector<double> GaussianProcess::usual_variances()
+{
+  return {0., 0.01, 0.16, 2.5, 40., 650., 1e4};
+}
+
+GaussianProcess::GaussianProcess(std::vector<Point> points, const BaseInformation &base,
+                                 const std::vector<double> &variances)
+    : all(std::move(points)), base(base.solve())
 {
   const auto n = static_cast<Eigen::Index>(all.size());
-  terms.resize(n, base.coefficients.rows());
-  values.resize(n, base.coefficients.cols());
+  roots.resize(n);
+  terms.resize(n, base.weighted.rows());
+  values.resize(n, base.weighted.cols());
   for (Eigen::Index k = 0; k < n; ++k) {
     const Point &point = all[static_cast<std::size_t>(k)];
+    roots(k) = 1. / std::sqrt(point.variance);
     terms.row(k) = base_terms(point.nuisances).transpose();
     values.row(k) = point.mean.transpose();
   }
   if (all.empty())
     return;
+  for (const double variance : variances)
+    scales.push_back({variance, {}, {}, {}, {}, {}});
   choose_kernel();
+  for (Scale &scale : scales) {
+    scale.weight = (1. + scale.variance * axes.eigenvalues.array()).inverse();
+    const Eigen::MatrixXd weighted = axes.terms.transpose() * scale.weight.asDiagonal();
+    scale.precision = weighted * axes.terms;
+    scale.weighted = weighted * axes.values;
+  }
   set_base(base);
 }
 
-void GaussianProcess::set_base(const LinearBase &others)
+GaussianProcess::Axes GaussianProcess::axes_of(const Kernel &kernel) const
 {
-  base = others;
-  if (all.empty())
-    return;
-  solver.compute(effect_covariance(best) + terms * base.covariance * terms.transpose());
-  weights = solver.solve(values - terms * base.coefficients);
-}
-
-BaseInformation GaussianProcess::about_base() const
-{
-  const Eigen::LLT<Eigen::MatrixXd> llt(effect_covariance(best));
-  const Eigen::MatrixXd weighted = llt.solve(terms).transpose();
-  return {weighted * terms, weighted * values};
-}
-
-/// Covariance of the points for a given base model.
-Eigen::MatrixXd GaussianProcess::effect_covariance(const Kernel &kernel) const
-{
-  const auto n = static_cast<Eigen::Index>(all.size());
-  Eigen::MatrixXd result(n, n);
+  const Eigen::Index n = terms.rows();
+  Eigen::MatrixXd matrix(n, n);
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j <= i; ++j) {
       const Point &a = all[static_cast<std::size_t>(i)], &b = all[static_cast<std::size_t>(j)];
-      result(i, j) = result(j, i) = kernel.at(a.amplitude, b.amplitude) *
-                                        (1. + kernel.interaction * a.nuisances.dot(b.nuisances)) +
-                                    (i == j ? a.variance : 0.);
+      matrix(i, j) = roots(i) * roots(j) * kernel.at(a.amplitude, b.amplitude) *
+                     (1. + kernel.interaction * a.nuisances.dot(b.nuisances));
     }
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix); // reads the lower half
+  const Eigen::MatrixXd project = eigen.eigenvectors().transpose() * roots.asDiagonal();
+  return {eigen.eigenvectors(), eigen.eigenvalues().cwiseMax(0.), project * terms,
+          project * values};
+}
+
+/// Of each value's points, for each variance.
+Eigen::MatrixXd GaussianProcess::log_likelihoods(const Axes &candidate) const
+{
+  const Eigen::Index n_terms = terms.cols();
+  const Eigen::MatrixXd residuals = candidate.values - candidate.terms * base.coefficients;
+  Eigen::MatrixXd result(values.cols(), static_cast<Eigen::Index>(scales.size()));
+  for (Eigen::Index j = 0; j < result.cols(); ++j) {
+    const Eigen::VectorXd spread =
+        1. + scales[static_cast<std::size_t>(j)].variance * candidate.eigenvalues.array();
+    const Eigen::MatrixXd weighted =
+        candidate.terms.transpose() * spread.cwiseInverse().asDiagonal();
+    const Eigen::MatrixXd precision = weighted * candidate.terms, along = weighted * residuals;
+    const Eigen::VectorXd distances = residuals.cwiseAbs2().transpose() * spread.cwiseInverse();
+    const double log_determinant = spread.array().log().sum();
+    for (Eigen::Index v = 0; v < result.rows(); ++v) {
+      // The base model is uncertain, too (Woodbury).
+      const Eigen::MatrixXd root =
+          Eigen::LLT<Eigen::MatrixXd>(base.covariance[static_cast<std::size_t>(v)]).matrixL();
+      const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n_terms, n_terms) +
+                                              root.transpose() * precision * root);
+      result(v, j) = -0.5 * (log_determinant + distances(v) -
+                             inner.matrixL().solve(root.transpose() * along.col(v)).squaredNorm()) -
+                     inner.matrixLLT().diagonal().array().log().sum();
+    }
+  }
   return result;
 }
 
 void GaussianProcess::choose_kernel()
 {
-  const Eigen::MatrixXd residuals = values - terms * base.coefficients,
-                        of_base = terms * base.covariance * terms.transpose();
-  const auto n_values = static_cast<double>(residuals.cols());
   double highest = -std::numeric_limits<double>::infinity();
-  const bool has_nuisances = all.front().nuisances.size() > 0;
   const auto consider = [&](const Kernel &kernel) {
-    const Eigen::LLT<Eigen::MatrixXd> llt(effect_covariance(kernel) + of_base);
-    const double log_determinant =
-        2. * Eigen::MatrixXd(llt.matrixL()).diagonal().array().log().sum();
-    const double distance = llt.matrixL().solve(residuals).squaredNorm();
-    const double log_likelihood = -0.5 * (n_values * log_determinant + distance);
+    const Axes candidate = axes_of(kernel);
+    Eigen::MatrixXd probabilities;
+    const double log_likelihood = fit_mixture(log_likelihoods(candidate), probabilities);
     if (log_likelihood > highest) {
       highest = log_likelihood;
       best = kernel;
+      axes = candidate;
+      shares = probabilities;
     }
   };
   for (const double power : {0.45, 0.7, 1.})
     for (const double roughness : {0.03, 0.3, 1.})
-      for (double variance = 0.01; variance < 3e4; variance *= 4.)
-        consider({power, roughness, variance, 0.});
+      consider({power, roughness, 0.});
   const Kernel without = best;
-  if (has_nuisances)
-    for (const double interaction : {0.01, 0.05, 0.2}) {
-      Kernel kernel = without;
-      kernel.interaction = interaction;
-      consider(kernel);
+  if (all.front().nuisances.size() > 0)
+    for (const double interaction : {0.01, 0.05, 0.2})
+      consider({without.power, without.roughness, interaction});
+}
+
+void GaussianProcess::set_base(const BaseInformation &others)
+{
+  base = others.solve();
+  const Eigen::Index n_terms = terms.cols();
+  for (Scale &scale : scales) {
+    scale.coefficients.resize(n_terms, values.cols());
+    scale.covariance.resize(values.cols(), n_terms * n_terms);
+    for (Eigen::Index v = 0; v < values.cols(); ++v) {
+      const Eigen::LLT<Eigen::MatrixXd> llt(others.precision[static_cast<std::size_t>(v)] +
+                                            scale.precision);
+      const Eigen::MatrixXd covariance = llt.solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
+      scale.coefficients.col(v) = covariance * (others.weighted.col(v) + scale.weighted.col(v));
+      scale.covariance.row(v) = covariance.reshaped().transpose();
     }
+  }
+}
+
+BaseInformation GaussianProcess::about_base() const
+{
+  const Eigen::Index n_terms = terms.cols();
+  BaseInformation result{std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(values.cols()),
+                                                      Eigen::MatrixXd::Zero(n_terms, n_terms)),
+                         Eigen::MatrixXd::Zero(n_terms, values.cols())};
+  for (std::size_t j = 0; j < scales.size(); ++j)
+    for (Eigen::Index v = 0; v < values.cols(); ++v) {
+      const double share = shares(v, static_cast<Eigen::Index>(j));
+      result.precision[static_cast<std::size_t>(v)] += share * scales[j].precision;
+      result.weighted.col(v) += share * scales[j].weighted.col(v);
+    }
+  return result;
 }
 
 GaussianProcess::Prediction GaussianProcess::predict(const double amplitude) const
 {
-  const Eigen::Index n_nuisances = base.coefficients.rows() - 1;
-  Prediction result;
-  result.mean = base.coefficients.row(0).transpose();
-  result.gradient = base.coefficients.bottomRows(n_nuisances).transpose();
-  result.leverage = base.covariance.trace();
+  const Eigen::Index n_terms = terms.cols(), n_nuisances = n_terms - 1;
+  Prediction result{base.coefficients.row(0).transpose(),
+                    base.coefficients.bottomRows(n_nuisances).transpose(),
+                    Eigen::VectorXd(values.cols())};
+  for (Eigen::Index v = 0; v < values.cols(); ++v)
+    result.leverage(v) = base.covariance[static_cast<std::size_t>(v)].trace();
   if (all.empty())
     return result;
   const auto n = static_cast<Eigen::Index>(all.size());
   // A row for the outcome at the nuisances' null values, and one for each column of the gradient.
-  Eigen::MatrixXd cross(n_nuisances + 1, n);
+  Eigen::MatrixXd cross(n_terms, n);
   for (Eigen::Index k = 0; k < n; ++k) {
     const Point &point = all[static_cast<std::size_t>(k)];
-    const double along = best.at(amplitude, point.amplitude);
-    cross.col(k) = base.covariance * base_terms(point.nuisances);
-    cross(0, k) += along;
-    cross.col(k).tail(n_nuisances) += along * best.interaction * point.nuisances;
+    cross.col(k) = roots(k) * best.at(amplitude, point.amplitude) *
+                   base_terms(best.interaction * point.nuisances);
   }
-  const Eigen::MatrixXd change = cross * weights;
-  result.mean += change.row(0).transpose();
-  result.gradient += change.bottomRows(n_nuisances).transpose();
-  const double prior = best.at(amplitude, amplitude);
-  result.leverage += prior * (1. + best.interaction * static_cast<double>(n_nuisances)) -
-                     cross.transpose().cwiseProduct(solver.solve(cross.transpose())).sum();
-  result.leverage = std::max(result.leverage, 1e-4);
+  cross *= axes.directions;
+  const double prior =
+      best.at(amplitude, amplitude) * (1. + best.interaction * static_cast<double>(n_nuisances));
+  Eigen::MatrixXd means = Eigen::MatrixXd::Zero(n_terms, values.cols());
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(values.cols());
+  result.leverage.setZero();
+  for (std::size_t j = 0; j < scales.size(); ++j) {
+    const Scale &scale = scales[j];
+    const Eigen::VectorXd share = shares.col(static_cast<Eigen::Index>(j));
+    // What the points say of the effect for a given base model, and of the base model thereby.
+    const Eigen::MatrixXd gain = scale.variance * cross * scale.weight.asDiagonal();
+    const Eigen::MatrixXd of_base = Eigen::MatrixXd::Identity(n_terms, n_terms) - gain * axes.terms;
+    const Eigen::MatrixXd mean = gain * axes.values + of_base * scale.coefficients;
+    const double of_effect = scale.variance * (prior - gain.cwiseProduct(cross).sum());
+    const Eigen::VectorXd variance =
+        scale.covariance * (of_base.transpose() * of_base).reshaped() +
+        Eigen::VectorXd::Constant(values.cols(), std::max(0., of_effect));
+    means += mean * share.asDiagonal();
+    squares += share.cwiseProduct(mean.row(0).transpose().cwiseAbs2());
+    result.leverage += share.cwiseProduct(variance);
+  }
+  result.mean = means.row(0).transpose();
+  result.gradient = means.bottomRows(n_nuisances).transpose();
+  // The variances of the kernel differ in what they expect.
+  result.leverage += (squares - result.mean.cwiseAbs2()).cwiseMax(0.);
+  result.leverage = result.leverage.cwiseMax(1e-4);
   return result;
 }
 

@@ -76,7 +76,7 @@ private:
   Eigen::VectorXd mean;
   Eigen::MatrixXd whitening, residuals;
   double dof = 1.;
-  LinearBase base;
+  GaussianProcess::Prediction alone;   ///< of the base model
   std::vector<double> growth, largest; ///< per effect: exponent of the scatter, at this amplitude
   std::vector<GaussianProcess> processes;
 };

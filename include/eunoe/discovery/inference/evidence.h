@@ -36,17 +36,34 @@ class Evidence
 public:
   Evidence(const Target &target, const FactorSpace &space, const Prior &prior = {});
 
-  /// Likelihood of data for fixed effects, with all that does not depend on the data prepared.
+  /// Likelihood of data for fixed effects, with all that does not depend on the data prepared: a
+  /// normal distribution for each level of the instrument's noise.
   struct Hypothesis
   {
     Target::Prediction prediction;
-    Eigen::VectorXd inverse; ///< of the variances
-    Eigen::MatrixXd half;    ///< what nuisances explain of a deviation
-    double constant = 0.;
+    Eigen::MatrixXd inverse; ///< of the variances, levels x coordinates
+    Eigen::MatrixXd half; ///< what nuisances explain of a deviation, a block of rows for each level
+    Eigen::VectorXd constant; ///< of each level
+
+    /// Squared Mahalanobis distances of deviations from the mean, levels x columns.
+    Eigen::MatrixXd distances(const Eigen::Ref<const Eigen::MatrixXd> &deviations) const;
   };
   Hypothesis prepare(const Target::Prediction &prediction) const;
-  double distance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
-  double log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+  /// Log-likelihoods of data in columns; the instrument's noise is integrated.
+  Eigen::ArrayXd log_likelihoods(const Hypothesis &hypothesis,
+                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const
+  {
+    return log_likelihoods_about(hypothesis, hypothesis.prediction.mean, data);
+  }
+  double log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+  {
+    return log_likelihoods(hypothesis, data)(0);
+  }
+  /// With another mean than the hypothesis has.
+  Eigen::ArrayXd log_likelihoods_about(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
+                                       const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// Inverse of the variances, at the levels of noise that the data speak for.
+  Eigen::VectorXd inverse_variance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
 
   /// Log-likelihood that is to be expected once runs have left no more error than that of the base
   /// model, if the hypothesis is true: its mean moves towards the data as far as its error allows.
@@ -74,16 +91,22 @@ public:
   /// Effects with places.
   std::vector<std::size_t> usable() const;
 
-  /// Log evidence of nothing, of each effect, of the discrepancy.
-  double log_nothing(const Eigen::VectorXd &data) const { return log_likelihood(base, data); }
-  double log_single(std::size_t effect, const Eigen::VectorXd &data, double *best = nullptr) const;
-  double log_discrepancy(const Eigen::VectorXd &data) const;
+  /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.
+  Eigen::ArrayXd log_nothing(const Eigen::Ref<const Eigen::MatrixXd> &data) const
+  {
+    return log_likelihoods(base, data);
+  }
+  Eigen::ArrayXd log_single(std::size_t effect,
+                            const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// The likeliest amplitude of an effect.
+  double best_amplitude(std::size_t effect, const Eigen::VectorXd &data) const;
 
-  /// Log Bayes factor of "an effect is missing, or something else" against nothing.
-  double log_bayes_factor(const Eigen::VectorXd &data) const;
+  /// Log Bayes factors of "an effect is missing, or something else" against nothing.
+  Eigen::ArrayXd log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
-  /// Log of prior and evidence of each effect that can be seen, and last of the discrepancy.
-  std::vector<double> log_posterior_of_singles(const Eigen::VectorXd &data) const;
+  /// Log of prior and evidence: a row for each effect that can be seen, and last the discrepancy.
+  Eigen::ArrayXXd log_posterior_of_singles(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
   /// Models of one and two effects and the discrepancy with posterior probabilities, the likeliest
   /// first.
@@ -97,7 +120,10 @@ private:
   void polish(Model &pair, const Eigen::VectorXd &data) const;
   double log_density(std::size_t effect, double amplitude) const;
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
-  double t_log_likelihood(double constant, double distance) const;
+  Eigen::ArrayXXd log_of_levels(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
+                                const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  Eigen::ArrayXXd log_of_places(std::size_t effect,
+                                const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
   const Target &aim;
   const FactorSpace &factors;
@@ -110,6 +136,8 @@ private:
 
 /// log(sum of exp).
 double log_sum(const std::vector<double> &logarithms);
+/// The same of each column.
+Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms);
 
 } // namespace eunoe::discovery
 

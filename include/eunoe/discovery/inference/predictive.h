@@ -33,17 +33,15 @@ Eigen::VectorXd best_nuisances(const Evidence &evidence, const Evidence::Hypothe
 double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDraws &posterior,
                 std::uint32_t seed);
 
-/// How well a model predicts measured data: the probability of data as far from the prediction as
-/// these if the model is true, by twins of the prediction. There is no least value.
+/// How well a model predicts measured data: the probability of data that are as unlikely as these
+/// if the model is true, by twins of the prediction. There is no least value.
 /// @param evidence of the data that are predicted, with emulators of their experiments
 class Predictive
 {
 public:
   Predictive(const Evidence &evidence, const PosteriorDraws &posterior, std::uint32_t seed);
 
-  double p(const Eigen::VectorXd &data) const { return tail.p(distance(data)); }
-  /// Squared Mahalanobis distance of data from the prediction.
-  double distance(const Eigen::VectorXd &data) const;
+  double p(const Eigen::VectorXd &data) const { return tail.p(surprise(data)(0)); }
   const Eigen::VectorXd &mean() const { return centre; }
   /// Share of another model's twins that this one is refuted by at a level.
   double refuted_by(const Predictive &truth, double level) const;
@@ -60,9 +58,14 @@ public:
   const std::vector<Conditional> &draws() const { return all; }
 
 private:
+  /// Of data in columns: less the logarithm of their probability density, whatever the level of the
+  /// instrument's noise is.
+  Eigen::ArrayXd surprise(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+
   std::vector<Conditional> all;
   Eigen::VectorXd centre;
   Eigen::LLT<Eigen::MatrixXd> llt;
+  std::vector<Eigen::LLT<Eigen::MatrixXd>> levels; ///< of the covariance, by noise
   Tail tail;
 };
 

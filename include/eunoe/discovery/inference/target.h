@@ -40,12 +40,18 @@ public:
   struct Prediction
   {
     Eigen::VectorXd mean;
-    Eigen::MatrixXd gradient;          ///< by nuisances
-    Eigen::VectorXd leverage, scatter; ///< for each experiment
+    Eigen::MatrixXd gradient; ///< by nuisances
+    Eigen::VectorXd leverage; ///< variance of each coordinate's mean, in runs' variances
+    Eigen::VectorXd scatter;  ///< of runs, for each experiment
   };
   Prediction predict(const std::map<std::size_t, double> &effects) const;
 
-  /// Variance of each coordinate between data and prediction, nuisances apart.
+  /// The instrument's noise is known by its posterior: levels of equal probability stand for it.
+  static constexpr std::size_t n_noise_levels = 5;
+  /// Variance of each coordinate between data and prediction, nuisances apart, at a level of the
+  /// instrument's noise.
+  Eigen::VectorXd variance(const Prediction &prediction, std::size_t noise_level) const;
+  /// Its mean over the levels.
   Eigen::VectorXd variance(const Prediction &prediction) const;
 
   const Eigen::VectorXd &data() const { return all; }
@@ -56,12 +62,12 @@ public:
   {
     MeasuredExperiment measured;
     ExperimentEmulator emulator;
-    Eigen::MatrixXd rotation;    ///< from whitened modes to coordinates
-    Eigen::VectorXd instrument;  ///< variance of the means by the instrument, of each coordinate
-    Eigen::VectorXd point_ratio; ///< variance of a repeat over that of a run, of each point
-    std::vector<ExcessVariance> excess; ///< what it may be beyond 1, for each group of modes
-    double repeats = 1., ratio = 1.;    ///< means over the data points
-    Eigen::Index first = 0;             ///< coordinate
+    InstrumentNoise noise;
+    Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
+    Eigen::MatrixXd instrument;      ///< variance of the means by it: coordinates x noise levels
+    Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
+    double repeats = 1., ratio = 1.; ///< means over the data points
+    Eigen::Index first = 0;          ///< coordinate
 
     /// What the repeats scatter beyond the base model is the instrument's, or an effect's own.
     /// @param scatter variance of runs over that of the base model's

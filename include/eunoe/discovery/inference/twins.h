@@ -18,9 +18,11 @@ public:
 
   /// Data of one truth, in the target's coordinates. The error of the prediction is drawn, too.
   Eigen::VectorXd draw(const Target::Prediction &truth);
+  /// Several, in columns.
+  Eigen::MatrixXd draw(const Target::Prediction &truth, unsigned int number);
 
 private:
-  Eigen::VectorXd instrument(const Target::Part &part, double scatter);
+  Eigen::VectorXd instrument(const Target::Part &part, double scatter, double quantile);
 
   const Evidence &evidence;
   RandomStream random;

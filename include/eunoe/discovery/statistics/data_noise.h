@@ -16,9 +16,8 @@ struct Repeats
   Eigen::VectorXd number;    ///< of repeats
 };
 
-/// Variance that the instrument adds to that between replicates, in units of the latter: its
-/// posterior, as few repeats tell it. Noise that is taken for too small counts most: what hardly
-/// varies between runs, such as the ratio of two observables, would seem to deviate by far.
+/// Variance that the instrument adds to that between replicates, in units of the latter, in one
+/// observable: its posterior, as few repeats tell it.
 class ExcessVariance
 {
 public:
@@ -29,17 +28,41 @@ public:
 
   double mean() const { return average; }
   double draw(RandomStream &random) const;
+  /// Log of the probability of the ratio, up to a constant that does not depend on the prior.
+  double log_evidence() const { return log_of_all; }
 
 private:
   std::vector<double> values, below; ///< and the probability of all up to each
-  double average = 0.;
+  double average = 0., log_of_all = 0.;
 };
 
-/// The noise of the instrument in each of the modes' groups, that is in each observable.
-/// @param replicate_covariance of the modes of one replicate
-std::vector<ExcessVariance> excess_variances(const Modes &modes,
-                                             const Eigen::MatrixXd &replicate_covariance,
-                                             const Repeats &repeats);
+/// The noise of the instrument in each observable of an experiment. All observables tell of a
+/// common level of the noise, about which each has its own. Few repeats leave the level uncertain
+/// by far more than its typical size, so that nothing should rest on a single value of it: it is
+/// given by quantiles of its posterior, for integration.
+class InstrumentNoise
+{
+public:
+  /// @param modes in groups, one for each observable
+  /// @param replicate_covariance of the modes of one replicate
+  InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
+                  const Repeats &repeats);
+
+  /// Expected excess variance of each group if the level is at this quantile.
+  Eigen::VectorXd at(double quantile) const;
+  /// Excess variance of each group, drawn for the level at this quantile.
+  Eigen::VectorXd draw(double quantile, RandomStream &random) const;
+
+private:
+  struct Level
+  {
+    double below; ///< probability of all levels up to this one
+    std::vector<ExcessVariance> groups;
+  };
+  const Level &level(double quantile) const;
+
+  std::vector<Level> levels;
+};
 
 } // namespace eunoe::discovery
 

@@ -7,26 +7,33 @@
 namespace eunoe::discovery {
 
 /// Outcome of the base model as a linear function of the nuisances: coefficients (a row for the
-/// mean, one for each nuisance) and their covariance in units of that of one replicate.
+/// mean, one for each nuisance; a column for each value) and their covariance for each value, in
+/// units of the variance of one replicate.
 struct LinearBase
 {
-  Eigen::MatrixXd coefficients, covariance;
+  Eigen::MatrixXd coefficients;
+  std::vector<Eigen::MatrixXd> covariance;
 };
 
 /// What some runs say of the base model: the normal equations of a regression, to which those of
 /// other runs can be added.
 struct BaseInformation
 {
-  Eigen::MatrixXd precision; ///< terms x terms
-  Eigen::MatrixXd weighted;  ///< terms x values: precision times coefficients
+  std::vector<Eigen::MatrixXd> precision; ///< for each value, terms x terms
+  Eigen::MatrixXd weighted;               ///< terms x values: precision times coefficients
 
+  BaseInformation &operator+=(const BaseInformation &other);
+  BaseInformation &operator-=(const BaseInformation &other);
   LinearBase solve() const;
 };
 
 /// Gaussian process of the outcome of one experiment along the amplitude of one effect. The change
 /// from the base model is linear plus a Brownian motion, both in |u|^p, so that the response may be
 /// steep near zero and has no preferred shape beyond; it may depend on the nuisances. Values are
-/// whitened: the noise of one run has unit variance in each, and all share the kernel.
+/// whitened: the noise of one run has unit variance in each. All have the same kernel up to its
+/// variance. Most effects change few values by much and most hardly at all, so that each value has
+/// a variance of its own, which is integrated: what the values' distribution over some variances
+/// makes likely (empirical Bayes).
 class GaussianProcess
 {
 public:
@@ -39,15 +46,21 @@ public:
     double variance = 1.; ///< of the mean
   };
 
-  /// Numbers of the kernel, chosen by the marginal likelihood of the points.
+  /// Shape of the kernel, chosen by the marginal likelihood of the points.
   struct Kernel
   {
-    double power = 1., roughness = 0., variance = 0., interaction = 0.;
-    double at(double a, double b) const;
+    double power = 1., roughness = 0., interaction = 0.;
+    double at(double a, double b) const; ///< for unit variance
   };
 
+  /// From nothing to a strong effect.
+  static std::vector<double> usual_variances();
+
   /// @param points with the effect; none: the effect changes nothing
-  GaussianProcess(std::vector<Point> points, const LinearBase &base);
+  /// @param base what other runs say of the base model
+  /// @param variances that a value's kernel may have
+  GaussianProcess(std::vector<Point> points, const BaseInformation &base,
+                  const std::vector<double> &variances = usual_variances());
 
   struct Prediction
   {
@@ -55,28 +68,51 @@ public:
     Eigen::MatrixXd gradient; ///< change by one prior deviation of each nuisance, in columns
     /// Variance of the prediction, that of the gradient along typical nuisances included, in units
     /// of one replicate's.
-    double leverage = 0.;
+    Eigen::VectorXd leverage;
   };
   Prediction predict(double amplitude) const;
 
   /// What the points say of the base model, as far as the effect may be unknown between them.
   BaseInformation about_base() const;
-  /// Replaces what other runs say of the base model. The kernel stays.
-  void set_base(const LinearBase &others);
+  /// Replaces what other runs say of the base model. Kernel and variances stay.
+  void set_base(const BaseInformation &others);
 
   const std::vector<Point> &points() const { return all; }
   const Kernel &kernel() const { return best; }
+  /// Of the variances, in columns, for each value.
+  const Eigen::MatrixXd &probabilities() const { return shares; }
 
 private:
-  Eigen::MatrixXd effect_covariance(const Kernel &kernel) const;
+  /// The points in units of their noise, along axes on which they are independent whatever the
+  /// kernel's variance is.
+  struct Axes
+  {
+    Eigen::MatrixXd directions;
+    Eigen::VectorXd eigenvalues; ///< of the kernel with unit variance
+    Eigen::MatrixXd terms, values;
+  };
+  /// The regression for one variance of the kernel.
+  struct Scale
+  {
+    double variance;
+    Eigen::VectorXd weight;       ///< of each axis
+    Eigen::MatrixXd precision;    ///< of the base model's terms, by these points
+    Eigen::MatrixXd weighted;     ///< terms x values
+    Eigen::MatrixXd coefficients; ///< of all runs, terms x values
+    Eigen::MatrixXd covariance;   ///< of them, a row for each value
+  };
+  Axes axes_of(const Kernel &kernel) const;
+  Eigen::MatrixXd log_likelihoods(const Axes &axes) const;
   void choose_kernel();
 
   std::vector<Point> all;
   LinearBase base;
+  Eigen::VectorXd roots;         ///< of the inverse of each point's variance
   Eigen::MatrixXd terms, values; ///< a row for each point: terms of the base model, means
   Kernel best;
-  Eigen::LLT<Eigen::MatrixXd> solver;
-  Eigen::MatrixXd weights; ///< covariance^-1 residuals
+  Axes axes;
+  std::vector<Scale> scales;
+  Eigen::MatrixXd shares;
 };
 
 } // namespace eunoe::discovery
