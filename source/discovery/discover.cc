@@ -58,6 +58,9 @@ public:
     rows.push_back(row);
   }
 
+  /// Standard deviations by which a likelihood may turn out larger than expected.
+  static constexpr double by_chance = 1.5;
+
   /// Whether an effect that is not in the answer could be as likely as the first model, once it is
   /// known better.
   static bool has_challenger(const Round &round)
@@ -68,7 +71,8 @@ public:
       const auto &answer = round.findings.answer;
       const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
                                             [&](const Model &m) { return m.best.count(k) > 0; });
-      const std::vector<double> hopes = round.evidence.optimistic(k, round.target.data());
+      const std::vector<double> hopes =
+          round.evidence.optimistic(k, round.target.data(), by_chance);
       if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) >
                                first.log_prior + first.log_evidence - behind)
         return true;
@@ -83,7 +87,7 @@ public:
     const double needed = round.findings.threshold + round.evidence.log_nothing(data)(0);
     const std::vector<std::size_t> effects = round.evidence.usable();
     return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
-      return log_sum(round.evidence.optimistic(k, data)) > needed;
+      return log_sum(round.evidence.optimistic(k, data, by_chance)) > needed;
     });
   }
 

@@ -113,7 +113,8 @@ Eigen::VectorXd Evidence::inverse_variance(const Hypothesis &hypothesis,
   return hypothesis.inverse.transpose() * (weights / weights.sum()).matrix();
 }
 
-double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
+double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
+                                const double deviations) const
 {
   Target::Prediction known = hypothesis.prediction;
   known.leverage = known.leverage.cwiseMin(base.prediction.leverage);
@@ -122,17 +123,18 @@ double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::Vecto
   known.mean += share.cwiseProduct(data - known.mean);
   // The mean will not lie where the data pull it, but scatters about that by what is left of its
   // error: otherwise those who know least would hope for more than the truth can have.
-  return log_likelihood(prepare(known), data) - 0.5 * share.sum();
+  return log_likelihood(prepare(known), data) - 0.5 * share.sum() +
+         deviations * std::sqrt(share.sum());
 }
 
-std::vector<double> Evidence::optimistic(const std::size_t effect,
-                                         const Eigen::VectorXd &data) const
+std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
+                                         const double deviations) const
 {
   std::vector<double> values;
   for (const Place &place : grid[effect])
     values.push_back(place.log_prior +
                      std::log(prior.one_effect / static_cast<double>(usable().size())) +
-                     log_optimistic(place.hypothesis, data));
+                     log_optimistic(place.hypothesis, data, deviations));
   return values;
 }
 

@@ -67,7 +67,10 @@ public:
 
   /// Log-likelihood that is to be expected once runs have left no more error than that of the base
   /// model, if the hypothesis is true: its mean moves towards the data as far as its error allows.
-  double log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+  /// @param deviations by which the likelihood may exceed what is expected, as the mean could come
+  /// to lie nearer to the data by chance
+  double log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
+                        double deviations = 0.) const;
 
   /// An amplitude of an effect on the grid over which it is integrated.
   struct Place
@@ -87,7 +90,8 @@ public:
   const FactorSpace &space() const { return factors; }
 
   /// Log of prior and optimistic likelihood of an effect's places.
-  std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data) const;
+  std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data,
+                                 double deviations = 0.) const;
   /// Effects with places.
   std::vector<std::size_t> usable() const;
 
