@@ -61,20 +61,26 @@ public:
   /// Standard deviations by which a likelihood may turn out larger than expected.
   static constexpr double by_chance = 1.5;
 
-  /// Whether an effect that is not in the answer could be as likely as the first model, once it is
+  /// Whether a model that is not in the answer could be as likely as the first one, once it is
   /// known better.
   static bool has_challenger(const Round &round)
   {
     constexpr double behind = 3.; // e^-3 = 5 %
+    const Eigen::VectorXd &data = round.target.data();
+    const auto &answer = round.findings.answer;
     const Model &first = round.findings.models.front();
+    const double enough = first.log_prior + first.log_evidence - behind;
+    for (const Model &model : round.findings.models)
+      if (model.effects.size() == 2 &&
+          std::none_of(answer.begin(), answer.end(),
+                       [&](const Model &m) { return m.effects == model.effects; }) &&
+          round.evidence.optimistic_pair(model, data, by_chance) > enough)
+        return true;
     for (const std::size_t k : round.evidence.usable()) {
-      const auto &answer = round.findings.answer;
       const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
                                             [&](const Model &m) { return m.best.count(k) > 0; });
-      const std::vector<double> hopes =
-          round.evidence.optimistic(k, round.target.data(), by_chance);
-      if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) >
-                               first.log_prior + first.log_evidence - behind)
+      const std::vector<double> hopes = round.evidence.optimistic(k, data, by_chance);
+      if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) > enough)
         return true;
     }
     return false;

@@ -126,11 +126,10 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence,
   }
   for (const Model &model : models)
     if (model.effects.size() == 2) {
-      const Evidence::Hypothesis best = evidence.prepare(target.predict(model.best));
-      const double gain = evidence.log_optimistic(best, data) - evidence.log_likelihood(best, data);
+      const double hope = evidence.optimistic_pair(model, data);
       for (const auto &[k, amplitude] : model.best) {
         list.push_back({k, amplitude, unknown(target, target.predict({{k, amplitude}}))});
-        logs.push_back(model.log_prior + model.log_evidence + gain);
+        logs.push_back(hope);
       }
     }
   // Tempered, as hopes are not certain.

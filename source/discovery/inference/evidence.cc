@@ -138,6 +138,14 @@ std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::
   return values;
 }
 
+double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data,
+                                 const double deviations) const
+{
+  const Hypothesis best = prepare(aim.predict(pair.best));
+  return pair.log_prior + pair.log_evidence + log_optimistic(best, data, deviations) -
+         log_likelihood(best, data);
+}
+
 /// Size of an effect's change at each of its places, in standard deviations of a run, without what
 /// the error of the emulator adds; it does not fall as the amplitude grows.
 std::vector<double> Evidence::strengths(const std::vector<Place> &places) const
