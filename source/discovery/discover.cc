@@ -74,7 +74,7 @@ public:
       if (model.effects.size() == 2 &&
           std::none_of(answer.begin(), answer.end(),
                        [&](const Model &m) { return m.effects == model.effects; }) &&
-          round.evidence.optimistic_pair(model, data, by_chance) > enough)
+          round.evidence.optimistic_pair(model, data) > enough)
         return true;
     for (const std::size_t k : round.evidence.usable()) {
       const bool is_in_answer = std::any_of(answer.begin(), answer.end(),

@@ -138,11 +138,10 @@ std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::
   return values;
 }
 
-double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data,
-                                 const double deviations) const
+double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const
 {
   const Hypothesis best = prepare(aim.predict(pair.best));
-  return pair.log_prior + pair.log_evidence + log_optimistic(best, data, deviations) -
+  return pair.log_prior + pair.log_evidence + log_optimistic(best, data) -
          log_likelihood(best, data);
 }
 

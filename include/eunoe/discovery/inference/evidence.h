@@ -93,8 +93,7 @@ public:
   std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data,
                                  double deviations = 0.) const;
   /// The same of a pair of effects at its best amplitudes.
-  double optimistic_pair(const Model &pair, const Eigen::VectorXd &data,
-                         double deviations = 0.) const;
+  double optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const;
   /// Effects with places.
   std::vector<std::size_t> usable() const;
 
