@@ -18,113 +18,14 @@ Target::Prediction sum(const Target::Prediction &a, const Target::Prediction &b,
           a.scatter.cwiseProduct(b.scatter)};
 }
 
-/// Those of Sellentin and Heavens. (Their scale would be that of the plain estimate, whose
-/// distances are too long; the shrunk one has no such error.)
-double degrees_of_t(const Target &target)
-{
-  constexpr double least = 10.;
-  return std::max(least,
-                  target.degrees_of_freedom() + 1. - static_cast<double>(target.data().size()));
-}
-
 } // namespace
 
-double log_sum(const std::vector<double> &logarithms)
-{
-  const double largest = *std::max_element(logarithms.begin(), logarithms.end());
-  double sum = 0.;
-  for (const double value : logarithms)
-    sum += std::exp(value - largest);
-  return largest + std::log(sum);
-}
-
-Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms)
-{
-  const Eigen::ArrayXd largest = logarithms.colwise().maxCoeff().transpose();
-  return largest +
-         (logarithms.rowwise() - largest.transpose()).exp().colwise().sum().transpose().log();
-}
-
 Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
-    : aim(target), factors(space), prior(prior), dof(degrees_of_t(target)),
-      base(prepare(target.predict({}))), grid(space.n_effects())
+    : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
 {
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     make_grid(k);
   make_discrepancy();
-}
-
-Evidence::Hypothesis Evidence::prepare(const Target::Prediction &prediction) const
-{
-  constexpr auto levels = static_cast<Eigen::Index>(Target::n_noise_levels);
-  const Eigen::Index n = prediction.gradient.cols(), size = prediction.mean.size();
-  Hypothesis result{prediction, Eigen::MatrixXd(levels, size), Eigen::MatrixXd(levels * n, size),
-                    Eigen::VectorXd(levels)};
-  for (Eigen::Index l = 0; l < levels; ++l) {
-    const Eigen::VectorXd inverse =
-        aim.variance(prediction, static_cast<std::size_t>(l)).cwiseInverse();
-    result.inverse.row(l) = inverse.transpose();
-    result.constant(l) = 0.5 * inverse.array().log().sum();
-    if (n == 0)
-      continue;
-    const Eigen::MatrixXd scaled = prediction.gradient.transpose() * inverse.asDiagonal();
-    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
-                                            scaled * prediction.gradient);
-    result.half.middleRows(l * n, n) = inner.matrixL().solve(scaled);
-    result.constant(l) -= inner.matrixLLT().diagonal().array().log().sum();
-  }
-  return result;
-}
-
-Eigen::MatrixXd Evidence::Hypothesis::distances(
-    const Eigen::Ref<const Eigen::MatrixXd> &deviations) const
-{
-  Eigen::MatrixXd result = inverse * deviations.cwiseAbs2();
-  if (half.rows() == 0)
-    return result;
-  const Eigen::MatrixXd explained = (half * deviations).cwiseAbs2();
-  const Eigen::Index n = half.rows() / inverse.rows();
-  for (Eigen::Index l = 0; l < result.rows(); ++l)
-    result.row(l) -= explained.middleRows(l * n, n).colwise().sum();
-  return result;
-}
-
-Eigen::ArrayXXd Evidence::log_of_levels(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
-                                        const Eigen::Ref<const Eigen::MatrixXd> &data) const
-{
-  const Eigen::ArrayXXd distances = hypothesis.distances(data.colwise() - mean).array();
-  const double exponent = 0.5 * (dof + static_cast<double>(aim.data().size()));
-  return (-exponent * (1. + distances / dof).log()).colwise() + hypothesis.constant.array();
-}
-
-Eigen::ArrayXd Evidence::log_likelihoods_about(const Hypothesis &hypothesis,
-                                               const Eigen::VectorXd &mean,
-                                               const Eigen::Ref<const Eigen::MatrixXd> &data) const
-{
-  return log_sums(log_of_levels(hypothesis, mean, data)) -
-         std::log(static_cast<double>(Target::n_noise_levels));
-}
-
-Eigen::VectorXd Evidence::inverse_variance(const Hypothesis &hypothesis,
-                                           const Eigen::VectorXd &data) const
-{
-  const Eigen::ArrayXd logs = log_of_levels(hypothesis, hypothesis.prediction.mean, data).col(0);
-  const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp();
-  return hypothesis.inverse.transpose() * (weights / weights.sum()).matrix();
-}
-
-double Evidence::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
-                                const double deviations) const
-{
-  Target::Prediction known = hypothesis.prediction;
-  known.leverage = known.leverage.cwiseMin(base.prediction.leverage);
-  const Eigen::VectorXd share =
-      1. - aim.variance(known).array() / aim.variance(hypothesis.prediction).array();
-  known.mean += share.cwiseProduct(data - known.mean);
-  // The mean will not lie where the data pull it, but scatters about that by what is left of its
-  // error: otherwise those who know least would hope for more than the truth can have.
-  return log_likelihood(prepare(known), data) - 0.5 * share.sum() +
-         deviations * std::sqrt(share.sum());
 }
 
 std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
@@ -140,7 +41,7 @@ std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::
 
 double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const
 {
-  const Hypothesis best = prepare(aim.predict(pair.best));
+  const Hypothesis best = prepare(target().predict(pair.best));
   return pair.log_prior + pair.log_evidence + log_optimistic(best, data) -
          log_likelihood(best, data);
 }
@@ -153,7 +54,8 @@ std::vector<double> Evidence::strengths(const std::vector<Place> &places) const
   double largest = prior.just_visible;
   for (const Place &place : places) {
     const Target::Prediction &with = place.hypothesis.prediction;
-    const double square = (with.mean - base.prediction.mean).squaredNorm() - with.leverage.sum();
+    const double square =
+        (with.mean - nothing().prediction.mean).squaredNorm() - with.leverage.sum();
     result.push_back(largest = std::max(largest, std::sqrt(std::max(0., square))));
   }
   return result;
@@ -171,12 +73,13 @@ void Evidence::make_grid(const std::size_t k)
       continue;
     double first = prior.least_range * (limit < 0. ? -1. : 1.);
     while (std::abs(first) * least_ratio < std::abs(limit) &&
-           (aim.predict({{k, first}}).mean - base.prediction.mean).norm() < prior.just_visible)
+           (target().predict({{k, first}}).mean - nothing().prediction.mean).norm() <
+               prior.just_visible)
       first *= least_ratio;
     std::vector<Place> side;
     for (int i = 0; i < n_places; ++i) {
       const double u = first * std::pow(limit / first, i / (n_places - 1.));
-      side.push_back({u, 0., 0., prepare(aim.predict({{k, u}}))});
+      side.push_back({u, 0., 0., prepare(target().predict({{k, u}}))});
     }
     const std::vector<double> strength = strengths(side);
     const double step = std::log(limit / first) / (n_places - 1.);
@@ -205,11 +108,12 @@ void Evidence::make_grid(const std::size_t k)
 /// catalogue's effects, half along any.
 void Evidence::make_discrepancy()
 {
-  const Eigen::Index n = aim.data().size();
+  const Eigen::Index n = target().data().size();
   Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, n);
   for (const auto &places : grid)
     for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
-      const Eigen::VectorXd change = places[i].hypothesis.prediction.mean - base.prediction.mean;
+      const Eigen::VectorXd change =
+          places[i].hypothesis.prediction.mean - nothing().prediction.mean;
       const double noise = places[i].hypothesis.prediction.leverage.sum();
       const double square = change.squaredNorm();
       if (square > noise)
@@ -219,9 +123,10 @@ void Evidence::make_discrepancy()
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
   if (trace > 0.)
     shape = 0.5 * shape + 0.5 * along / trace;
-  for (Eigen::Index l = 0; l < base.inverse.rows(); ++l) {
-    Eigen::MatrixXd noise = base.prediction.gradient * base.prediction.gradient.transpose();
-    noise.diagonal() += base.inverse.row(l).cwiseInverse().transpose();
+  for (Eigen::Index l = 0; l < nothing().inverse.rows(); ++l) {
+    Eigen::MatrixXd noise =
+        nothing().prediction.gradient * nothing().prediction.gradient.transpose();
+    noise.diagonal() += nothing().inverse.row(l).cwiseInverse().transpose();
     for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
          strength *= 2.)
       discrepancies.emplace_back(noise + strength * strength * shape);
@@ -254,18 +159,16 @@ double Evidence::best_amplitude(const std::size_t effect, const Eigen::VectorXd 
 
 Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  const Eigen::MatrixXd deviations = data.colwise() - base.prediction.mean;
-  const double exponent = 0.5 * (dof + static_cast<double>(aim.data().size()));
-  Eigen::ArrayXXd logs(static_cast<Eigen::Index>(discrepancies.size()), data.cols());
-  for (Eigen::Index i = 0; i < logs.rows(); ++i) {
+  const Eigen::MatrixXd deviations = data.colwise() - nothing().prediction.mean;
+  const auto number = static_cast<Eigen::Index>(discrepancies.size());
+  Eigen::ArrayXXd distances(number, data.cols());
+  Eigen::ArrayXd constants(number);
+  for (Eigen::Index i = 0; i < number; ++i) {
     const Eigen::LLT<Eigen::MatrixXd> &llt = discrepancies[static_cast<std::size_t>(i)];
-    const Eigen::ArrayXd distances =
-        llt.matrixL().solve(deviations).colwise().squaredNorm().transpose();
-    logs.row(i) =
-        (-llt.matrixLLT().diagonal().array().log().sum() - exponent * (1. + distances / dof).log())
-            .transpose();
+    constants(i) = -llt.matrixLLT().diagonal().array().log().sum();
+    distances.row(i) = llt.matrixL().solve(deviations).colwise().squaredNorm();
   }
-  return log_sums(logs) - std::log(static_cast<double>(discrepancies.size()));
+  return log_sums(log_t(constants, distances)) - std::log(static_cast<double>(number));
 }
 
 std::vector<std::size_t> Evidence::usable() const
@@ -306,7 +209,7 @@ Model Evidence::pair(const std::size_t a, const std::size_t b, const Eigen::Vect
     for (std::size_t j = pair_stride / 2; j < grid[b].size(); j += pair_stride) {
       const Place &p = grid[a][i], &q = grid[b][j];
       const Hypothesis both =
-          prepare(sum(p.hypothesis.prediction, q.hypothesis.prediction, base.prediction));
+          prepare(sum(p.hypothesis.prediction, q.hypothesis.prediction, nothing().prediction));
       values.push_back(p.log_prior + q.log_prior + log_likelihood(both, data));
       weight += std::exp(p.log_prior + q.log_prior);
       if (values.back() > highest) {
@@ -329,7 +232,7 @@ double Evidence::log_density(const std::size_t effect, const double amplitude) c
 double Evidence::log_at(const std::map<std::size_t, double> &effects,
                         const Eigen::VectorXd &data) const
 {
-  return log_likelihood(prepare(aim.predict(effects)), data);
+  return log_likelihood(prepare(target().predict(effects)), data);
 }
 
 /// The grid of pairs is coarse. Newton's method finds the likeliest logarithms of both amplitudes,

@@ -12,12 +12,12 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
                 const std::uint32_t seed)
 {
   const Eigen::VectorXd &data = evidence.target().data();
-  std::vector<Evidence::Hypothesis> all;
+  std::vector<Hypothesis> all;
   for (const Member &member : members(evidence, model, data))
     all.push_back(evidence.prepare(member.prediction));
   const auto misfits = [&](const Eigen::Ref<const Eigen::MatrixXd> &values) {
     Eigen::ArrayXd highest = Eigen::ArrayXd::Constant(values.cols(), -1e300);
-    for (const Evidence::Hypothesis &one : all)
+    for (const Hypothesis &one : all)
       highest = highest.max(evidence.log_likelihoods(one, values));
     return Eigen::ArrayXd(-highest);
   };
@@ -33,7 +33,7 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
   return Tail({of_twins.begin(), of_twins.end()}).p(misfits(data)(0));
 }
 
-Eigen::VectorXd best_nuisances(const Evidence &evidence, const Evidence::Hypothesis &hypothesis)
+Eigen::VectorXd best_nuisances(const Evidence &evidence, const Hypothesis &hypothesis)
 {
   const Eigen::VectorXd &data = evidence.target().data();
   const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
@@ -64,7 +64,7 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
       effects[model.effects[0]] = alone->quantile(random.uniform());
     else if (!both.empty())
       effects = both[pick(random)].effects;
-    const Evidence::Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
+    const Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
     const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
     const Eigen::Index n = gradient.cols();
     const Eigen::LLT<Eigen::MatrixXd> inner(

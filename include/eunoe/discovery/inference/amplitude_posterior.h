@@ -33,7 +33,7 @@ public:
 private:
   const Evidence &evidence;
   const Eigen::VectorXd &data;
-  const Evidence::Hypothesis at_best;
+  const Hypothesis at_best;
 };
 
 /// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.

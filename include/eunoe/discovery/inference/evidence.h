@@ -1,7 +1,7 @@
 #ifndef eunoe_discovery_inference_evidence_h
 #define eunoe_discovery_inference_evidence_h
 
-#include <eunoe/discovery/inference/target.h>
+#include <eunoe/discovery/inference/likelihood.h>
 
 #include <map>
 #include <vector>
@@ -29,48 +29,11 @@ struct Model
   std::map<std::size_t, double> best; ///< likeliest amplitudes
 };
 
-/// Marginal likelihoods of all models: amplitudes and nuisances are integrated. The covariance is
-/// estimated, so the likelihood is a t-distribution (Sellentin and Heavens 2016, MNRAS 456, L132).
-class Evidence
+/// Marginal likelihoods of all models: amplitudes are integrated, too.
+class Evidence : public Likelihood
 {
 public:
   Evidence(const Target &target, const FactorSpace &space, const Prior &prior = {});
-
-  /// Likelihood of data for fixed effects, with all that does not depend on the data prepared: a
-  /// normal distribution for each level of the instrument's noise.
-  struct Hypothesis
-  {
-    Target::Prediction prediction;
-    Eigen::MatrixXd inverse; ///< of the variances, levels x coordinates
-    Eigen::MatrixXd half; ///< what nuisances explain of a deviation, a block of rows for each level
-    Eigen::VectorXd constant; ///< of each level
-
-    /// Squared Mahalanobis distances of deviations from the mean, levels x columns.
-    Eigen::MatrixXd distances(const Eigen::Ref<const Eigen::MatrixXd> &deviations) const;
-  };
-  Hypothesis prepare(const Target::Prediction &prediction) const;
-  /// Log-likelihoods of data in columns; the instrument's noise is integrated.
-  Eigen::ArrayXd log_likelihoods(const Hypothesis &hypothesis,
-                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const
-  {
-    return log_likelihoods_about(hypothesis, hypothesis.prediction.mean, data);
-  }
-  double log_likelihood(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const
-  {
-    return log_likelihoods(hypothesis, data)(0);
-  }
-  /// With another mean than the hypothesis has.
-  Eigen::ArrayXd log_likelihoods_about(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
-                                       const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  /// Inverse of the variances, at the levels of noise that the data speak for.
-  Eigen::VectorXd inverse_variance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
-
-  /// Log-likelihood that is to be expected once runs have left no more error than that of the base
-  /// model, if the hypothesis is true: its mean moves towards the data as far as its error allows.
-  /// @param deviations by which the likelihood may exceed what is expected, as the mean could come
-  /// to lie nearer to the data by chance
-  double log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
-                        double deviations = 0.) const;
 
   /// An amplitude of an effect on the grid over which it is integrated.
   struct Place
@@ -84,9 +47,6 @@ public:
   const std::vector<Place> &places(std::size_t effect) const { return grid[effect]; }
   /// The place nearest to an amplitude.
   const Place &place_near(std::size_t effect, double amplitude) const;
-  const Hypothesis &nothing() const { return base; }
-  const Target &target() const { return aim; }
-  double degrees_of_freedom() const { return dof; } ///< of the t-distribution
   const FactorSpace &space() const { return factors; }
 
   /// Log of prior and optimistic likelihood of an effect's places.
@@ -100,7 +60,7 @@ public:
   /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.
   Eigen::ArrayXd log_nothing(const Eigen::Ref<const Eigen::MatrixXd> &data) const
   {
-    return log_likelihoods(base, data);
+    return log_likelihoods(nothing(), data);
   }
   Eigen::ArrayXd log_single(std::size_t effect,
                             const Eigen::Ref<const Eigen::MatrixXd> &data) const;
@@ -126,24 +86,14 @@ private:
   void polish(Model &pair, const Eigen::VectorXd &data) const;
   double log_density(std::size_t effect, double amplitude) const;
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
-  Eigen::ArrayXXd log_of_levels(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
-                                const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
-  const Target &aim;
   const FactorSpace &factors;
   const Prior prior;
-  double dof;
-  Hypothesis base;
   std::vector<std::vector<Place>> grid;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> discrepancies;
 };
-
-/// log(sum of exp).
-double log_sum(const std::vector<double> &logarithms);
-/// The same of each column.
-Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms);
 
 } // namespace eunoe::discovery
 

@@ -24,7 +24,7 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model, unsi
                               std::uint32_t seed);
 
 /// Best values of the nuisances for fixed effects, in prior deviations.
-Eigen::VectorXd best_nuisances(const Evidence &evidence, const Evidence::Hypothesis &hypothesis);
+Eigen::VectorXd best_nuisances(const Evidence &evidence, const Hypothesis &hypothesis);
 
 /// How well a model fits the data that it was fitted to: the probability of a larger distance
 /// between data and best amplitudes if the model is true. Twins of the model are fitted as the data
