@@ -107,6 +107,7 @@ private:
   };
 
   static constexpr double just_visible = 1.;
+  static constexpr int n_places = 30; ///< on each side of an effect's null value
 
   std::vector<std::string> experiments() const
   {
@@ -120,7 +121,6 @@ private:
   /// the range.
   void find_places(const Factor &f)
   {
-    constexpr int number = 30;
     constexpr double strongest = 50.;
     for (const double limit : {f.lower, f.upper}) {
       const double side = limit < f.null_value ? -1. : 1.;
@@ -128,9 +128,9 @@ private:
           f.sign == (side > 0. ? Factor::Sign::below : Factor::Sign::above))
         continue;
       const double last = std::min(strongest, simulator.strength({{f.name, limit}}, experiments()));
-      for (int k = 0; k < number && just_visible < last; ++k) {
+      for (int k = 0; k < n_places && just_visible < last; ++k) {
         Place place{
-            just_visible * std::pow(last / just_visible, k / (number - 1.)), side, last, {}, {}};
+            just_visible * std::pow(last / just_visible, k / (n_places - 1.)), side, last, {}, {}};
         place.amplitude = amplitude(f.name, place, 0.);
         place.change = base.matrixL().solve(mean(place.amplitude) - mean({}));
         places[f.name].push_back(place);
@@ -216,7 +216,7 @@ private:
         at += (curvature.inverse() * slope).cwiseMin(longest).cwiseMax(-longest);
     }
     const auto log_prior = [&](const std::string &name, const Place &place) {
-      const double sides = static_cast<double>(places.at(name).size()) / 30.;
+      const double sides = static_cast<double>(places.at(name).size()) / n_places;
       return -std::log(sides * std::log(place.strongest / just_visible));
     };
     return value + log_prior(a, p) + log_prior(b, q) + std::log(2. * M_PI) -

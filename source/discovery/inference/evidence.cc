@@ -152,8 +152,13 @@ Eigen::ArrayXd Evidence::log_single(const std::size_t effect,
 
 double Evidence::best_amplitude(const std::size_t effect, const Eigen::VectorXd &data) const
 {
+  return likeliest(effect, log_of_places(effect, data));
+}
+
+double Evidence::likeliest(const std::size_t effect, const Eigen::ArrayXXd &of_places) const
+{
   Eigen::Index best = 0;
-  log_of_places(effect, data).col(0).maxCoeff(&best);
+  of_places.col(0).maxCoeff(&best);
   return grid[effect][static_cast<std::size_t>(best)].amplitude;
 }
 
@@ -293,8 +298,9 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
     Model one;
     one.effects = {k};
     one.log_prior = std::log(prior.one_effect / n);
-    one.log_evidence = log_single(k, data)(0);
-    one.best[k] = best_amplitude(k, data);
+    const Eigen::ArrayXXd of_places = log_of_places(k, data);
+    one.log_evidence = log_sums(of_places)(0);
+    one.best[k] = likeliest(k, of_places);
     all.push_back(one);
   }
   for (std::size_t i = 0; i < effects.size(); ++i)

@@ -125,7 +125,8 @@ GaussianProcess::Axes GaussianProcess::axes_of(const Kernel &kernel) const
 }
 
 /// Of each value's points, for each variance.
-Eigen::MatrixXd GaussianProcess::log_likelihoods(const Axes &candidate) const
+Eigen::MatrixXd GaussianProcess::log_likelihoods(
+    const Axes &candidate, const std::vector<Eigen::MatrixXd> &base_roots) const
 {
   const Eigen::Index n_terms = terms.cols();
   const Eigen::MatrixXd residuals = candidate.values - candidate.terms * base.coefficients;
@@ -140,8 +141,7 @@ Eigen::MatrixXd GaussianProcess::log_likelihoods(const Axes &candidate) const
     const double log_determinant = spread.array().log().sum();
     for (Eigen::Index v = 0; v < result.rows(); ++v) {
       // The base model is uncertain, too (Woodbury).
-      const Eigen::MatrixXd root =
-          Eigen::LLT<Eigen::MatrixXd>(base.covariance[static_cast<std::size_t>(v)]).matrixL();
+      const Eigen::MatrixXd &root = base_roots[static_cast<std::size_t>(v)];
       const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n_terms, n_terms) +
                                               root.transpose() * precision * root);
       result(v, j) = -0.5 * (log_determinant + distances(v) -
@@ -154,11 +154,15 @@ Eigen::MatrixXd GaussianProcess::log_likelihoods(const Axes &candidate) const
 
 void GaussianProcess::choose_kernel()
 {
+  std::vector<Eigen::MatrixXd> base_roots;
+  for (const Eigen::MatrixXd &covariance : base.covariance)
+    base_roots.emplace_back(covariance.llt().matrixL());
   double highest = -std::numeric_limits<double>::infinity();
   const auto consider = [&](const Kernel &kernel) {
     const Axes candidate = axes_of(kernel);
     Eigen::MatrixXd probabilities;
-    const double log_likelihood = fit_mixture(log_likelihoods(candidate), probabilities);
+    const double log_likelihood =
+        fit_mixture(log_likelihoods(candidate, base_roots), probabilities);
     if (log_likelihood > highest) {
       highest = log_likelihood;
       best = kernel;

@@ -88,6 +88,7 @@ private:
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  double likeliest(std::size_t effect, const Eigen::ArrayXXd &of_places) const;
 
   const FactorSpace &factors;
   const Prior prior;

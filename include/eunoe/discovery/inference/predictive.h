@@ -27,8 +27,8 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model, unsi
 Eigen::VectorXd best_nuisances(const Evidence &evidence, const Hypothesis &hypothesis);
 
 /// How well a model fits the data that it was fitted to: the probability of a smaller likelihood of
-/// the best amplitudes if the model is true. Twins of the model are fitted as the data
-/// were, so that nothing is gained by having been chosen.
+/// the best amplitudes if the model is true. Twins of the model are fitted as the data were, so
+/// that nothing is gained by having been chosen.
 /// @param model one that explains the data at its `best` amplitudes
 double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDraws &posterior,
                 std::uint32_t seed);

@@ -102,7 +102,8 @@ private:
     Eigen::MatrixXd covariance;   ///< of them, a row for each value
   };
   Axes axes_of(const Kernel &kernel) const;
-  Eigen::MatrixXd log_likelihoods(const Axes &axes) const;
+  Eigen::MatrixXd log_likelihoods(const Axes &axes,
+                                  const std::vector<Eigen::MatrixXd> &base_roots) const;
   void choose_kernel();
 
   std::vector<Point> all;
