@@ -34,7 +34,8 @@ def answer(words: list[str], code: int, *texts: str) -> None:
 
 
 def names(folder: Path) -> set[str]:
-    return {path.name for path in folder.rglob("*")}
+    """Of all files but those that a run still writes beside their place (new_file.h): they get another name."""
+    return {path.name for path in folder.rglob("*") if path.suffix != ".new"}
 
 
 class Running:
