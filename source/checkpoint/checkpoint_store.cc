@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>

@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/checkpoint/input_differences.h>
 #include <eunoe/core/files.h>
@@ -54,6 +55,20 @@ double time_in(const nlohmann::ordered_json &clock)
 }
 
 } // namespace
+
+Checkpoints::Checkpoints(const RestartParameters &parameters, const std::string &output_path,
+                         MPI_Comm comm)
+    : parameters(parameters), folder(parameters.place(output_path)), comm(comm),
+      store(folder, parameters.name(), parameters.keep, comm)
+{
+}
+
+Checkpoints::~Checkpoints() = default;
+
+void Checkpoints::close()
+{
+  checkpoint.reset();
+}
 
 std::vector<std::string> Checkpoints::folders_nearby() const
 {

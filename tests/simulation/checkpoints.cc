@@ -1,5 +1,6 @@
 // When a checkpoint is due, what stops a run, and which checkpoint is opened when it continues.
 
+#include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/core/files.h>
 #include <eunoe/simulation/checkpoints.h>
 

@@ -6,6 +6,8 @@
 
 #include "surfaces.h"
 
+#include <sstream>
+
 using namespace test;
 
 namespace {

@@ -1,9 +1,15 @@
 #ifndef eunoe_checkpoint_checkpoint_store_h
 #define eunoe_checkpoint_checkpoint_store_h
 
-#include <eunoe/checkpoint/checkpoint_file.h>
+#include <memory>
+#include <mpi.h>
+#include <string>
+#include <vector>
 
 namespace eunoe {
+
+class Checkpoint;
+class CheckpointWriter;
 
 /// The checkpoints of a run in its output folder: "<name>_<step>.checkpoint", and "<name>.latest"
 /// with their names, the newest first, which is renewed when a checkpoint is complete and on the

@@ -3,7 +3,10 @@
 
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/checkpoint/restart_parameters.h>
+#include <eunoe/core/problems.h>
 #include <eunoe/core/run_lock.h>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <functional>
 #include <limits>
@@ -18,11 +21,8 @@ struct ControlParameters;
 class Checkpoints
 {
 public:
-  Checkpoints(const RestartParameters &parameters, const std::string &output_path, MPI_Comm comm)
-      : parameters(parameters), folder(parameters.place(output_path)), comm(comm),
-        store(folder, parameters.name(), parameters.keep, comm)
-  {
-  }
+  Checkpoints(const RestartParameters &parameters, const std::string &output_path, MPI_Comm comm);
+  ~Checkpoints();
 
   /// Says what forbids to go on with another input.
   /// @param head of the checkpoint
@@ -60,7 +60,7 @@ public:
       store.keep_opened();
     store.go_on();
   }
-  void close() { checkpoint.reset(); }
+  void close();
 
   /// Whether one is due after a step; collective.
   bool is_due(unsigned long long step);
