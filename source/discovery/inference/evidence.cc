@@ -204,26 +204,25 @@ Eigen::ArrayXd Evidence::log_bayes_factors(const Eigen::Ref<const Eigen::MatrixX
   return log_sums(log_posterior_of_singles(data)) - log_nothing(data);
 }
 
-Model Evidence::pair(const std::size_t a, const std::size_t b, const Eigen::VectorXd &data) const
+void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool roughly) const
 {
-  Model result;
-  result.effects = {a, b};
+  const std::size_t a = pair.effects[0], b = pair.effects[1];
   std::vector<double> values;
   double highest = -1e300, weight = 0.;
   for (std::size_t i = pair_stride / 2; i < grid[a].size(); i += pair_stride)
     for (std::size_t j = pair_stride / 2; j < grid[b].size(); j += pair_stride) {
       const Place &p = grid[a][i], &q = grid[b][j];
-      const Hypothesis both =
-          prepare(sum(p.hypothesis.prediction, q.hypothesis.prediction, nothing().prediction));
-      values.push_back(p.log_prior + q.log_prior + log_likelihood(both, data));
+      const Target::Prediction both =
+          sum(p.hypothesis.prediction, q.hypothesis.prediction, nothing().prediction);
+      values.push_back(p.log_prior + q.log_prior +
+                       log_likelihood(roughly ? prepare_roughly(both) : prepare(both), data));
       weight += std::exp(p.log_prior + q.log_prior);
       if (values.back() > highest) {
         highest = values.back();
-        result.best = {{a, p.amplitude}, {b, q.amplitude}};
+        pair.best = {{a, p.amplitude}, {b, q.amplitude}};
       }
     }
-  result.log_evidence = log_sum(values) - std::log(weight);
-  return result;
+  pair.log_evidence = log_sum(values) - std::log(weight);
 }
 
 /// Log of the prior density of an amplitude's logarithm.
@@ -305,8 +304,10 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   }
   for (std::size_t i = 0; i < effects.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      Model two = pair(effects[j], effects[i], data);
+      Model two;
+      two.effects = {effects[j], effects[i]};
       two.log_prior = std::log(prior.two_effects / (0.5 * n * (n - 1.)));
+      integrate(two, data, true);
       all.push_back(two);
     }
   std::vector<double> logs;
@@ -315,8 +316,10 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
     highest = std::max(highest, model.log_prior + model.log_evidence);
   for (Model &model : all) {
     constexpr double within = 15.;
-    if (model.effects.size() == 2 && model.log_prior + model.log_evidence > highest - within)
+    if (model.effects.size() == 2 && model.log_prior + model.log_evidence > highest - within) {
+      integrate(model, data, false);
       polish(model, data);
+    }
     logs.push_back(model.log_prior + model.log_evidence);
   }
   const double total = log_sum(logs);

@@ -41,14 +41,27 @@ Likelihood::Likelihood(const Target &target)
 
 Hypothesis Likelihood::prepare(const Target::Prediction &prediction) const
 {
-  constexpr auto levels = static_cast<Eigen::Index>(Target::n_noise_levels);
+  Eigen::MatrixXd variances(prediction.mean.size(),
+                            static_cast<Eigen::Index>(Target::n_noise_levels));
+  for (std::size_t l = 0; l < Target::n_noise_levels; ++l)
+    variances.col(static_cast<Eigen::Index>(l)) = aim.variance(prediction, l);
+  return prepare(prediction, variances);
+}
+
+Hypothesis Likelihood::prepare_roughly(const Target::Prediction &prediction) const
+{
+  return prepare(prediction, aim.variance(prediction));
+}
+
+Hypothesis Likelihood::prepare(const Target::Prediction &prediction,
+                               const Eigen::MatrixXd &variances)
+{
   const Eigen::Index n = prediction.gradient.cols(), size = prediction.mean.size();
-  Hypothesis result{prediction, Eigen::MatrixXd(levels, size), Eigen::MatrixXd(levels * n, size),
-                    Eigen::VectorXd(levels)};
+  const Eigen::Index levels = variances.cols();
+  Hypothesis result{prediction, variances.cwiseInverse().transpose(),
+                    Eigen::MatrixXd(levels * n, size), Eigen::VectorXd(levels)};
   for (Eigen::Index l = 0; l < levels; ++l) {
-    const Eigen::VectorXd inverse =
-        aim.variance(prediction, static_cast<std::size_t>(l)).cwiseInverse();
-    result.inverse.row(l) = inverse.transpose();
+    const Eigen::VectorXd inverse = result.inverse.row(l).transpose();
     result.constant(l) = 0.5 * inverse.array().log().sum();
     if (n == 0)
       continue;
@@ -91,7 +104,7 @@ Eigen::ArrayXd Likelihood::log_likelihoods_about(
     const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
   return log_sums(log_of_levels(hypothesis, mean, data)) -
-         std::log(static_cast<double>(Target::n_noise_levels));
+         std::log(static_cast<double>(hypothesis.inverse.rows()));
 }
 
 Eigen::VectorXd Likelihood::inverse_variance(const Hypothesis &hypothesis,

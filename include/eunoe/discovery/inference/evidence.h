@@ -82,7 +82,9 @@ private:
   void make_grid(std::size_t effect);
   std::vector<double> strengths(const std::vector<Place> &places) const;
   void make_discrepancy();
-  Model pair(std::size_t a, std::size_t b, const Eigen::VectorXd &data) const;
+  /// Evidence and best amplitudes of a pair on a coarse grid.
+  /// @param roughly without the levels of the instrument's noise
+  void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
   void polish(Model &pair, const Eigen::VectorXd &data) const;
   double log_density(std::size_t effect, double amplitude) const;
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
