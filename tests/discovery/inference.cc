@@ -117,6 +117,40 @@ void levels(Laboratory &lab)
   check("a wrong prediction is refuted", p_wrong < 1e-4, std::to_string(p_wrong));
 }
 
+/// A model that another one predicts the data better than is refuted far more often than by its own
+/// misfit if it is wrong, and no more often than the level says if it is true.
+void contests(Laboratory &lab)
+{
+  const double amplitude = lab.simulator.amplitude_of("b", 4., both);
+  const Target target = lab.target({{"b", amplitude}}, 3);
+  const Evidence evidence(target, lab.space);
+  const std::vector<Model> models = evidence.models(target.data());
+  const auto likeliest = [&](const bool is_right) {
+    return *std::find_if(models.begin(), models.end(), [&](const Model &model) {
+      return model.effects.size() == 1 && (model.effects[0] == 1) == is_right;
+    });
+  };
+  const auto predict = [&](const bool is_right, const std::uint32_t seed) {
+    return Predictive(evidence, draw_posterior(evidence, likeliest(is_right), 400, seed), seed);
+  };
+  const Predictive fresh = predict(true, 7), wrong = predict(false, 2);
+  const Contest contest({predict(true, 2), wrong});
+  constexpr double level = 0.05;
+  unsigned int truths = 0, alone = 0, against_right = 0;
+  for (const Predictive::Conditional &draw : fresh.draws()) {
+    truths += contest.p(0, draw.twin) < level;
+    alone += wrong.p(draw.twin) < level;
+    against_right += contest.p(1, draw.twin) < level;
+  }
+  const auto number = static_cast<double>(fresh.draws().size());
+  const double error = 4. * std::sqrt(level * (1. - level) / number);
+  check("a contest keeps its level", truths / number < level + error, std::to_string(truths));
+  check("a contest refutes more wrong models", against_right > 2 * alone && alone > 0,
+        std::to_string(alone) + ", " + std::to_string(against_right));
+  check_close("and says how often it will", contest.refuted_by(1, 0, level), against_right / number,
+              0.1);
+}
+
 /// Most runs have one effect, as where a study has followed a false trail. Data without any effect,
 /// but with nuisances, must not look like it.
 void false_trail()
@@ -318,6 +352,7 @@ EUNOE_MPI_TEST()
   Laboratory lab(nature(), 1);
   likelihoods(lab);
   levels(lab);
+  contests(lab);
   false_trail();
   calibrations(lab);
   intervals(lab);

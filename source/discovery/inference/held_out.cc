@@ -38,65 +38,73 @@ std::uint64_t HeldOut::n_runs() const
   return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
 }
 
-Predictive HeldOut::predict(const Evidence &fit, const Evidence &held_out, const Model &model) const
+Contest HeldOut::predict(const Evidence &fit, const Evidence &held_out,
+                         const std::vector<Model> &models) const
 {
-  return {held_out, draw_posterior(fit, model, rule.predictive_draws, options.seed),
-          options.seed + 3};
+  std::vector<Predictive> all;
+  const auto add = [&](const Model &model) {
+    all.emplace_back(held_out, draw_posterior(fit, model, rule.predictive_draws, options.seed),
+                     options.seed + 3);
+  };
+  add({});
+  for (const Model &model : models)
+    add(model);
+  return Contest(std::move(all));
 }
 
 bool HeldOut::is_doubtful(const Evidence &fit, const Evidence &held_out,
                           const std::vector<Model> &models, const Findings &findings) const
 {
   const double clearly = 0.1 * rule.refuted, hardly = 4. * rule.doubtful;
-  const auto answered =
-      static_cast<std::ptrdiff_t>(std::min(models.size(), findings.answer.size()));
-  return std::any_of(models.begin(), models.begin() + answered, [&](const Model &model) {
-    const double p = predict(fit, held_out, model).p(held_out.target().data());
-    return p > clearly && p < hardly;
-  });
+  const Contest contest = predict(fit, held_out, models);
+  for (std::size_t m = 0; m < std::min(models.size(), findings.answer.size()); ++m) {
+    const double p = contest.p(m + 1, held_out.target().data());
+    if (p > clearly && p < hardly)
+      return true;
+  }
+  return false;
 }
 
 Json HeldOut::test_models(const Evidence &fit, const Evidence &held_out,
                           const std::vector<Model> &models, Findings &findings) const
 {
   const Eigen::VectorXd &measured = held_out.target().data();
-  const Predictive base = predict(fit, held_out, {});
-  Json table = {{"p before", base.p(measured)}};
+  const Contest contest = predict(fit, held_out, models);
+  constexpr std::size_t base = 0, first = 1; // places in the contest
+  const double p_base = contest.p(base, measured);
+  Json table = {{"p before", p_base}};
   Json members = Json::array(), refutable = Json::array();
   std::vector<Model> kept;
-  std::optional<Predictive> first;
   const bool is_answered = findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const Predictive one = predict(fit, held_out, models[m]);
-    const double p = one.p(measured);
+    const double p = contest.p(first + m, measured);
     const bool in_answer = m < findings.answer.size();
     if (in_answer && is_answered) {
       members.push_back({{"effects", name_of(models[m], space)},
                          {"p", p},
-                         {"result", sentence(base.p(measured), p, rule.refuted)}});
+                         {"result", sentence(p_base, p, rule.refuted)}});
       if (p >= rule.refuted)
         kept.push_back(models[m]);
       findings.none_of_these |= m == 0 && p < rule.doubtful;
     }
-    if (!first) {
+    if (m == 0)
       table["p after"] = p;
-      first = one;
-    } else
-      refutable.push_back({{"effects", name_of(models[m], space)},
-                           {"p", p},
-                           {"would be refuted", one.refuted_by(*first, rule.refuted)}});
+    else
+      refutable.push_back(
+          {{"effects", name_of(models[m], space)},
+           {"p", p},
+           {"would be refuted", contest.refuted_by(first + m, first, rule.refuted)}});
   }
-  if (first) {
+  if (!models.empty()) {
     const Json nothing = {{"effects", "nothing"},
-                          {"p", base.p(measured)},
-                          {"would be refuted", base.refuted_by(*first, rule.refuted)}};
+                          {"p", p_base},
+                          {"would be refuted", contest.refuted_by(base, first, rule.refuted)}};
     refutable.insert(refutable.begin(), nothing);
   }
   table["could have refuted"] = refutable;
   if (!is_answered) {
-    table["result"] = base.p(measured) < rule.refuted
-                          ? "the base model does not describe the held-out data"
-                          : "the base model describes the held-out data";
+    table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
+                                            : "the base model describes the held-out data";
     return table;
   }
   // Those that were not tested stay.

@@ -114,11 +114,19 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
   llt.compute(with(variances.rowwise().mean()));
   for (Eigen::Index l = 0; l < variances.cols(); ++l)
     levels.emplace_back(with(variances.col(l)));
-  const Eigen::ArrayXd surprises = surprise(twins);
+  const Eigen::ArrayXd surprises = -log_density(twins);
   tail = Tail({surprises.begin(), surprises.end()});
 }
 
-Eigen::ArrayXd Predictive::surprise(const Eigen::Ref<const Eigen::MatrixXd> &data) const
+Eigen::MatrixXd Predictive::twins() const
+{
+  Eigen::MatrixXd result(centre.size(), static_cast<Eigen::Index>(all.size()));
+  for (Eigen::Index i = 0; i < result.cols(); ++i)
+    result.col(i) = all[static_cast<std::size_t>(i)].twin;
+  return result;
+}
+
+Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
   const Eigen::MatrixXd deviations = data.colwise() - centre;
   Eigen::ArrayXXd logs(static_cast<Eigen::Index>(levels.size()), data.cols());
@@ -127,14 +135,43 @@ Eigen::ArrayXd Predictive::surprise(const Eigen::Ref<const Eigen::MatrixXd> &dat
     logs.row(l) = -level.matrixLLT().diagonal().array().log().sum() -
                   0.5 * level.matrixL().solve(deviations).colwise().squaredNorm().array();
   }
-  return -log_sums(logs);
+  return log_sums(logs);
 }
 
-double Predictive::refuted_by(const Predictive &truth, const double level) const
+Contest::Contest(std::vector<Predictive> competing) : models(std::move(competing))
 {
-  const auto refuted = std::count_if(truth.all.begin(), truth.all.end(),
-                                     [&](const Conditional &one) { return p(one.twin) < level; });
-  return static_cast<double>(refuted) / static_cast<double>(truth.all.size());
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    const Eigen::ArrayXd of_twins = advantage(m, models[m].twins());
+    tails.emplace_back(std::vector<double>(of_twins.begin(), of_twins.end()));
+  }
+}
+
+Eigen::ArrayXd Contest::advantage(const std::size_t model,
+                                  const Eigen::Ref<const Eigen::MatrixXd> &data) const
+{
+  Eigen::ArrayXd best = Eigen::ArrayXd::Constant(data.cols(), -1e300);
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (m != model)
+      best = best.max(models[m].log_density(data));
+  return best - models[model].log_density(data);
+}
+
+double Contest::p(const std::size_t model, const Eigen::VectorXd &data) const
+{
+  const double alone = models[model].p(data);
+  if (models.size() == 1)
+    return alone;
+  constexpr double tests = 2.; // Bonferroni
+  return std::min(1., tests * std::min(alone, tails[model].p(advantage(model, data)(0))));
+}
+
+double Contest::refuted_by(const std::size_t model, const std::size_t truth,
+                           const double level) const
+{
+  const auto &draws = models[truth].draws();
+  const auto refuted = std::count_if(draws.begin(), draws.end(),
+                                     [&](const auto &draw) { return p(model, draw.twin) < level; });
+  return static_cast<double>(refuted) / static_cast<double>(draws.size());
 }
 
 } // namespace eunoe::discovery

@@ -25,7 +25,9 @@ public:
   Json test(const Evidence &evidence, Findings &findings);
 
 private:
-  Predictive predict(const Evidence &fit, const Evidence &held_out, const Model &model) const;
+  /// Predictions of the base model and, after it, of others.
+  Contest predict(const Evidence &fit, const Evidence &held_out,
+                  const std::vector<Model> &models) const;
   /// Whether more runs could change what the data say of a model of the answer.
   bool is_doubtful(const Evidence &fit, const Evidence &held_out, const std::vector<Model> &models,
                    const Findings &findings) const;

@@ -41,10 +41,8 @@ class Predictive
 public:
   Predictive(const Evidence &evidence, const PosteriorDraws &posterior, std::uint32_t seed);
 
-  double p(const Eigen::VectorXd &data) const { return tail.p(surprise(data)(0)); }
+  double p(const Eigen::VectorXd &data) const { return tail.p(-log_density(data)(0)); }
   const Eigen::VectorXd &mean() const { return centre; }
-  /// Share of another model's twins that this one is refuted by at a level.
-  double refuted_by(const Predictive &truth, double level) const;
   /// Of data about the mean.
   const Eigen::LLT<Eigen::MatrixXd> &covariance() const { return llt; }
 
@@ -57,16 +55,39 @@ public:
   };
   const std::vector<Conditional> &draws() const { return all; }
 
-private:
-  /// Of data in columns: less the logarithm of their probability density, whatever the level of the
-  /// instrument's noise is.
-  Eigen::ArrayXd surprise(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// The examples, in columns.
+  Eigen::MatrixXd twins() const;
+  /// Logarithm of the probability density of data in columns, whatever the level of the
+  /// instrument's noise is, but for a constant.
+  Eigen::ArrayXd log_density(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
+private:
   std::vector<Conditional> all;
   Eigen::VectorXd centre;
   Eigen::LLT<Eigen::MatrixXd> llt;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> levels; ///< of the covariance, by noise
   Tail tail;
+};
+
+/// Competing models that predict the same data. One is refuted not only where it does not describe
+/// them, but also where another predicts them so much better as it rarely does if the first is true
+/// (the most powerful test between two; Neyman and Pearson 1933). Twins tell how rarely.
+class Contest
+{
+public:
+  explicit Contest(std::vector<Predictive> models);
+
+  /// Probability of data that speak against a model as much as these do if it is true.
+  double p(std::size_t model, const Eigen::VectorXd &data) const;
+  /// Share of another model's twins that a model is refuted by at a level.
+  double refuted_by(std::size_t model, std::size_t truth, double level) const;
+
+private:
+  /// Log density of the best of the others over that of a model.
+  Eigen::ArrayXd advantage(std::size_t model, const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+
+  std::vector<Predictive> models;
+  std::vector<Tail> tails; ///< of the advantage over each model if it is true
 };
 
 } // namespace eunoe::discovery
