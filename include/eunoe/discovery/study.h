@@ -16,7 +16,7 @@ namespace eunoe::discovery {
 /// Options of a study. A *replicate* is one run of every experiment that is measured.
 struct StudyOptions
 {
-  double level = 0.05;             ///< probability of a false alarm that is accepted
+  double level = 0.02;             ///< probability of a false alarm that is accepted
   unsigned int null_runs = 30;     ///< first replicates of the base model, at least 8
   unsigned int nuisance_runs = 10; ///< first replicates on either side of each nuisance
   unsigned int validate_runs = 8;  ///< runs of each held-out experiment for each model
