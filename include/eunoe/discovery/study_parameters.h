@@ -53,9 +53,6 @@ public:
   /// All entries, with one of each of the numbered subsections: see describe_entries.
   static std::string description();
 
-  /// Where the results go.
-  std::string output_file(const std::string &name) const { return output_path + "/" + name; }
-
   /// File in which simulations are kept.
   std::string table_file() const;
 

@@ -22,10 +22,8 @@ Modes::Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviat
   }
 
   matrix = Eigen::MatrixXd::Zero(n_modes, static_cast<Eigen::Index>(points.size()));
-  std::map<std::string, int> numbers;
   Eigen::Index row = 0;
   for (const auto &[name, members] : sorted) {
-    const int number = numbers.emplace(name.first, static_cast<int>(numbers.size())).first->second;
     Group group{name.first, name.second, members, {}};
     const auto n = static_cast<Eigen::Index>(members.size());
     for (Eigen::Index m = 0; m < std::min(n, most_modes); ++m, ++row) {
@@ -35,7 +33,6 @@ Modes::Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviat
             norm * std::cos(M_PI * static_cast<double>(m) * (static_cast<double>(k) + 0.5) /
                             static_cast<double>(n));
       group.modes.push_back(row);
-      experiment.push_back(number);
     }
     all_groups.push_back(group);
   }

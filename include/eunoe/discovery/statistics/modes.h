@@ -36,9 +36,6 @@ public:
   Eigen::Index n_modes() const { return matrix.rows(); }
   const std::vector<Group> &groups() const { return all_groups; }
 
-  /// Number of the experiment to which a mode belongs.
-  const std::vector<int> &experiment_of_mode() const { return experiment; }
-
   /// Modes of values at the data points (or of differences of values).
   Eigen::VectorXd reduce(const Eigen::VectorXd &values) const
   {
@@ -54,7 +51,6 @@ private:
   Eigen::VectorXd scale;
   Eigen::MatrixXd matrix;
   std::vector<Group> all_groups;
-  std::vector<int> experiment;
 };
 
 } // namespace eunoe::discovery
