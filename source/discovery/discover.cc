@@ -299,7 +299,7 @@ void Study::run()
              (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
                                       format(last["probability"].get<double>()) + ")"
                                 : ", p = " + format(findings.p_nothing)));
-    if (curve.is_settled(*round, options.level) || !design.refine(round->evidence, findings.models))
+    if (curve.is_settled(*round, options.level) || !design.refine(round->evidence, findings))
       break;
   }
   round->look(rule);

@@ -311,7 +311,10 @@ void pairs()
   for (int k = 0; k < rounds; ++k) {
     const Target target = lab.target(truth, 3);
     const Evidence evidence(target, lab.space);
-    lab.design.refine(evidence, evidence.models(target.data()));
+    Findings findings;
+    findings.models = evidence.models(target.data());
+    findings.detected = true;
+    lab.design.refine(evidence, findings);
   }
   {
     const Target target = lab.target(truth, 3);

@@ -132,7 +132,7 @@ void observe_level(const RecordedTable &table, StudyOptions options, const std::
   while (true) {
     const Target now = target(drawn.data);
     const Evidence evidence(now, space);
-    if (!design.refine(evidence, weigh(evidence, options, DecisionRule().quick()).models))
+    if (!design.refine(evidence, weigh(evidence, options, DecisionRule().quick())))
       break;
   }
   std::map<double, unsigned int> below = {{0.05, 0}, {0.01, 0}, {0.001, 0}};

@@ -108,8 +108,7 @@ void Design::run_effects(const std::function<Target()> &estimate)
   }
 }
 
-std::vector<Design::Wish> Design::wishes(const Evidence &evidence,
-                                         const std::vector<Model> &models) const
+std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const Findings &findings) const
 {
   const Target &target = evidence.target();
   const Eigen::VectorXd &data = target.data();
@@ -124,8 +123,10 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence,
       logs.push_back(optimistic[i]);
     }
   }
-  for (const Model &model : models)
-    if (model.effects.size() == 2) {
+  // Something is detected by the evidence of single effects. Before that, the many pairs, each of
+  // which may hope for a little, would only take runs from these.
+  for (const Model &model : findings.models)
+    if (findings.detected && model.effects.size() == 2) {
       const double hope = evidence.optimistic_pair(model, data);
       for (const auto &[k, amplitude] : model.best) {
         list.push_back({k, amplitude, unknown(target, target.predict({{k, amplitude}}))});
@@ -175,9 +176,9 @@ bool Design::run(std::vector<Wish> list)
   return samples.n_asked() > before;
 }
 
-bool Design::refine(const Evidence &evidence, const std::vector<Model> &models)
+bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
-  return run(wishes(evidence, models));
+  return run(wishes(evidence, findings));
 }
 
 bool Design::fill(const Evidence &evidence)

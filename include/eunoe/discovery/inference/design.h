@@ -1,7 +1,7 @@
 #ifndef eunoe_discovery_inference_design_h
 #define eunoe_discovery_inference_design_h
 
-#include <eunoe/discovery/inference/evidence.h>
+#include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/statistics/random_stream.h>
 
 #include <functional>
@@ -26,7 +26,7 @@ public:
   /// Runs where it is expected to tell most: near the amplitudes at which models would be the
   /// likeliest if they were known better, by the error of their emulator.
   /// @return whether anything could be run
-  bool refine(const Evidence &evidence, const std::vector<Model> &models);
+  bool refine(const Evidence &evidence, const Findings &findings);
 
   /// Runs where the emulators of effects know least, whatever will be measured.
   /// @return whether anything could be run
@@ -39,7 +39,7 @@ private:
     std::size_t effect;
     double amplitude, weight;
   };
-  std::vector<Wish> wishes(const Evidence &evidence, const std::vector<Model> &models) const;
+  std::vector<Wish> wishes(const Evidence &evidence, const Findings &findings) const;
   bool run(std::vector<Wish> wishes);
   Eigen::VectorXd draw_nuisances();
   DesignPoint point(std::size_t effect, double amplitude);
