@@ -92,7 +92,7 @@ EUNOE_MPI_TEST()
 
   // Behind each bound: how often a sample of this size is beyond it at the suite's rate.
   const Answers nothing = interpolated(table, {"none"}, 1, 5);
-  // 5 % false alarms: 0.1 %.
+  // 2 % false alarms: 0.01 %.
   check("false alarms", nothing.detected <= 2, nothing.text());
   const Answers strong = interpolated(table, {"single", 8., 1}, 1, 6);
   // At least 97 % detected: 1.2 %. 85 % of first names right: 0.6 %; a guess reaches that in 0.2
@@ -119,7 +119,7 @@ EUNOE_MPI_TEST()
     if (answers.studies < enough)
       answers.add(simulated_study(table, left_out, 1, small()));
   }
-  // 5 % false alarms: 0.3 %.
+  // 2 % false alarms: 0.04 %.
   check("simulations of the base model as data", simulated_nothing.detected <= 1,
         simulated_nothing.text());
   // At least 97 % detected: 0.1 %; 5 % wrong names: 0.3 %.
