@@ -153,7 +153,7 @@ Eigen::ArrayXd Contest::advantage(const std::size_t model,
   for (std::size_t m = 0; m < models.size(); ++m)
     if (m != model)
       best = best.max(models[m].log_density(data));
-  return best - models[model].log_density(data);
+  return (best - models[model].log_density(data)).max(0.);
 }
 
 double Contest::p(const std::size_t model, const Eigen::VectorXd &data) const
