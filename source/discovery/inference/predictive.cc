@@ -153,7 +153,7 @@ Eigen::ArrayXd Contest::advantage(const std::size_t model,
   for (std::size_t m = 0; m < models.size(); ++m)
     if (m != model)
       best = best.max(models[m].log_density(data));
-  return (best - models[model].log_density(data)).max(0.);
+  return best - models[model].log_density(data);
 }
 
 double Contest::p(const std::size_t model, const Eigen::VectorXd &data) const
@@ -161,8 +161,11 @@ double Contest::p(const std::size_t model, const Eigen::VectorXd &data) const
   const double alone = models[model].p(data);
   if (models.size() == 1)
     return alone;
+  // Where a model is the best, nothing speaks for another one, however rare that distance is.
+  const double ahead = advantage(model, data)(0);
+  const double beside_others = ahead > 0. ? tails[model].p(ahead) : 1.;
   constexpr double tests = 2.; // Bonferroni
-  return std::min(1., tests * std::min(alone, tails[model].p(advantage(model, data)(0))));
+  return std::min(1., tests * std::min(alone, beside_others));
 }
 
 double Contest::refuted_by(const std::size_t model, const std::size_t truth,

@@ -83,8 +83,7 @@ public:
   double refuted_by(std::size_t model, std::size_t truth, double level) const;
 
 private:
-  /// Log density of the best of the others over that of a model; nothing where that is the best, as
-  /// then nothing speaks for another one.
+  /// Log density of the best of the others over that of a model.
   Eigen::ArrayXd advantage(std::size_t model, const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
   std::vector<Predictive> models;
