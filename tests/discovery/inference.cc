@@ -133,8 +133,8 @@ void contests(Laboratory &lab)
   const auto predict = [&](const bool is_right, const std::uint32_t seed) {
     return Predictive(evidence, draw_posterior(evidence, likeliest(is_right), 400, seed), seed);
   };
-  const Predictive fresh = predict(true, 7), wrong = predict(false, 2);
-  const Contest contest({predict(true, 2), wrong});
+  const Predictive fresh = predict(true, 7), right = predict(true, 2), wrong = predict(false, 2);
+  const Contest contest({right, wrong});
   constexpr double level = 0.05;
   unsigned int truths = 0, alone = 0, against_right = 0;
   for (const Predictive::Conditional &draw : fresh.draws()) {
@@ -149,6 +149,17 @@ void contests(Laboratory &lab)
         std::to_string(alone) + ", " + std::to_string(against_right));
   check_close("and says how often it will", contest.refuted_by(1, 0, level), against_right / number,
               0.1);
+  // Data as far from the right model as they may be without the wrong one being better.
+  Eigen::VectorXd between = right.mean();
+  const auto is_better = [&] {
+    return right.log_density(between)(0) > wrong.log_density(between)(0);
+  };
+  const Eigen::VectorXd step = 0.01 * (wrong.mean() - right.mean());
+  for (between += step; is_better(); between += step)
+    ;
+  between -= step;
+  check_close("the better model is refuted by its own misfit alone", contest.p(0, between),
+              std::min(1., 2. * right.p(between)), 0.);
 }
 
 /// Most runs have one effect, as where a study has followed a false trail. Data without any effect,

@@ -100,7 +100,7 @@ class PageOfAStudy(InFolder):
         table["members of the tie"] = [member | {"p": None} for member in members]
         self.assertNotIn("refute none", held_out_text(study))
         table["members of the tie"] = members
-        members[1]["result"] = "it does not describe the held-out data; the name is withdrawn"
+        members[1]["result"] = "the held-out data refute it; the name is withdrawn"
         self.assertIn("left 2 candidates; the held-out data speak against rolling resistance.",
                       held_out_text(study))
 

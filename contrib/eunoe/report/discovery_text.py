@@ -100,8 +100,7 @@ def _off_catalogue(study: Study) -> list[str]:
     if alike:
         sentences.append("What is missing resembles " + ", ".join(alike) + ".")
     if study.content["gaps"].get("held-out", {}).get("result", "").endswith("withdrawn"):
-        sentences.append("An effect had been named, but with it the model does not describe the held-out "
-                         "data; the name is withdrawn.")
+        sentences.append("An effect had been named, but the held-out data refute it; the name is withdrawn.")
     return sentences
 
 

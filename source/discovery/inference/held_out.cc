@@ -12,11 +12,13 @@ namespace {
 constexpr std::size_t most_tested = 4;
 /// Where the result is in doubt, this many times the runs, as far as the budget has room.
 constexpr unsigned int in_doubt = 3;
+/// Places in a contest.
+constexpr std::size_t base = 0, first = 1;
 
 std::string sentence(const double p_before, const double p_after, const double level)
 {
   if (p_after < level)
-    return "it does not describe the held-out data; the name is withdrawn";
+    return "the held-out data refute it; the name is withdrawn";
   return p_before < level ? "the base model is refuted, this one describes the data"
                           : "both models describe the held-out data";
 }
@@ -38,46 +40,52 @@ std::uint64_t HeldOut::n_runs() const
   return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
 }
 
-Contest HeldOut::predict(const Evidence &fit, const Evidence &held_out,
-                         const std::vector<Model> &models) const
+std::unique_ptr<HeldOut::Comparison> HeldOut::compare(const Evidence &fit,
+                                                      const std::vector<Model> &models,
+                                                      const unsigned int runs)
 {
-  std::vector<Predictive> all;
-  const auto add = [&](const Model &model) {
-    all.emplace_back(held_out, draw_posterior(fit, model, rule.predictive_draws, options.seed),
-                     options.seed + 3);
-  };
-  add({});
-  for (const Model &model : models)
-    add(model);
-  return Contest(std::move(all));
+  run_near(fit, models, runs, space, experiments, samples);
+  std::vector<std::string> notes;
+  const auto measured = sort_by_experiment(data.held_out, samples, samples.simulator(), notes);
+  if (measured.empty())
+    return nullptr;
+  return std::make_unique<Comparison>(
+      Target(measured, samples, space, options.model_tolerance), space,
+      [&](const Evidence &held_out) {
+        std::vector<Predictive> all;
+        const auto add = [&](const Model &model) {
+          all.emplace_back(held_out,
+                           draw_posterior(fit, model, rule.predictive_draws, options.seed),
+                           options.seed + 3);
+        };
+        add({});
+        for (const Model &model : models)
+          add(model);
+        return Contest(std::move(all));
+      });
 }
 
-bool HeldOut::is_doubtful(const Evidence &fit, const Evidence &held_out,
-                          const std::vector<Model> &models, const Findings &findings) const
+bool HeldOut::is_doubtful(const Comparison &comparison, const std::size_t n_answers) const
 {
   const double clearly = 0.1 * rule.refuted, hardly = 4. * rule.doubtful;
-  const Contest contest = predict(fit, held_out, models);
-  for (std::size_t m = 0; m < std::min(models.size(), findings.answer.size()); ++m) {
-    const double p = contest.p(m + 1, held_out.target().data());
+  for (std::size_t m = 0; m < n_answers; ++m) {
+    const double p = comparison.p(first + m);
     if (p > clearly && p < hardly)
       return true;
   }
   return false;
 }
 
-Json HeldOut::test_models(const Evidence &fit, const Evidence &held_out,
-                          const std::vector<Model> &models, Findings &findings) const
+Json HeldOut::test_models(const Comparison &comparison, const std::vector<Model> &models,
+                          Findings &findings) const
 {
-  const Eigen::VectorXd &measured = held_out.target().data();
-  const Contest contest = predict(fit, held_out, models);
-  constexpr std::size_t base = 0, first = 1; // places in the contest
-  const double p_base = contest.p(base, measured);
+  const double p_base = comparison.p(base);
   Json table = {{"p before", p_base}};
   Json members = Json::array(), refutable = Json::array();
   std::vector<Model> kept;
   const bool is_answered = findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const double p = contest.p(first + m, measured);
+    const double p = comparison.p(first + m);
     const bool in_answer = m < findings.answer.size();
     if (in_answer && is_answered) {
       members.push_back({{"effects", name_of(models[m], space)},
@@ -93,12 +101,13 @@ Json HeldOut::test_models(const Evidence &fit, const Evidence &held_out,
       refutable.push_back(
           {{"effects", name_of(models[m], space)},
            {"p", p},
-           {"would be refuted", contest.refuted_by(first + m, first, rule.refuted)}});
+           {"would be refuted", comparison.contest.refuted_by(first + m, first, rule.refuted)}});
   }
   if (!models.empty()) {
-    const Json nothing = {{"effects", "nothing"},
-                          {"p", p_base},
-                          {"would be refuted", contest.refuted_by(base, first, rule.refuted)}};
+    const Json nothing = {
+        {"effects", "nothing"},
+        {"p", p_base},
+        {"would be refuted", comparison.contest.refuted_by(base, first, rule.refuted)}};
     refutable.insert(refutable.begin(), nothing);
   }
   table["could have refuted"] = refutable;
@@ -135,26 +144,18 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
         models.push_back(model);
   if (models.size() > most_tested)
     models.resize(most_tested);
-  std::vector<std::string> notes;
-  const auto run_and_compare = [&](const unsigned int runs) -> std::optional<Target> {
-    run_near(evidence, models, runs, space, experiments, samples);
-    const auto measured = sort_by_experiment(data.held_out, samples, samples.simulator(), notes);
-    return measured.empty()
-               ? std::nullopt
-               : std::make_optional<Target>(measured, samples, space, options.model_tolerance);
-  };
-  std::optional<Target> target;
+  std::unique_ptr<Comparison> comparison;
   try {
-    target = run_and_compare(options.validate_runs);
-    if (target && is_doubtful(evidence, Evidence(*target, space), models, findings))
-      target = run_and_compare(in_doubt * options.validate_runs);
+    comparison = compare(evidence, models, options.validate_runs);
+    if (comparison && is_doubtful(*comparison, std::min(models.size(), findings.answer.size())))
+      comparison = compare(evidence, models, in_doubt * options.validate_runs);
   } catch (const UserError &) {
     return {{"result", "the held-out experiments could not be simulated"}};
   }
-  if (!target)
+  if (!comparison)
     return {{"result", "the held-out data do not vary"}};
-  const Evidence held_out(*target, space);
-  const Json tested = test_models(evidence, held_out, models, findings);
+  const Evidence &held_out = comparison->evidence;
+  const Json tested = test_models(*comparison, models, findings);
 
   const auto fitted = [&](const Model &model) {
     const Eigen::VectorXd nuisances =
@@ -164,10 +165,10 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   std::optional<Fitted> after;
   if (!models.empty())
     after = fitted(findings.answer.empty() ? models.front() : findings.answer.front());
-  const Fitted base = fitted({});
-  Json table = describe_gap(held_out, base, after);
+  const Fitted before = fitted({});
+  Json table = describe_gap(held_out, before, after);
   table.update(tested);
-  table["envelopes"] = describe_envelopes(held_out, base, after, options.level);
+  table["envelopes"] = describe_envelopes(held_out, before, after, options.level);
   return table;
 }
 

@@ -141,40 +141,47 @@ Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &
 Contest::Contest(std::vector<Predictive> competing) : models(std::move(competing))
 {
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const Eigen::ArrayXd of_twins = advantage(m, models[m].twins());
+    const Eigen::ArrayXd of_twins = advantage(m, log_densities(models[m].twins()));
     tails.emplace_back(std::vector<double>(of_twins.begin(), of_twins.end()));
   }
 }
 
-Eigen::ArrayXd Contest::advantage(const std::size_t model,
-                                  const Eigen::Ref<const Eigen::MatrixXd> &data) const
+Eigen::ArrayXXd Contest::log_densities(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  Eigen::ArrayXd best = Eigen::ArrayXd::Constant(data.cols(), -1e300);
+  Eigen::ArrayXXd result(static_cast<Eigen::Index>(models.size()), data.cols());
   for (std::size_t m = 0; m < models.size(); ++m)
-    if (m != model)
-      best = best.max(models[m].log_density(data));
-  return best - models[model].log_density(data);
+    result.row(static_cast<Eigen::Index>(m)) = models[m].log_density(data).transpose();
+  return result;
 }
 
-double Contest::p(const std::size_t model, const Eigen::VectorXd &data) const
+Eigen::ArrayXd Contest::advantage(const std::size_t model, const Eigen::ArrayXXd &log_densities)
 {
-  const double alone = models[model].p(data);
-  if (models.size() == 1)
-    return alone;
-  // Where a model is the best, nothing speaks for another one, however rare that distance is.
-  const double ahead = advantage(model, data)(0);
-  const double beside_others = ahead > 0. ? tails[model].p(ahead) : 1.;
-  constexpr double tests = 2.; // Bonferroni
-  return std::min(1., tests * std::min(alone, beside_others));
+  const auto m = static_cast<Eigen::Index>(model);
+  Eigen::ArrayXXd others = log_densities;
+  others.row(m) = -1e300;
+  return (others.colwise().maxCoeff() - log_densities.row(m)).transpose();
+}
+
+Eigen::ArrayXd Contest::p_values(const std::size_t model,
+                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const
+{
+  const Eigen::ArrayXXd densities = log_densities(data);
+  const Eigen::ArrayXd ahead = advantage(model, densities);
+  Eigen::ArrayXd result(data.cols());
+  for (Eigen::Index k = 0; k < data.cols(); ++k) {
+    const double alone = models[model].p(densities(static_cast<Eigen::Index>(model), k));
+    // Where a model is the best, nothing speaks for another one, however rare that distance is.
+    const double beside_others = ahead(k) > 0. ? tails[model].p(ahead(k)) : 1.;
+    const double tests = std::min<double>(2., static_cast<double>(models.size())); // Bonferroni
+    result(k) = std::min(1., tests * std::min(alone, beside_others));
+  }
+  return result;
 }
 
 double Contest::refuted_by(const std::size_t model, const std::size_t truth,
                            const double level) const
 {
-  const auto &draws = models[truth].draws();
-  const auto refuted = std::count_if(draws.begin(), draws.end(),
-                                     [&](const auto &draw) { return p(model, draw.twin) < level; });
-  return static_cast<double>(refuted) / static_cast<double>(draws.size());
+  return (p_values(model, models[truth].twins()) < level).cast<double>().mean();
 }
 
 } // namespace eunoe::discovery

@@ -4,6 +4,9 @@
 #include <eunoe/discovery/inference/describe.h>
 #include <eunoe/discovery/inference/predictive.h>
 
+#include <functional>
+#include <memory>
+
 namespace eunoe::discovery {
 
 /// Tests the answer on experiments whose data were not used: runs them with the base model, with
@@ -25,13 +28,26 @@ public:
   Json test(const Evidence &evidence, Findings &findings);
 
 private:
-  /// Predictions of the base model and, after it, of others.
-  Contest predict(const Evidence &fit, const Evidence &held_out,
-                  const std::vector<Model> &models) const;
+  /// The held-out data beside the predictions of the base model and, after it, of others.
+  struct Comparison
+  {
+    Comparison(Target of_data, const FactorSpace &space,
+               const std::function<Contest(const Evidence &)> &predict)
+        : target(std::move(of_data)), evidence(target, space), contest(predict(evidence))
+    {
+    }
+    double p(std::size_t place) const { return contest.p(place, target.data()); }
+
+    const Target target;
+    const Evidence evidence;
+    const Contest contest;
+  };
+  /// Runs the models and compares; null if the data do not vary.
+  std::unique_ptr<Comparison> compare(const Evidence &fit, const std::vector<Model> &models,
+                                      unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
-  bool is_doubtful(const Evidence &fit, const Evidence &held_out, const std::vector<Model> &models,
-                   const Findings &findings) const;
-  Json test_models(const Evidence &fit, const Evidence &held_out, const std::vector<Model> &models,
+  bool is_doubtful(const Comparison &comparison, std::size_t n_answers) const;
+  Json test_models(const Comparison &comparison, const std::vector<Model> &models,
                    Findings &findings) const;
 
   const StudyOptions &options;

@@ -41,7 +41,8 @@ class Predictive
 public:
   Predictive(const Evidence &evidence, const PosteriorDraws &posterior, std::uint32_t seed);
 
-  double p(const Eigen::VectorXd &data) const { return tail.p(-log_density(data)(0)); }
+  double p(const Eigen::VectorXd &data) const { return p(log_density(data)(0)); }
+  double p(double log_density) const { return tail.p(-log_density); }
   const Eigen::VectorXd &mean() const { return centre; }
   /// Of data about the mean.
   const Eigen::LLT<Eigen::MatrixXd> &covariance() const { return llt; }
@@ -78,13 +79,20 @@ public:
   explicit Contest(std::vector<Predictive> models);
 
   /// Probability of data that speak against a model as much as these do if it is true.
-  double p(std::size_t model, const Eigen::VectorXd &data) const;
+  double p(std::size_t model, const Eigen::VectorXd &data) const
+  {
+    return p_values(model, data)(0);
+  }
   /// Share of another model's twins that a model is refuted by at a level.
   double refuted_by(std::size_t model, std::size_t truth, double level) const;
 
 private:
-  /// Log density of the best of the others over that of a model.
-  Eigen::ArrayXd advantage(std::size_t model, const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// Log densities of data in columns, a row for each model.
+  Eigen::ArrayXXd log_densities(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// That of the best of the others over that of a model.
+  static Eigen::ArrayXd advantage(std::size_t model, const Eigen::ArrayXXd &log_densities);
+  /// Of data in columns.
+  Eigen::ArrayXd p_values(std::size_t model, const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
   std::vector<Predictive> models;
   std::vector<Tail> tails; ///< of the advantage over each model if it is true
