@@ -247,6 +247,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--case", type=Path, default=CASES / "discovery" / "foreign" / "heap.prm")
     arguments.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="entry of the case")
     arguments.add_argument("--experiment", default="heap")
+    arguments.add_argument("--held-out", action="store_true", help="these rows are not for the fit")
     arguments.add_argument("--repeats", type=int, default=5)
     arguments.add_argument("--first-seed", type=int, default=1)
     arguments.add_argument("--friction", type=float, help="true coefficient; else the case's")
@@ -256,7 +257,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--rest", type=float, default=0.05, help="time for coming to rest (s)")
     options = arguments.parse_args(words)
     options.folder = options.folder.resolve()
-    options.held_out, options.only = False, ""
+    options.only = ""
     return options
 
 
