@@ -77,6 +77,11 @@ bool is_needless(const Model &model, const std::vector<Model> &answer)
   });
 }
 
+Verdict verdict_of(const Findings &findings)
+{
+  return findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
+}
+
 } // namespace
 
 void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
@@ -108,8 +113,32 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
     findings.verdict = Verdict::off_catalogue;
     return;
   }
-  findings.verdict =
-      findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
+  findings.verdict = verdict_of(findings);
+}
+
+void withdraw(const std::vector<Model> &refuted, Findings &findings)
+{
+  const auto is_refuted = [&](const Model &model) {
+    return std::any_of(refuted.begin(), refuted.end(), [&](const Model &other) {
+      return !model.is_discrepancy && model.effects == other.effects;
+    });
+  };
+  std::vector<Model> &answer = findings.answer, &models = findings.models;
+  if (std::all_of(answer.begin(), answer.end(), is_refuted)) {
+    findings.verdict = Verdict::off_catalogue;
+    return;
+  }
+  answer.erase(std::remove_if(answer.begin(), answer.end(), is_refuted), answer.end());
+  double left = 0.;
+  for (Model &model : models)
+    left += model.probability = is_refuted(model) ? 0. : model.probability;
+  for (std::vector<Model> *list : {&models, &answer})
+    for (Model &model : *list)
+      model.probability /= left;
+  std::stable_sort(models.begin(), models.end(),
+                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
+  findings.off_catalogue /= left;
+  findings.verdict = verdict_of(findings);
 }
 
 } // namespace eunoe::discovery

@@ -81,53 +81,49 @@ Json HeldOut::test_models(const Comparison &comparison, const std::vector<Model>
 {
   const double p_base = comparison.p(base);
   Json table = {{"p before", p_base}};
-  Json members = Json::array(), refutable = Json::array();
-  std::vector<Model> kept;
+  std::vector<double> p;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    p.push_back(comparison.p(first + m));
   const bool is_answered = findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    const double p = comparison.p(first + m);
-    const bool in_answer = m < findings.answer.size();
-    if (in_answer && is_answered) {
-      members.push_back({{"effects", name_of(models[m], space)},
-                         {"p", p},
-                         {"result", sentence(p_base, p, rule.refuted)}});
-      if (p >= rule.refuted)
-        kept.push_back(models[m]);
-      findings.none_of_these |= m == 0 && p < rule.doubtful;
-    }
-    if (m == 0)
-      table["p after"] = p;
-    else
-      refutable.push_back(
-          {{"effects", name_of(models[m], space)},
-           {"p", p},
-           {"would be refuted", comparison.contest.refuted_by(first + m, first, rule.refuted)}});
-  }
+  const std::size_t n_members = is_answered ? std::min(models.size(), findings.answer.size()) : 0;
+  // The likeliest model of the answer that the data do not refute.
+  std::size_t front = 0;
+  while (front < n_members && p[front] < rule.refuted)
+    ++front;
+  if (front == n_members)
+    front = 0;
   if (!models.empty()) {
-    const Json nothing = {
-        {"effects", "nothing"},
-        {"p", p_base},
-        {"would be refuted", comparison.contest.refuted_by(base, first, rule.refuted)}};
-    refutable.insert(refutable.begin(), nothing);
+    table["p after"] = p[front];
+    Json refutable = {
+        {{"effects", "nothing"},
+         {"p", p_base},
+         {"would be refuted", comparison.contest.refuted_by(base, first + front, rule.refuted)}}};
+    for (std::size_t m = 0; m < models.size(); ++m)
+      if (m != front)
+        refutable.push_back({{"effects", name_of(models[m], space)},
+                             {"p", p[m]},
+                             {"would be refuted", comparison.contest.refuted_by(
+                                                      first + m, first + front, rule.refuted)}});
+    table["could have refuted"] = refutable;
   }
-  table["could have refuted"] = refutable;
   if (!is_answered) {
     table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
                                             : "the base model describes the held-out data";
     return table;
   }
-  // Those that were not tested stay.
-  for (std::size_t m = models.size(); m < findings.answer.size(); ++m)
-    kept.push_back(findings.answer[m]);
+  Json members = Json::array();
+  for (std::size_t m = 0; m < n_members; ++m)
+    members.push_back({{"effects", name_of(models[m], space)},
+                       {"p", p[m]},
+                       {"result", sentence(p_base, p[m], rule.refuted)}});
   table["members of the tie"] = members;
-  table["result"] = members[0]["result"];
-  // Models that the data refute leave; if none is left, so does the name.
-  if (kept.empty())
-    findings.verdict = Verdict::off_catalogue;
-  else {
-    findings.answer = kept;
-    findings.verdict = kept.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
-  }
+  table["result"] = members[front]["result"];
+  findings.none_of_these |= p[front] < rule.doubtful;
+  std::vector<Model> refuted;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (p[m] < rule.refuted)
+      refuted.push_back(models[m]);
+  withdraw(refuted, findings);
   return table;
 }
 

@@ -54,6 +54,10 @@ void temper(std::vector<Model> &models, double temperature);
 void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
             Findings &findings);
 
+/// Takes models that are refuted by other data out of an answer, and shares their probability among
+/// the rest. If none is left, so is no name.
+void withdraw(const std::vector<Model> &refuted, Findings &findings);
+
 /// Probability that an effect is among those that are missing.
 double probability_of(const std::vector<Model> &models, std::size_t effect);
 
