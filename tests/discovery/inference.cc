@@ -328,7 +328,7 @@ void withdrawals()
   before.off_catalogue = 0.02;
   before.verdict = Verdict::tie;
   Findings after = before;
-  withdraw({a}, after);
+  withdraw({a}, {}, after);
   check("the model that is left is the name", after.verdict == Verdict::named &&
                                                   after.answer.size() == 1 &&
                                                   after.answer[0].effects == b.effects);
@@ -338,10 +338,10 @@ void withdrawals()
             after.models.front().effects == b.effects);
   after = before;
   after.none_of_these = true;
-  withdraw({a}, after);
+  withdraw({a}, {}, after);
   check("it is no name where it may be none of them", after.verdict == Verdict::tie);
   after = before;
-  withdraw({a, b}, after);
+  withdraw({a, b}, {}, after);
   check("without a model there is no name",
         after.verdict == Verdict::off_catalogue && after.answer.size() == 2);
 }

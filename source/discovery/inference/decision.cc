@@ -65,6 +65,13 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
   return findings;
 }
 
+Verdict verdict_of(const Findings &findings)
+{
+  if (findings.answer.empty())
+    return Verdict::off_catalogue;
+  return findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
+}
+
 namespace {
 
 /// Whether a model is one of the answer with another effect that it hardly needs, as it has not
@@ -77,16 +84,10 @@ bool is_needless(const Model &model, const std::vector<Model> &answer)
   });
 }
 
-Verdict verdict_of(const Findings &findings)
+/// The likeliest models, as many as have the probability of an answer together.
+void choose(const DecisionRule &rule, Findings &findings)
 {
-  return findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
-}
-
-} // namespace
-
-void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
-            Findings &findings)
-{
+  findings.answer.clear();
   double sum = 0.;
   for (const Model &model : findings.models) {
     if (sum >= rule.credible)
@@ -97,47 +98,50 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
     else if (!is_needless(model, findings.answer))
       findings.answer.push_back(model);
   }
-  const bool is_first = findings.models.front().is_discrepancy;
-  if (!findings.answer.empty()) {
-    const Model &model = findings.answer.front();
-    findings.p_fit = p_of_fit(
-        evidence, model, draw_posterior(evidence, model, rule.predictive_draws, seed), seed + 2);
-    findings.none_of_these |= findings.p_fit < rule.doubtful;
-    if (findings.p_fit < rule.refuted) {
-      // Nothing of the catalogue describes the data if not even the likeliest model does.
-      findings.verdict = Verdict::off_catalogue;
-      return;
-    }
-  }
-  if (is_first || findings.answer.empty()) {
-    findings.verdict = Verdict::off_catalogue;
-    return;
-  }
-  findings.verdict = verdict_of(findings);
 }
 
-void withdraw(const std::vector<Model> &refuted, Findings &findings)
+} // namespace
+
+void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
+            Findings &findings)
+{
+  choose(rule, findings);
+  findings.verdict =
+      findings.models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
+  if (findings.answer.empty())
+    return;
+  const Model &model = findings.answer.front();
+  findings.p_fit = p_of_fit(evidence, model,
+                            draw_posterior(evidence, model, rule.predictive_draws, seed), seed + 2);
+  findings.none_of_these |= findings.p_fit < rule.doubtful;
+  // Nothing of the catalogue describes the data if not even the likeliest model does.
+  if (findings.p_fit < rule.refuted)
+    findings.verdict = Verdict::off_catalogue;
+  else if (findings.verdict != Verdict::off_catalogue)
+    findings.verdict = verdict_of(findings);
+}
+
+void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings)
 {
   const auto is_refuted = [&](const Model &model) {
     return std::any_of(refuted.begin(), refuted.end(), [&](const Model &other) {
       return !model.is_discrepancy && model.effects == other.effects;
     });
   };
-  std::vector<Model> &answer = findings.answer, &models = findings.models;
-  if (std::all_of(answer.begin(), answer.end(), is_refuted)) {
+  if (std::all_of(findings.answer.begin(), findings.answer.end(), is_refuted)) {
     findings.verdict = Verdict::off_catalogue;
     return;
   }
-  answer.erase(std::remove_if(answer.begin(), answer.end(), is_refuted), answer.end());
+  std::vector<Model> &models = findings.models;
   double left = 0.;
   for (Model &model : models)
     left += model.probability = is_refuted(model) ? 0. : model.probability;
-  for (std::vector<Model> *list : {&models, &answer})
-    for (Model &model : *list)
-      model.probability /= left;
+  for (Model &model : models)
+    model.probability /= left;
   std::stable_sort(models.begin(), models.end(),
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
   findings.off_catalogue /= left;
+  choose(rule, findings);
   findings.verdict = verdict_of(findings);
 }
 

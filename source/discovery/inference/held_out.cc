@@ -10,10 +10,18 @@ namespace {
 
 /// Models that are tested: those of the answer, and others that held-out data might speak for.
 constexpr std::size_t most_tested = 4;
+/// Of models that have come into the answer for those that these data refute.
+constexpr std::size_t most_followed = 3;
 /// Where the result is in doubt, this many times the runs, as far as the budget has room.
 constexpr unsigned int in_doubt = 3;
 /// Places in a contest.
 constexpr std::size_t base = 0, first = 1;
+
+bool is_among(const Model &model, const std::vector<Model> &models)
+{
+  return std::any_of(models.begin(), models.end(),
+                     [&](const Model &other) { return other.effects == model.effects; });
+}
 
 std::string sentence(const double p_before, const double p_after, const double level)
 {
@@ -86,44 +94,44 @@ Json HeldOut::test_models(const Comparison &comparison, const std::vector<Model>
     p.push_back(comparison.p(first + m));
   const bool is_answered = findings.verdict == Verdict::named || findings.verdict == Verdict::tie;
   const std::size_t n_members = is_answered ? std::min(models.size(), findings.answer.size()) : 0;
-  // The likeliest model of the answer that the data do not refute.
-  std::size_t front = 0;
-  while (front < n_members && p[front] < rule.refuted)
-    ++front;
-  if (front == n_members)
-    front = 0;
-  if (!models.empty()) {
-    table["p after"] = p[front];
-    Json refutable = {
-        {{"effects", "nothing"},
-         {"p", p_base},
-         {"would be refuted", comparison.contest.refuted_by(base, first + front, rule.refuted)}}};
-    for (std::size_t m = 0; m < models.size(); ++m)
-      if (m != front)
-        refutable.push_back({{"effects", name_of(models[m], space)},
-                             {"p", p[m]},
-                             {"would be refuted", comparison.contest.refuted_by(
-                                                      first + m, first + front, rule.refuted)}});
-    table["could have refuted"] = refutable;
-  }
-  if (!is_answered) {
-    table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
-                                            : "the base model describes the held-out data";
-    return table;
-  }
-  Json members = Json::array();
-  for (std::size_t m = 0; m < n_members; ++m)
-    members.push_back({{"effects", name_of(models[m], space)},
-                       {"p", p[m]},
-                       {"result", sentence(p_base, p[m], rule.refuted)}});
-  table["members of the tie"] = members;
-  table["result"] = members[front]["result"];
-  findings.none_of_these |= p[front] < rule.doubtful;
   std::vector<Model> refuted;
-  for (std::size_t m = 0; m < models.size(); ++m)
+  Json members = Json::array();
+  for (std::size_t m = 0; m < models.size(); ++m) {
     if (p[m] < rule.refuted)
       refuted.push_back(models[m]);
-  withdraw(refuted, findings);
+    if (m < n_members)
+      members.push_back({{"effects", name_of(models[m], space)},
+                         {"p", p[m]},
+                         {"result", sentence(p_base, p[m], rule.refuted)}});
+  }
+  std::size_t front = 0; // that leads the answer
+  if (is_answered) {
+    withdraw(refuted, rule, findings);
+    for (std::size_t m = models.size(); m-- > 0 && !findings.answer.empty();)
+      if (models[m].effects == findings.answer.front().effects)
+        front = m;
+    if (findings.verdict != Verdict::off_catalogue) {
+      findings.none_of_these |= p[front] < rule.doubtful;
+      findings.verdict = verdict_of(findings);
+    }
+    table["members of the tie"] = members;
+    table["result"] = sentence(p_base, p[front], rule.refuted);
+  } else
+    table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
+                                            : "the base model describes the held-out data";
+  if (models.empty())
+    return table;
+  table["p after"] = p[front];
+  const auto by_front = [&](const std::size_t place) {
+    return comparison.contest.refuted_by(place, first + front, rule.refuted);
+  };
+  Json refutable = {{{"effects", "nothing"}, {"p", p_base}, {"would be refuted", by_front(base)}}};
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (m != front)
+      refutable.push_back({{"effects", name_of(models[m], space)},
+                           {"p", p[m]},
+                           {"would be refuted", by_front(first + m)}});
+  table["could have refuted"] = refutable;
   return table;
 }
 
@@ -134,24 +142,34 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   std::vector<Model> models = findings.answer;
   if (findings.detected)
     for (const Model &model : findings.models)
-      if (models.size() < most_tested && model.effects.size() == 1 &&
-          std::none_of(models.begin(), models.end(),
-                       [&](const Model &m) { return m.effects == model.effects; }))
+      if (models.size() < most_tested && model.effects.size() == 1 && !is_among(model, models))
         models.push_back(model);
   if (models.size() > most_tested)
     models.resize(most_tested);
+  const Findings by_fit = findings;
   std::unique_ptr<Comparison> comparison;
-  try {
-    comparison = compare(evidence, models, options.validate_runs);
-    if (comparison && is_doubtful(*comparison, std::min(models.size(), findings.answer.size())))
-      comparison = compare(evidence, models, in_doubt * options.validate_runs);
-  } catch (const UserError &) {
-    return {{"result", "the held-out experiments could not be simulated"}};
+  Json tested;
+  for (bool is_first = true, go_on = true; go_on; is_first = false) {
+    try {
+      comparison = compare(evidence, models, options.validate_runs);
+      if (comparison && is_doubtful(*comparison, std::min(models.size(), by_fit.answer.size())))
+        comparison = compare(evidence, models, in_doubt * options.validate_runs);
+    } catch (const UserError &) {
+      return {{"result", "the held-out experiments could not be simulated"}};
+    }
+    if (!comparison)
+      return {{"result", "the held-out data do not vary"}};
+    findings = by_fit;
+    tested = test_models(*comparison, models, findings);
+    // Models that have come into the answer for those that are refuted.
+    const std::size_t before = models.size();
+    for (const Model &model : findings.answer)
+      if (is_first && findings.verdict != Verdict::off_catalogue &&
+          models.size() < before + most_followed && !is_among(model, models))
+        models.push_back(model);
+    go_on = models.size() > before;
   }
-  if (!comparison)
-    return {{"result", "the held-out data do not vary"}};
   const Evidence &held_out = comparison->evidence;
-  const Json tested = test_models(*comparison, models, findings);
 
   const auto fitted = [&](const Model &model) {
     const Eigen::VectorXd nuisances =

@@ -54,9 +54,12 @@ void temper(std::vector<Model> &models, double temperature);
 void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
             Findings &findings);
 
-/// Takes models that are refuted by other data out of an answer, and shares their probability among
-/// the rest. If none is left, so is no name.
-void withdraw(const std::vector<Model> &refuted, Findings &findings);
+/// Takes models that other data refute out, shares their probability among the rest, and chooses
+/// the answer anew. If they were all of the answer, nothing of the catalogue describes the data.
+void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings);
+
+/// Of an answer that is chosen: no model, one, or several.
+Verdict verdict_of(const Findings &findings);
 
 /// Probability that an effect is among those that are missing.
 double probability_of(const std::vector<Model> &models, std::size_t effect);
