@@ -10,7 +10,8 @@ namespace {
 
 /// Models that are tested: those of the answer, and others that held-out data might speak for.
 constexpr std::size_t most_tested = 4;
-/// Of models that have come into the answer for those that these data refute.
+/// And in a second round of the rest of the answer, where it has many models or others have taken
+/// the place of refuted ones.
 constexpr std::size_t most_followed = 3;
 /// Where the result is in doubt, this many times the runs, as far as the budget has room.
 constexpr unsigned int in_doubt = 3;
@@ -161,7 +162,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
       return {{"result", "the held-out data do not vary"}};
     findings = by_fit;
     tested = test_models(*comparison, models, findings);
-    // Models that have come into the answer for those that are refuted.
+    // The second round has those of the answer that were not among the first.
     const std::size_t before = models.size();
     for (const Model &model : findings.answer)
       if (is_first && findings.verdict != Verdict::off_catalogue &&
