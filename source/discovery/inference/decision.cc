@@ -102,10 +102,9 @@ void choose(const DecisionRule &rule, Findings &findings)
 
 } // namespace
 
-void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
-            Findings &findings)
+void judge(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
+           Findings &findings)
 {
-  choose(rule, findings);
   findings.verdict =
       findings.models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
   if (findings.answer.empty())
@@ -119,6 +118,13 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
     findings.verdict = Verdict::off_catalogue;
   else if (findings.verdict != Verdict::off_catalogue)
     findings.verdict = verdict_of(findings);
+}
+
+void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
+            Findings &findings)
+{
+  choose(rule, findings);
+  judge(evidence, rule, seed, findings);
 }
 
 void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings)

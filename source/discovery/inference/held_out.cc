@@ -85,8 +85,8 @@ bool HeldOut::is_doubtful(const Comparison &comparison, const std::size_t n_answ
   return false;
 }
 
-Json HeldOut::test_models(const Comparison &comparison, const std::vector<Model> &models,
-                          Findings &findings) const
+Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
+                          const std::vector<Model> &models, Findings &findings) const
 {
   const double p_base = comparison.p(base);
   Json table = {{"p before", p_base}};
@@ -111,6 +111,8 @@ Json HeldOut::test_models(const Comparison &comparison, const std::vector<Model>
     for (std::size_t m = models.size(); m-- > 0 && !findings.answer.empty();)
       if (models[m].effects == findings.answer.front().effects)
         front = m;
+    if (front > 0 && findings.verdict != Verdict::off_catalogue)
+      judge(fit, rule, options.seed, findings);
     if (findings.verdict != Verdict::off_catalogue) {
       findings.none_of_these |= p[front] < rule.doubtful;
       findings.verdict = verdict_of(findings);
@@ -156,12 +158,14 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
       if (comparison && is_doubtful(*comparison, std::min(models.size(), by_fit.answer.size())))
         comparison = compare(evidence, models, in_doubt * options.validate_runs);
     } catch (const UserError &) {
-      return {{"result", "the held-out experiments could not be simulated"}};
+      if (is_first)
+        return {{"result", "the held-out experiments could not be simulated"}};
+      break;
     }
     if (!comparison)
       return {{"result", "the held-out data do not vary"}};
     findings = by_fit;
-    tested = test_models(*comparison, models, findings);
+    tested = test_models(evidence, *comparison, models, findings);
     // The second round has those of the answer that were not among the first.
     const std::size_t before = models.size();
     for (const Model &model : findings.answer)

@@ -54,6 +54,10 @@ void temper(std::vector<Model> &models, double temperature);
 void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
             Findings &findings);
 
+/// Whether the model that leads an answer describes the data, and the verdict that follows.
+void judge(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
+           Findings &findings);
+
 /// Takes models that other data refute out, shares their probability among the rest, and chooses
 /// the answer anew. If they were all of the answer, nothing of the catalogue describes the data.
 void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings);

@@ -47,8 +47,8 @@ private:
                                       unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
   bool is_doubtful(const Comparison &comparison, std::size_t n_answers) const;
-  Json test_models(const Comparison &comparison, const std::vector<Model> &models,
-                   Findings &findings) const;
+  Json test_models(const Evidence &fit, const Comparison &comparison,
+                   const std::vector<Model> &models, Findings &findings) const;
 
   const StudyOptions &options;
   const DecisionRule &rule;
