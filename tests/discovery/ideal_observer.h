@@ -8,6 +8,8 @@
 
 #include <eunoe/discovery/inference/evidence.h>
 
+#include <boost/math/distributions/chi_squared.hpp>
+
 #include "recorded.h"
 
 namespace test {
@@ -16,8 +18,10 @@ class IdealObserver
 {
 public:
   /// @param instrument noise of a repeat at each data point, as a share of a run's scatter
+  /// @param unknown effects that he knows nothing of
   IdealObserver(const RecordedSimulator &simulator, const std::vector<MeasuredPoint> &data,
-                unsigned int repeats, double instrument)
+                unsigned int repeats, double instrument,
+                const std::vector<std::string> &unknown = {})
       : simulator(simulator), repeats(repeats), instrument(instrument)
   {
     for (const MeasuredPoint &point : data) {
@@ -27,7 +31,8 @@ public:
     }
     covariance_of_nuisances();
     for (const Factor &f : simulator.factors())
-      if (f.kind == Factor::Kind::effect) {
+      if (f.kind == Factor::Kind::effect &&
+          std::count(unknown.begin(), unknown.end(), f.name) == 0) {
         find_places(f);
         effects.emplace_back(log_evidence(f), f.name);
       }
@@ -64,6 +69,26 @@ public:
         result.push_back(it->second);
     }
     return result;
+  }
+
+  /// Probability that data of a model with one or two effects lie as far from it as these do from
+  /// its best amplitudes.
+  double p_of_fit(const Names &model) const
+  {
+    const auto &first = places.at(*model.begin()), &second = places.at(*model.rbegin());
+    double least = 1e300;
+    for (const Place &p : first)
+      if (model.size() == 1)
+        least = std::min(least, distance(p.amplitude));
+      else
+        for (const Place &q : second) {
+          Amplitudes both = p.amplitude;
+          both.insert(q.amplitude.begin(), q.amplitude.end());
+          least = std::min(least, distance(both));
+        }
+    const auto freedom = static_cast<double>(size()) - static_cast<double>(model.size());
+    return boost::math::cdf(
+        boost::math::complement(boost::math::chi_squared_distribution<>(freedom), least));
   }
 
   /// The likeliest single effects, which together have a probability; the likeliest first.
@@ -282,6 +307,13 @@ private:
       first += n;
     }
     return result;
+  }
+
+  /// Of the data, squared (Mahalanobis).
+  double distance(const Amplitudes &truth) const
+  {
+    const Eigen::LLT<Eigen::MatrixXd> llt(covariance(truth));
+    return llt.matrixL().solve(data() - mean(truth)).squaredNorm();
   }
 
   double log_likelihood(const Amplitudes &truth) const

@@ -5,8 +5,9 @@
 // Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
 // are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
 // and no study); ideal (how often an observer who knows all fingerprints detects single effects and
-// names them and two effects rightly, and no study); level (how often data without any effect seem
-// to have one, for the runs of one study each, see observe_level); table=FILE.
+// names them and two effects rightly, or another one for an effect that his catalogue lacks, and no
+// study); level (how often data without any effect seem to have one, for the runs of one study
+// each, see observe_level); table=FILE.
 
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
@@ -67,6 +68,32 @@ void observe_pairs(const RecordedTable &table, const StudyKind &kind, const Suit
   std::fflush(stdout);
 }
 
+/// How often the ideal observer names something outright whose catalogue lacks the effect, by all
+/// the data, those that are held out, too.
+void observe_deleted(const RecordedTable &table, const StudyKind &kind, const SuiteOptions &options)
+{
+  const DecisionRule rule;
+  unsigned int named = 0;
+  for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
+    const DrawnCase drawn(table, kind, options.first_seed + k);
+    std::vector<MeasuredPoint> data = drawn.data.fit;
+    data.insert(data.end(), drawn.data.held_out.begin(), drawn.data.held_out.end());
+    const IdealObserver observer(drawn.simulator, data, drawn.repeats, drawn.instrument,
+                                 drawn.one.excluded);
+    const std::vector<IdealObserver::Names> models = observer.models(rule.credible);
+    if (models.size() > 1 || observer.p_of_fit(models.front()) < rule.doubtful)
+      continue;
+    ++named;
+    std::printf("seed %u: %s named", options.first_seed + k, drawn.one.excluded.front().c_str());
+    for (const std::string &name : models.front())
+      std::printf(" %s", name.c_str());
+    std::printf("\n");
+  }
+  std::printf("deleted effect of strength %g: another one named outright in %u of %u\n",
+              kind.strength, named, options.n_seeds);
+  std::fflush(stdout);
+}
+
 /// How often the ideal observer detects and names the right effect, on the data of the studies with
 /// the same seeds. What he takes for a detection is more than all but 5 % or 2 % of such data show
 /// in which nothing is missing.
@@ -78,6 +105,8 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
   for (const StudyKind &kind : standard_kinds()) {
     if (kind.kind == "two" && options.wants(kind))
       observe_pairs(table, kind, options);
+    if (kind.kind == "deleted" && options.wants(kind))
+      observe_deleted(table, kind, options);
     if (kind.kind != "single" || !options.wants(kind))
       continue;
     if (nothing.empty())
