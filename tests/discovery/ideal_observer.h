@@ -8,9 +8,8 @@
 
 #include <eunoe/discovery/inference/evidence.h>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
 #include "recorded.h"
+#include <boost/math/distributions/chi_squared.hpp>
 
 namespace test {
 
@@ -31,8 +30,8 @@ public:
     }
     covariance_of_nuisances();
     for (const Factor &f : simulator.factors())
-      if (f.kind == Factor::Kind::effect &&
-          std::count(unknown.begin(), unknown.end(), f.name) == 0) {
+      if (f.kind == Factor::Kind::effect && std::count(unknown.begin(), unknown.end(), f.name) == 0)
+      {
         find_places(f);
         effects.emplace_back(log_evidence(f), f.name);
       }
