@@ -87,15 +87,22 @@ void Design::run_effects(const std::function<Target()> &estimate)
     std::size_t effect;
     double amplitude;
   };
-  std::vector<Ladder> open;
+  std::vector<Ladder> open, ends;
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     for (const double limit : {space.lower(k), space.upper(k)})
-      if (limit != 0.)
-        open.push_back(
-            {k, std::clamp(1., -std::abs(limit), std::abs(limit)) * (limit < 0. ? -1. : 1.)});
+      if (limit != 0.) {
+        const double side = limit < 0. ? -1. : 1.;
+        open.push_back({k, std::min(1., std::abs(limit)) * side});
+        // An emulator knows little of amplitudes beyond the last that was run.
+        if (std::abs(limit) > 1.)
+          ends.push_back({k, limit});
+      }
   for (int level = 0; level < most_levels && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
-    for (const Ladder &ladder : open)
+    std::vector<Ladder> looks = open;
+    if (level == 0)
+      looks.insert(looks.end(), ends.begin(), ends.end());
+    for (const Ladder &ladder : looks)
       if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments))
         points.push_back(point(ladder.effect, ladder.amplitude));
     samples.run(points, experiments);

@@ -19,8 +19,9 @@ public:
   /// not suffice for the base model.
   void run_base();
 
-  /// Runs each effect at amplitudes in geometric sequence, from its scale down to what can just be
-  /// seen. Depends on the experiments alone, not on what was measured.
+  /// Runs each effect at the ends of its range, and at amplitudes in geometric sequence from its
+  /// scale down to what can just be seen. Depends on the experiments alone, not on what was
+  /// measured.
   void run_effects(const std::function<Target()> &estimate);
 
   /// Runs where it is expected to tell most: near the amplitudes at which models would be the
