@@ -71,6 +71,7 @@ DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
 {
   table.open();
   earlier = table.rows();
+  keys_by_recipe = table.keys();
   for (const RunTable::Row &row : earlier)
     if (row.engine == engine_digest())
       records[row.key] = row.record;
@@ -150,7 +151,7 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
     const std::string text = text_of(row.request);
     if (keys.count(text) == 0) {
       // The case may have changed since, or belong to another study.
-      if (make_case(row.request).key != row.key)
+      if (find_key(row.request) != row.key)
         continue;
       keys[text] = row.key;
       ++cached;
@@ -159,6 +160,9 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
     if (keys.at(text) == row.key)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
+  if (!new_keys_by_recipe.empty())
+    table.store_keys(new_keys_by_recipe);
+  new_keys_by_recipe.clear();
   return result;
 }
 
@@ -208,9 +212,7 @@ DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
   one.request = request;
   std::string input;
   try {
-    one.overrides = one.experiment->overrides(factors, request.amplitudes);
-    for (const std::string &line : one.experiment->run_overrides(request.seed))
-      one.overrides.push_back(line);
+    one.overrides = overrides_of(request);
     Problems problems;
     input = one.experiment->make(one.overrides, problems).as_input_file();
     if (!problems.empty())
@@ -223,10 +225,39 @@ DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
   one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
   if (one.problem.empty()) {
     const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
+    one.names_files = !files.empty();
     one.key = sha256(files + input);
   } else
     one.key = sha256(one.problem + text_of(request));
   return one;
+}
+
+std::vector<std::string> DemSimulator::overrides_of(const RunRequest &request) const
+{
+  const Experiment &experiment = find(request.experiment);
+  std::vector<std::string> result = experiment.overrides(factors, request.amplitudes);
+  for (const std::string &line : experiment.run_overrides(request.seed))
+    result.push_back(line);
+  return result;
+}
+
+/// The key of a case, which is made only if the table does not tell it. The engine is part of the
+/// recipe, as it reads the parameters. Files that a case names may change without their names.
+std::string DemSimulator::find_key(const RunRequest &request)
+{
+  std::string recipe;
+  try {
+    recipe = sha256(std::string(engine_digest()) +
+                    find(request.experiment).recipe(overrides_of(request)));
+  } catch (const UserError &) {
+    return make_case(request).key;
+  }
+  if (const auto found = keys_by_recipe.find(recipe); found != keys_by_recipe.end())
+    return found->second;
+  const Case one = make_case(request);
+  if (one.problem.empty() && !one.names_files)
+    keys_by_recipe[recipe] = new_keys_by_recipe[recipe] = one.key;
+  return one.key;
 }
 
 void DemSimulator::serve_and_check_stop(const unsigned long long step)

@@ -94,6 +94,16 @@ std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) con
   return list;
 }
 
+std::string Experiment::recipe(const std::vector<std::string> &overrides) const
+{
+  std::string all;
+  for (const auto &[file, text] : texts)
+    all += file + "\n" + text + "\n";
+  for (const std::string &line : overrides)
+    all += line + "\n";
+  return all;
+}
+
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
 {
   const std::string &file = parameters.case_file;

@@ -111,6 +111,8 @@ void RunTable::open()
         "engine TEXT NOT NULL, experiment TEXT NOT NULL, amplitudes TEXT NOT NULL, "
         "seed INTEGER NOT NULL, state TEXT NOT NULL, message TEXT, \"values\" TEXT NOT NULL, "
         "core_seconds REAL NOT NULL, made TEXT DEFAULT CURRENT_TIMESTAMP, UNIQUE (key, engine))");
+    Connection(file).run(
+        "CREATE TABLE IF NOT EXISTS keys (recipe TEXT PRIMARY KEY, key TEXT NOT NULL)");
   });
 }
 
@@ -153,6 +155,29 @@ void RunTable::store(const Row &row) const
        std::to_string(row.request.seed), row.record.failure.empty() ? "done" : "failed",
        row.record.failure, text_of(row.record.measurements),
        std::to_string(row.record.core_seconds)});
+}
+
+std::map<std::string, std::string> RunTable::keys() const
+{
+  std::string text;
+  on_first_rank(comm, [&] {
+    auto all = nlohmann::json::object();
+    Connection(file).run("SELECT recipe, key FROM keys", {},
+                         [&](sqlite3_stmt *s) { all[text_at(s, 0)] = text_at(s, 1); });
+    text = all.dump();
+  });
+  return nlohmann::json::parse(broadcast(text, comm));
+}
+
+void RunTable::store_keys(const std::map<std::string, std::string> &keys) const
+{
+  on_first_rank(comm, [&] {
+    Connection connection(file);
+    connection.run("BEGIN IMMEDIATE");
+    for (const auto &[recipe, key] : keys)
+      connection.run("INSERT OR IGNORE INTO keys VALUES (?, ?)", {recipe, key});
+    connection.run("COMMIT");
+  });
 }
 
 void RunTable::adopt(const std::string &old_engine, const std::string &engine) const

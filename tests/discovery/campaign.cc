@@ -128,10 +128,15 @@ void run_from_table(const Setting &setting, const std::vector<RunResult> &first,
   check("all came from the table", simulator.n_cached() == 8);
   const auto known = simulator.known("box");
   check("a study is told what is known",
-        known.size() == 6 && known[0].second == first[0] && simulator.known("gentle").size() == 2,
+        known.size() == 5 && known[0].second == first[0] && simulator.known("gentle").size() == 2,
         std::to_string(known.size()));
   DemSimulator begun(setting.experiments, setting.effects, table, 2, setting.comm, log);
   begun.find_data_points(1);
+  const auto again = begun.known("box");
+  check("also one that takes the keys of cases from the table",
+        again.size() == 5 && again[0].second == first[0] &&
+            !RunTable(table, setting.comm).keys().empty(),
+        std::to_string(again.size()));
   begun.hide_rows_after(3);
   check("but not what was made after its start",
         begun.known("box").size() + begun.known("gentle").size() == 3);

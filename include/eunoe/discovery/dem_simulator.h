@@ -56,12 +56,15 @@ private:
     const Experiment *experiment;
     std::vector<std::string> overrides;
     std::string key, problem; ///< problem: why it cannot be run
+    bool names_files = false;
     RunRequest request;
   };
 
   const Experiment &find(const std::string &name) const;
   bool is_of_study(const RunRequest &request) const;
   Case make_case(const RunRequest &request) const;
+  std::vector<std::string> overrides_of(const RunRequest &request) const;
+  std::string find_key(const RunRequest &request);
   RunRecord simulate(const Case &one);
   void serve_and_check_stop(unsigned long long step);
   void simulate_all(const std::vector<Case> &cases);
@@ -82,6 +85,7 @@ private:
   std::set<DataPoint> required;
   std::map<std::string, RunRecord> records; ///< by key
   std::map<std::string, std::string> keys;  ///< by what was requested
+  std::map<std::string, std::string> keys_by_recipe, new_keys_by_recipe;
   std::uint64_t made = 0, cached = 0;
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
 };

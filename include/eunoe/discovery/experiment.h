@@ -37,6 +37,9 @@ public:
   /// Overrides that change all seeds and make a run silent, to be put behind those of the model.
   std::vector<std::string> run_overrides(std::uint32_t seed) const;
 
+  /// All from which a case with these overrides is made.
+  std::string recipe(const std::vector<std::string> &overrides) const;
+
   /// The parameters of a case with these overrides.
   Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
 

@@ -24,7 +24,8 @@ struct RunRecord
 
 /// The table of runs: all finished simulations of a study in one SQLite file, which further studies
 /// use as well, also at the same time. A row has the design point, the result, a key that is a hash
-/// of the complete input, and the digest of the engine that made it.
+/// of the complete input, and the digest of the engine that made it. As it takes a while to make an
+/// input, the file also has the keys of recipes, which are hashes of what an input is made from.
 class RunTable
 {
 public:
@@ -46,6 +47,12 @@ public:
 
   /// Adds a row. To be called by one rank; throws a UserError there.
   void store(const Row &row) const;
+
+  /// Keys by recipe, the same on every rank; collective.
+  std::map<std::string, std::string> keys() const;
+
+  /// Adds keys by recipe; collective.
+  void store_keys(const std::map<std::string, std::string> &keys) const;
 
   /// Gives all rows of one engine to another that was found to give the same results; collective.
   void adopt(const std::string &old_engine, const std::string &engine) const;
