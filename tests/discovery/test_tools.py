@@ -80,6 +80,21 @@ class PageOfAStudy(InFolder):
         study.content["tie"][2]["probability"] = 1.5
         self.assertNotIn("in common", " ".join(verdict_text(study)))
 
+    def test_a_member_of_a_tie_has_the_probability_of_models_with_more_effects(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        study.content["tie"] = [{"effects": "cohesion", "probability": 0.4},
+                                {"effects": "rolling_resistance", "probability": 0.2}]
+        study.content["models"] = [*study.content["tie"],
+                                   {"effects": "cohesion + wall_friction", "probability": 0.3},
+                                   {"effects": "none of the catalogue", "probability": 0.1}]
+        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        self.assertIn("cohesion (70 %), rolling resistance (20 %)", words)
+        for name in ("cohesion", "rolling_resistance"):
+            study.effects[name]["family"] = "contacts that hold"
+        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        self.assertIn("with a probability of 90 %", words)
+
     def test_small_probabilities_are_told(self) -> None:
         make_study(self.folder / "study", "named")
         study = Study(self.folder / "study")

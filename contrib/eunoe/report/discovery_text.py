@@ -52,17 +52,37 @@ def _named(study: Study) -> list[str]:
     return sentences
 
 
+def _effects(row: dict) -> set[str]:
+    return set(row["effects"].split(" + "))
+
+
+def _families(study: Study, row: dict) -> set[str]:
+    return {study.effects.get(name, {}).get("family", "") for name in _effects(row)} - {""}
+
+
+def _shares(study: Study) -> list[float]:
+    """The probability of each member of a tie, with that of models that have another effect besides.
+
+    Such a model is not of the answer if a likelier one does without that effect.
+    """
+    tie = study.content["tie"]
+    shares = [0.] * len(tie)
+    for model in study.content.get("models", tie):
+        of = next((k for k, row in enumerate(tie) if _effects(row) <= _effects(model)), None)
+        if of is not None:
+            shares[of] += model["probability"]
+    return shares
+
+
 def _in_common(study: Study) -> list[str]:
     """What is likely although the effects cannot be told apart: a family that most of them belong to."""
     tie = study.content["tie"]
-    families: dict[str, list[dict]] = {}
-    for row in tie:
-        names = row["effects"].split(" + ")
-        for family in dict.fromkeys(study.effects.get(name, {}).get("family", "") for name in names):
-            families.setdefault(family, []).append(row)
-    for family, rows in families.items():
-        share = sum(row["probability"] for row in rows)
-        if family and len(rows) > 1 and share > 0.5 * sum(row["probability"] for row in tie):
+    models = study.content.get("models", tie)
+    families = [family for row in tie for family in sorted(_families(study, row))]
+    for family in dict.fromkeys(families):
+        rows = [row for row in tie if family in _families(study, row)]
+        share = sum(model["probability"] for model in models if family in _families(study, model))
+        if len(rows) > 1 and share > 0.5 * sum(model["probability"] for model in models):
             which = ("All of them have" if len(rows) == len(tie) else
                      ", ".join(plain(row["effects"]) for row in rows) + " have")
             return [f"{which} one thing in common, {family}: an effect of this kind is missing with a "
@@ -71,8 +91,8 @@ def _in_common(study: Study) -> list[str]:
 
 
 def _tie(study: Study) -> list[str]:
-    members = ", ".join(f"{plain(row['effects'])} ({percent(row['probability'], 0)})"
-                        for row in study.content["tie"])
+    members = ", ".join(f"{plain(row['effects'])} ({percent(share, 0)})"
+                        for row, share in zip(study.content["tie"], _shares(study)))
     sentences = [f"Something is missing, and the data cannot say which of these it is: {members}.",
                  *_in_common(study)]
     fit, held_out = study.content.get("p of the fit", 1.), study.content["gaps"].get("held-out", {}).get("p after", 1.)
