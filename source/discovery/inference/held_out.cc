@@ -105,28 +105,37 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
                          {"p", p[m]},
                          {"result", sentence(p_base, p[m], rule.refuted)}});
   }
-  std::size_t front = 0; // that leads the answer
+  std::optional<std::size_t> front; // that leads the answer, if it was tested
+  if (!models.empty())
+    front = 0;
   if (is_answered) {
     withdraw(refuted, rule, findings);
-    for (std::size_t m = models.size(); m-- > 0 && !findings.answer.empty();)
-      if (models[m].effects == findings.answer.front().effects)
-        front = m;
-    if (front > 0 && findings.verdict != Verdict::off_catalogue)
-      judge(fit, rule, options.seed, findings);
+    if (findings.verdict != Verdict::off_catalogue && !findings.answer.empty()) {
+      front.reset();
+      for (std::size_t m = 0; m < models.size() && !front; ++m)
+        if (models[m].effects == findings.answer.front().effects)
+          front = m;
+      if (front != 0)
+        judge(fit, rule, options.seed, findings);
+    }
     if (findings.verdict != Verdict::off_catalogue) {
-      findings.none_of_these |= p[front] < rule.doubtful;
+      findings.none_of_these |= !front || p[*front] < rule.doubtful;
       findings.verdict = verdict_of(findings);
     }
     table["members of the tie"] = members;
-    table["result"] = sentence(p_base, p[front], rule.refuted);
+    table["result"] = front ? sentence(p_base, p[*front], rule.refuted)
+                            : "the likeliest model that they leave was not tested, as the budget "
+                              "of runs is spent";
   } else
     table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
                                             : "the base model describes the held-out data";
   if (models.empty())
     return table;
-  table["p after"] = p[front];
+  if (front)
+    table["p after"] = p[*front];
   const auto by_front = [&](const std::size_t place) {
-    return comparison.contest.refuted_by(place, first + front, rule.refuted);
+    return front ? Json(comparison.contest.refuted_by(place, first + *front, rule.refuted))
+                 : Json(nullptr);
   };
   Json refutable = {{{"effects", "nothing"}, {"p", p_base}, {"would be refuted", by_front(base)}}};
   for (std::size_t m = 0; m < models.size(); ++m)
