@@ -10,9 +10,10 @@ namespace {
 
 /// Models that are tested: those of the answer, and others that held-out data might speak for.
 constexpr std::size_t most_tested = 4;
-/// And in a second round of the rest of the answer, where it has many models or others have taken
-/// the place of refuted ones.
+/// And in each further round of the rest of the answer, where it has many models or others have
+/// taken the place of refuted ones.
 constexpr std::size_t most_followed = 3;
+constexpr unsigned int most_rounds = 3;
 /// Where the result is in doubt, this many times the runs, as far as the budget has room.
 constexpr unsigned int in_doubt = 3;
 /// Places in a contest.
@@ -22,6 +23,23 @@ bool is_among(const Model &model, const std::vector<Model> &models)
 {
   return std::any_of(models.begin(), models.end(),
                      [&](const Model &other) { return other.effects == model.effects; });
+}
+
+/// Models that nothing has tested and that the fit finds no likelier than a refuted model without
+/// one of their effects. That effect would have to mend what the data of the fit do not show.
+std::vector<Model> falling_with(const std::vector<Model> &refuted, const std::vector<Model> &tested,
+                                const std::vector<Model> &all)
+{
+  std::vector<Model> result;
+  for (auto model = all.begin(); model != all.end(); ++model)
+    if (!model->is_discrepancy && !is_among(*model, tested) &&
+        std::any_of(all.begin(), model, [&](const Model &likelier) {
+          return is_among(likelier, refuted) &&
+                 std::includes(model->effects.begin(), model->effects.end(),
+                               likelier.effects.begin(), likelier.effects.end());
+        }))
+      result.push_back(*model);
+  return result;
 }
 
 std::string sentence(const double p_before, const double p_after, const double level)
@@ -86,7 +104,8 @@ bool HeldOut::is_doubtful(const Comparison &comparison, const std::size_t n_answ
 }
 
 Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
-                          const std::vector<Model> &models, Findings &findings) const
+                          const std::vector<Model> &models, const bool is_last,
+                          Findings &findings) const
 {
   const double p_base = comparison.p(base);
   Json table = {{"p before", p_base}};
@@ -105,6 +124,9 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
                          {"p", p[m]},
                          {"result", sentence(p_base, p[m], rule.refuted)}});
   }
+  if (is_last)
+    for (const Model &model : falling_with(refuted, models, findings.models))
+      refuted.push_back(model);
   std::optional<std::size_t> front; // that leads the answer, if it was tested
   if (!models.empty())
     front = 0;
@@ -124,8 +146,7 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
     }
     table["members of the tie"] = members;
     table["result"] = front ? sentence(p_base, p[*front], rule.refuted)
-                            : "the likeliest model that they leave was not tested, as the budget "
-                              "of runs is spent";
+                            : "the likeliest model that they leave was not tested";
   } else
     table["result"] = p_base < rule.refuted ? "the base model does not describe the held-out data"
                                             : "the base model describes the held-out data";
@@ -147,6 +168,28 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
   return table;
 }
 
+/// Adds models of the answer that are not yet tested, as far as the budget has room for their runs.
+void HeldOut::follow(const std::vector<Model> &answer, std::vector<Model> &models) const
+{
+  const std::size_t before = models.size();
+  std::uint64_t planned = 0;
+  for (const Model &model : answer) {
+    if (models.size() == before + most_followed)
+      break;
+    if (is_among(model, models))
+      continue;
+    const std::uint64_t needed = runs_to_test(static_cast<unsigned int>(model.effects.size()),
+                                              options.validate_runs, space, experiments, samples);
+    const bool is_known = std::all_of(model.best.begin(), model.best.end(), [&](const auto &at) {
+      return samples.has_near(at.first, at.second, 1, experiments);
+    });
+    if (!is_known && planned + needed > samples.remaining())
+      continue;
+    planned += is_known ? 0 : needed;
+    models.push_back(model);
+  }
+}
+
 Json HeldOut::test(const Evidence &evidence, Findings &findings)
 {
   if (experiments.empty())
@@ -161,28 +204,30 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   const Findings by_fit = findings;
   std::unique_ptr<Comparison> comparison;
   Json tested;
-  for (bool is_first = true, go_on = true; go_on; is_first = false) {
+  std::size_t n_tested = 0;
+  bool go_on = true;
+  for (unsigned int round = 0; go_on && round < most_rounds; ++round) {
     try {
       comparison = compare(evidence, models, options.validate_runs);
       if (comparison && is_doubtful(*comparison, std::min(models.size(), by_fit.answer.size())))
         comparison = compare(evidence, models, in_doubt * options.validate_runs);
     } catch (const UserError &) {
-      if (is_first)
+      if (round == 0)
         return {{"result", "the held-out experiments could not be simulated"}};
       break;
     }
     if (!comparison)
       return {{"result", "the held-out data do not vary"}};
     findings = by_fit;
-    tested = test_models(evidence, *comparison, models, findings);
-    // The second round has those of the answer that were not among the first.
-    const std::size_t before = models.size();
-    for (const Model &model : findings.answer)
-      if (is_first && findings.verdict != Verdict::off_catalogue &&
-          models.size() < before + most_followed && !is_among(model, models))
-        models.push_back(model);
-    go_on = models.size() > before;
+    tested = test_models(evidence, *comparison, models, false, findings);
+    n_tested = models.size();
+    if (findings.verdict != Verdict::off_catalogue)
+      follow(findings.answer, models);
+    go_on = models.size() > n_tested;
   }
+  models.resize(n_tested);
+  findings = by_fit;
+  tested = test_models(evidence, *comparison, models, true, findings);
   const Evidence &held_out = comparison->evidence;
 
   const auto fitted = [&](const Model &model) {

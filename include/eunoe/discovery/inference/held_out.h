@@ -21,8 +21,9 @@ public:
   /// Largest number of runs of a test that is not in doubt.
   std::uint64_t n_runs() const;
 
-  /// Runs and tests. Models that the data refute leave the answer; the last one that leaves takes
-  /// the name with it.
+  /// Runs and tests. Models that the data refute leave the answer, and in the end those that were
+  /// not tested and only add to them an effect which the fit does not ask for. The last one that
+  /// leaves takes the name with it.
   /// @param evidence of the data of the fit
   /// @return table of discovery.json
   Json test(const Evidence &evidence, Findings &findings);
@@ -47,8 +48,9 @@ private:
                                       unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
   bool is_doubtful(const Comparison &comparison, std::size_t n_answers) const;
+  void follow(const std::vector<Model> &answer, std::vector<Model> &models) const;
   Json test_models(const Evidence &fit, const Comparison &comparison,
-                   const std::vector<Model> &models, Findings &findings) const;
+                   const std::vector<Model> &models, bool is_last, Findings &findings) const;
 
   const StudyOptions &options;
   const DecisionRule &rule;
