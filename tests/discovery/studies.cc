@@ -174,6 +174,19 @@ void tie_that_held_out_data_break()
         held_out.dump());
   check("the one that they refute goes", d.model_after.count("b") == 1,
         d.content["verdict"].get<std::string>());
+  std::set<std::string> tested;
+  for (const char *const list : {"members of the tie", "could have refuted"})
+    for (const auto &row : held_out[list])
+      tested.insert(row["effects"].get<std::string>());
+  check("and with it those that add an effect and were not tested",
+        tested.count("c") == 1 &&
+            std::none_of(d.content["models"].begin(), d.content["models"].end(),
+                         [&](const auto &row) {
+                           const auto name = row["effects"].template get<std::string>();
+                           return (name.rfind("c + ", 0) == 0 || name == "a + c") &&
+                                  tested.count(name) == 0 && row["probability"] > 0.;
+                         }),
+        d.content["models"].dump());
   check("that they can do so is told",
         held_out["could have refuted"][0]["would be refuted"].get<double>() > 0.5);
   check("the gap shrinks", held_out["gap after"] < held_out["gap before"], held_out.dump());
