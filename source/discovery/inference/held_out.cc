@@ -168,7 +168,6 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
   return table;
 }
 
-/// Adds models of the answer that are not yet tested, as far as the budget has room for their runs.
 void HeldOut::follow(const std::vector<Model> &answer, std::vector<Model> &models) const
 {
   const std::size_t before = models.size();

@@ -48,7 +48,9 @@ private:
                                       unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
   bool is_doubtful(const Comparison &comparison, std::size_t n_answers) const;
+  /// Adds models of the answer that are not yet tested, as far as the budget has room.
   void follow(const std::vector<Model> &answer, std::vector<Model> &models) const;
+  /// @param is_last whether untested models fall with a refuted one
   Json test_models(const Evidence &fit, const Comparison &comparison,
                    const std::vector<Model> &models, bool is_last, Findings &findings) const;
 
