@@ -342,8 +342,11 @@ void withdrawals()
   check("it is no name where it may be none of them", after.verdict == Verdict::tie);
   after = before;
   withdraw({a, b}, {}, after);
-  check("without a model there is no name",
-        after.verdict == Verdict::off_catalogue && after.answer.size() == 2);
+  check("what an answer did not have is no name", after.verdict == Verdict::tie &&
+                                                      after.answer.size() == 1 &&
+                                                      after.answer[0].effects.size() == 2);
+  withdraw(before.models, {}, after);
+  check("without a model there is no name", after.verdict == Verdict::off_catalogue);
 }
 
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as

@@ -134,21 +134,23 @@ void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findi
       return !model.is_discrepancy && model.effects == other.effects;
     });
   };
-  if (std::all_of(findings.answer.begin(), findings.answer.end(), is_refuted)) {
+  std::vector<Model> &models = findings.models;
+  double left = 0.;
+  for (const Model &model : models)
+    left += is_refuted(model) ? 0. : model.probability;
+  if (left == 0.) {
     findings.verdict = Verdict::off_catalogue;
     return;
   }
-  std::vector<Model> &models = findings.models;
-  double left = 0.;
+  // What the answer did not have is unlikely, so that it may as well be none of the catalogue.
+  findings.none_of_these |= std::all_of(findings.answer.begin(), findings.answer.end(), is_refuted);
   for (Model &model : models)
-    left += model.probability = is_refuted(model) ? 0. : model.probability;
-  for (Model &model : models)
-    model.probability /= left;
+    model.probability = is_refuted(model) ? 0. : model.probability / left;
   std::stable_sort(models.begin(), models.end(),
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
   findings.off_catalogue /= left;
   choose(rule, findings);
-  findings.verdict = verdict_of(findings);
+  findings.verdict = models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
 }
 
 } // namespace eunoe::discovery

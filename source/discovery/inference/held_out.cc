@@ -42,6 +42,16 @@ std::vector<Model> falling_with(const std::vector<Model> &refuted, const std::ve
   return result;
 }
 
+/// Of an answer to which the data of the fit gave little, what nothing has tested goes.
+void keep_tested(const std::vector<Model> &tested, Findings &findings)
+{
+  std::vector<Model> &answer = findings.answer;
+  answer.erase(std::remove_if(answer.begin(), answer.end(),
+                              [&](const Model &model) { return !is_among(model, tested); }),
+               answer.end());
+  findings.verdict = answer.empty() ? Verdict::off_catalogue : findings.verdict;
+}
+
 std::string sentence(const double p_before, const double p_after, const double level)
 {
   if (p_after < level)
@@ -124,7 +134,12 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
                          {"p", p[m]},
                          {"result", sentence(p_base, p[m], rule.refuted)}});
   }
-  if (is_last)
+  // A new answer is made of models that were tested: what leads the rest is likely only beside
+  // others as unlikely.
+  const std::vector<Model> by_fit = findings.answer;
+  const bool is_all_refuted = std::all_of(
+      by_fit.begin(), by_fit.end(), [&](const Model &model) { return is_among(model, refuted); });
+  if (is_last || is_all_refuted)
     for (const Model &model : falling_with(refuted, models, findings.models))
       refuted.push_back(model);
   std::optional<std::size_t> front; // that leads the answer, if it was tested
@@ -132,7 +147,11 @@ Json HeldOut::test_models(const Evidence &fit, const Comparison &comparison,
     front = 0;
   if (is_answered) {
     withdraw(refuted, rule, findings);
-    if (findings.verdict != Verdict::off_catalogue && !findings.answer.empty()) {
+    if (is_last && is_all_refuted)
+      keep_tested(models, findings);
+    if (findings.verdict == Verdict::off_catalogue)
+      findings.answer = by_fit;
+    else if (!findings.answer.empty()) {
       front.reset();
       for (std::size_t m = 0; m < models.size() && !front; ++m)
         if (models[m].effects == findings.answer.front().effects)

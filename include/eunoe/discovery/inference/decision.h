@@ -59,7 +59,8 @@ void judge(const Evidence &evidence, const DecisionRule &rule, std::uint32_t see
            Findings &findings);
 
 /// Takes models that other data refute out, shares their probability among the rest, and chooses
-/// the answer anew. If they were all of the answer, nothing of the catalogue describes the data.
+/// the answer anew. If they were all of the answer, "none of these" is in the new one, and is all
+/// of it if nothing else is left or as likely.
 void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings);
 
 /// Of an answer that is chosen: no model, one, or several.
