@@ -1,7 +1,6 @@
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
-#include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
@@ -9,26 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <new>
 #include <sstream>
 
 namespace eunoe::discovery {
 
 namespace {
-
-/// A text that is the same for equal requests.
-std::string text_of(const RunRequest &request)
-{
-  std::string text = request.experiment + " " + std::to_string(request.seed);
-  for (const auto &[name, amplitude] : request.amplitudes) {
-    char number[40];
-    std::snprintf(number, sizeof number, "=%.17g", amplitude);
-    text += " " + name + number;
-  }
-  return text;
-}
 
 nlohmann::ordered_json description(const RunRequest &request)
 {
@@ -41,37 +26,17 @@ nlohmann::ordered_json description(const RunRequest &request)
   return about;
 }
 
-/// Contents of the files that a case names in its entries, as they are not part of its text.
-std::string named_files(const std::string &input)
-{
-  std::string contents;
-  for (const auto &[place, value] : values_in(input)) {
-    std::error_code failure;
-    std::istringstream parts(value);
-    for (std::string name; std::getline(parts, name, ',');) {
-      name.erase(0, name.find_first_not_of(' '));
-      if (name.find('.') == std::string::npos || !std::filesystem::is_regular_file(name, failure))
-        continue;
-      std::ifstream stream(name, std::ios::binary);
-      std::ostringstream all;
-      all << stream.rdbuf();
-      contents += sha256(all.str());
-    }
-  }
-  return contents;
-}
-
 } // namespace
 
 DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
                            const std::vector<Effect> &factors, const std::string &table_file,
                            const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
-    : experiments(experiments), factors(factors), table(table_file, comm),
-      queue(comm, ranks_per_run), comm(comm), log(log)
+    : experiments(experiments), factors(factors), maker(experiments, factors, comm),
+      table(table_file, comm), queue(comm, ranks_per_run), comm(comm), log(log)
 {
   table.open();
   earlier = table.rows();
-  keys_by_recipe = table.keys();
+  maker.remember(table.keys());
   for (const RunTable::Row &row : earlier)
     if (row.engine == engine_digest())
       records[row.key] = row.record;
@@ -80,9 +45,9 @@ DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
 /// Whether simulations that another engine has made have the same results now.
 bool DemSimulator::gives_the_same(const std::vector<const RunTable::Row *> &samples)
 {
-  std::vector<Case> cases;
+  std::vector<StudyCase> cases;
   for (const RunTable::Row *const row : samples)
-    cases.push_back(make_case(row->request));
+    cases.push_back(maker.make(row->request));
   simulate_all(cases);
   return std::all_of(samples.begin(), samples.end(), [this](const RunTable::Row *row) {
     return text_of(records.at(row->key).measurements) == text_of(row->record.measurements);
@@ -103,8 +68,8 @@ void DemSimulator::adopt_earlier_runs()
     });
     std::vector<const RunTable::Row *> samples;
     for (const RunTable::Row *const row : rows)
-      if (samples.size() < n_samples && is_of_study(row->request) &&
-          make_case(row->request).key == row->key)
+      if (samples.size() < n_samples && maker.is_of_study(row->request) &&
+          maker.make(row->request).key == row->key)
         samples.push_back(row);
     if (samples.empty())
       continue;
@@ -121,20 +86,10 @@ void DemSimulator::adopt_earlier_runs()
   }
 }
 
-bool DemSimulator::is_of_study(const RunRequest &request) const
-{
-  return std::any_of(experiments.begin(), experiments.end(),
-                     [&](const Experiment &e) { return e.name() == request.experiment; }) &&
-         std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
-           return std::any_of(factors.begin(), factors.end(),
-                              [&](const Effect &e) { return e.factor.name == a.first; });
-         });
-}
-
 bool DemSimulator::concerns(const std::string &experiment,
                             const std::vector<std::string> &effects) const
 {
-  const std::string &process = find(experiment).process_name();
+  const std::string &process = maker.find(experiment).process_name();
   return effects.empty() || std::any_of(factors.begin(), factors.end(), [&](const Effect &e) {
            return e.concerns(process) &&
                   std::find(effects.begin(), effects.end(), e.factor.name) != effects.end();
@@ -146,12 +101,12 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
   std::vector<std::pair<RunRequest, RunResult>> result;
   for (const RunTable::Row &row : earlier) {
     if (row.request.experiment != experiment || row.number > last_known ||
-        records.count(row.key) == 0 || !is_of_study(row.request))
+        records.count(row.key) == 0 || !maker.is_of_study(row.request))
       continue;
     const std::string text = text_of(row.request);
     if (keys.count(text) == 0) {
       // The case may have changed since, or belong to another study.
-      if (find_key(row.request) != row.key)
+      if (maker.key(row.request) != row.key)
         continue;
       keys[text] = row.key;
       ++cached;
@@ -160,15 +115,14 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
     if (keys.at(text) == row.key)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
-  if (!new_keys_by_recipe.empty())
-    table.store_keys(new_keys_by_recipe);
-  new_keys_by_recipe.clear();
+  if (const auto found = maker.new_keys(); !found.empty())
+    table.store_keys(found);
   return result;
 }
 
 void DemSimulator::take_over(const RunRequest &request, const RunRecord &record)
 {
-  const Case one = make_case(request);
+  const StudyCase one = maker.make(request);
   if (!one.problem.empty())
     throw UserError(one.problem);
   on_first_rank(comm, [&] { table.store({0, one.key, engine_digest(), request, record}); });
@@ -199,67 +153,6 @@ const std::vector<DataPoint> &DemSimulator::data_points(const std::string &exper
   return known_points.at(experiment);
 }
 
-const Experiment &DemSimulator::find(const std::string &name) const
-{
-  return *std::find_if(experiments.begin(), experiments.end(),
-                       [&](const Experiment &e) { return e.name() == name; });
-}
-
-DemSimulator::Case DemSimulator::make_case(const RunRequest &request) const
-{
-  Case one;
-  one.experiment = &find(request.experiment);
-  one.request = request;
-  std::string input;
-  try {
-    one.overrides = overrides_of(request);
-    Problems problems;
-    input = one.experiment->make(one.overrides, problems).as_input_file();
-    if (!problems.empty())
-      throw UserError(problems);
-  } catch (const UserError &error) {
-    one.problem = error.what();
-  }
-  // Ranks may see different files: if one cannot make the case, none runs it.
-  const std::string of_first = broadcast(one.problem, comm);
-  one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
-  if (one.problem.empty()) {
-    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
-    one.names_files = !files.empty();
-    one.key = sha256(files + input);
-  } else
-    one.key = sha256(one.problem + text_of(request));
-  return one;
-}
-
-std::vector<std::string> DemSimulator::overrides_of(const RunRequest &request) const
-{
-  const Experiment &experiment = find(request.experiment);
-  std::vector<std::string> result = experiment.overrides(factors, request.amplitudes);
-  for (const std::string &line : experiment.run_overrides(request.seed))
-    result.push_back(line);
-  return result;
-}
-
-/// The key of a case, which is made only if the table does not tell it. The engine is part of the
-/// recipe, as it reads the parameters. Files that a case names may change without their names.
-std::string DemSimulator::find_key(const RunRequest &request)
-{
-  std::string recipe;
-  try {
-    recipe = sha256(std::string(engine_digest()) +
-                    find(request.experiment).recipe(overrides_of(request)));
-  } catch (const UserError &) {
-    return make_case(request).key;
-  }
-  if (const auto found = keys_by_recipe.find(recipe); found != keys_by_recipe.end())
-    return found->second;
-  const Case one = make_case(request);
-  if (one.problem.empty() && !one.names_files)
-    keys_by_recipe[recipe] = new_keys_by_recipe[recipe] = one.key;
-  return one.key;
-}
-
 void DemSimulator::serve_and_check_stop(const unsigned long long step)
 {
   constexpr unsigned int steps_between_looks = 16, steps_between_votes = 256;
@@ -275,7 +168,7 @@ void DemSimulator::serve_and_check_stop(const unsigned long long step)
     throw Interrupted();
 }
 
-RunRecord DemSimulator::simulate(const Case &one)
+RunRecord DemSimulator::simulate(const StudyCase &one)
 {
   RunRecord record;
   record.failure = one.problem;
@@ -310,7 +203,7 @@ RunRecord DemSimulator::simulate(const Case &one)
   return record;
 }
 
-void DemSimulator::simulate_all(const std::vector<Case> &cases)
+void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
 {
   const double begin = MPI_Wtime();
   const int n = static_cast<int>(cases.size());
@@ -389,18 +282,18 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
 
 std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests)
 {
-  std::map<std::string, std::pair<Case, RunRequest>>
+  std::map<std::string, std::pair<StudyCase, RunRequest>>
       unknown; // by words: also the order of the tasks
   std::vector<std::string> order;
   for (const RunRequest &request : requests)
     if (keys.count(text_of(request)) == 0 && unknown.count(text_of(request)) == 0) {
-      unknown[text_of(request)] = {make_case(request), request};
+      unknown[text_of(request)] = {maker.make(request), request};
       order.push_back(text_of(request));
     }
-  std::vector<Case> missing;
+  std::vector<StudyCase> missing;
   std::set<std::string> begun;
   for (const std::string &text : order) {
-    const Case &one = unknown.at(text).first;
+    const StudyCase &one = unknown.at(text).first;
     if (records.count(one.key) == 0 && begun.insert(one.key).second)
       missing.push_back(one);
   }

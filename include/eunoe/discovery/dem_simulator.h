@@ -2,7 +2,7 @@
 #define eunoe_discovery_dem_simulator_h
 
 #include <eunoe/core/log.h>
-#include <eunoe/discovery/experiment.h>
+#include <eunoe/discovery/case_maker.h>
 #include <eunoe/discovery/run_table.h>
 #include <eunoe/discovery/work_queue.h>
 
@@ -50,24 +50,9 @@ public:
   const nlohmann::ordered_json &ledger() const { return runs; }
 
 private:
-  /// A request as it is run.
-  struct Case
-  {
-    const Experiment *experiment;
-    std::vector<std::string> overrides;
-    std::string key, problem; ///< problem: why it cannot be run
-    bool names_files = false;
-    RunRequest request;
-  };
-
-  const Experiment &find(const std::string &name) const;
-  bool is_of_study(const RunRequest &request) const;
-  Case make_case(const RunRequest &request) const;
-  std::vector<std::string> overrides_of(const RunRequest &request) const;
-  std::string find_key(const RunRequest &request);
-  RunRecord simulate(const Case &one);
+  RunRecord simulate(const StudyCase &one);
   void serve_and_check_stop(unsigned long long step);
-  void simulate_all(const std::vector<Case> &cases);
+  void simulate_all(const std::vector<StudyCase> &cases);
   void adopt_earlier_runs();
   bool gives_the_same(const std::vector<const RunTable::Row *> &samples);
   RunResult result(const RunRequest &request, const RunRecord &record) const;
@@ -75,6 +60,7 @@ private:
 
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
+  CaseMaker maker;
   RunTable table;
   std::vector<RunTable::Row> earlier; ///< rows that were there at the start
   std::int64_t last_known = std::numeric_limits<std::int64_t>::max();
@@ -85,7 +71,6 @@ private:
   std::set<DataPoint> required;
   std::map<std::string, RunRecord> records; ///< by key
   std::map<std::string, std::string> keys;  ///< by what was requested
-  std::map<std::string, std::string> keys_by_recipe, new_keys_by_recipe;
   std::uint64_t made = 0, cached = 0;
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
 };

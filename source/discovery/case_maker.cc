@@ -1,0 +1,122 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/problems.h>
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/version.h>
+#include <eunoe/discovery/case_maker.h>
+#include <eunoe/discovery/work_queue.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace eunoe::discovery {
+
+namespace {
+
+/// Contents of the files that a case names in its entries, as they are not part of its text.
+std::string named_files(const std::string &input)
+{
+  std::string contents;
+  for (const auto &[place, value] : values_in(input)) {
+    std::error_code failure;
+    std::istringstream parts(value);
+    for (std::string name; std::getline(parts, name, ',');) {
+      name.erase(0, name.find_first_not_of(' '));
+      if (name.find('.') == std::string::npos || !std::filesystem::is_regular_file(name, failure))
+        continue;
+      std::ifstream stream(name, std::ios::binary);
+      std::ostringstream all;
+      all << stream.rdbuf();
+      contents += sha256(all.str());
+    }
+  }
+  return contents;
+}
+
+} // namespace
+
+std::string text_of(const RunRequest &request)
+{
+  std::string text = request.experiment + " " + std::to_string(request.seed);
+  for (const auto &[name, amplitude] : request.amplitudes) {
+    char number[40];
+    std::snprintf(number, sizeof number, "=%.17g", amplitude);
+    text += " " + name + number;
+  }
+  return text;
+}
+
+bool CaseMaker::is_of_study(const RunRequest &request) const
+{
+  return std::any_of(experiments.begin(), experiments.end(),
+                     [&](const Experiment &e) { return e.name() == request.experiment; }) &&
+         std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
+           return std::any_of(factors.begin(), factors.end(),
+                              [&](const Effect &e) { return e.factor.name == a.first; });
+         });
+}
+
+const Experiment &CaseMaker::find(const std::string &name) const
+{
+  return *std::find_if(experiments.begin(), experiments.end(),
+                       [&](const Experiment &e) { return e.name() == name; });
+}
+
+StudyCase CaseMaker::make(const RunRequest &request) const
+{
+  StudyCase one;
+  one.experiment = &find(request.experiment);
+  one.request = request;
+  std::string input;
+  try {
+    one.overrides = overrides(request);
+    Problems problems;
+    input = one.experiment->make(one.overrides, problems).as_input_file();
+    if (!problems.empty())
+      throw UserError(problems);
+  } catch (const UserError &error) {
+    one.problem = error.what();
+  }
+  // Ranks may see different files: if one cannot make the case, none runs it.
+  const std::string of_first = broadcast(one.problem, comm);
+  one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
+  if (one.problem.empty()) {
+    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
+    one.names_files = !files.empty();
+    one.key = sha256(files + input);
+  } else
+    one.key = sha256(one.problem + text_of(request));
+  return one;
+}
+
+std::vector<std::string> CaseMaker::overrides(const RunRequest &request) const
+{
+  const Experiment &experiment = find(request.experiment);
+  std::vector<std::string> result = experiment.overrides(factors, request.amplitudes);
+  for (const std::string &line : experiment.run_overrides(request.seed))
+    result.push_back(line);
+  return result;
+}
+
+std::string CaseMaker::key(const RunRequest &request)
+{
+  std::string recipe;
+  try {
+    // The engine reads the parameters.
+    recipe =
+        sha256(std::string(engine_digest()) + find(request.experiment).recipe(overrides(request)));
+  } catch (const UserError &) {
+    return make(request).key;
+  }
+  if (const auto known = keys_by_recipe.find(recipe); known != keys_by_recipe.end())
+    return known->second;
+  const StudyCase one = make(request);
+  // Files that a case names may change without their names.
+  if (one.problem.empty() && !one.names_files)
+    keys_by_recipe[recipe] = found[recipe] = one.key;
+  return one.key;
+}
+
+} // namespace eunoe::discovery
