@@ -187,6 +187,8 @@ class StrengthOfAnEffect(InFolder):
         self.assertGreater(at_the_end, found)
         self.assertTrue(4. < reached < 1000.)
         self.assertEqual(strengths.amplitude("cohesion", -4.), (0., 0.))
+        for amplitude, strength in ((found, 4.), (10. * at_the_end, reached), (0., 0.), (-found, 0.)):
+            self.assertAlmostEqual(strengths.strength("cohesion", amplitude), strength, delta=1e-6)
 
     def test_a_suite_over_whole_ranges_can_be_cut_short(self) -> None:
         cases = make_cases(EFFECTS, "range", "ci", 1)

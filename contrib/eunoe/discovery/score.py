@@ -19,6 +19,7 @@ from eunoe.launch import Failure, parser
 from eunoe.tables import as_markdown, write_csv
 
 from .outcomes import Outcome, Scores, outcome_of, read, read_lines, score
+from .strength import PILOT_AT_THE_END, Strengths
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -79,6 +80,17 @@ def rows_of_cases(outcomes: list[Outcome]) -> list[list]:
                "" if o.shrink is None else o.shrink, o.runs] for o in outcomes)]
 
 
+def measure_strengths(lines: list[dict], suite: Path) -> None:
+    """Strengths of the truths as the suite's last study knows them."""
+    pilot = suite / "pilot" / PILOT_AT_THE_END
+    if not (pilot / "discovery.json").exists():
+        return
+    known = Strengths(pilot)
+    for line in lines:
+        case = line["case"]
+        case["strengths"] = {name: known.strength(name, value) for name, value in case["amplitudes"].items()}
+
+
 def write(outcomes: list[Outcome], label: str, folder: Path) -> None:
     text = page(score(outcomes), label, outcomes)
     (folder / f"scores_{label}.md").write_text(text, encoding="utf-8")
@@ -100,6 +112,7 @@ def main(words: list[str]) -> int:
                                    if path.is_dir() and path.name != "pilot") if line is not None]
         if not lines:
             raise Failure(f"There are no finished studies '{label}' in {suite}.")
+        measure_strengths(lines, suite)
         (suite / f"answers_{label}.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines),
                                                       encoding="utf-8")
         write([outcome_of(line) for line in lines], label, suite)

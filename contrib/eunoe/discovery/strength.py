@@ -7,6 +7,9 @@ import json
 from pathlib import Path
 
 
+PILOT_AT_THE_END = "end"
+
+
 class Strengths:
     """Strengths of all effects by amplitude, as the emulator of a pilot study gives them."""
 
@@ -27,3 +30,16 @@ class Strengths:
                 return before + share * (amplitude - before), abs(strength)
             before, below = amplitude, reached
         return before, below
+
+    def strength(self, effect: str, amplitude: float) -> float:
+        """The strength at an amplitude, negative below the null value; beyond the last amplitude, that there."""
+        null = self.null[effect]
+        side = 1. if amplitude > null else -1.
+        before, below = 0., 0.
+        rows = sorted((abs(a - null), s) for a, s in self.known.get(effect, []) if (a - null) * side > 0.)
+        for away, reached in rows:
+            if away >= abs(amplitude - null):
+                below += (abs(amplitude - null) - before) / (away - before) * (reached - below)
+                break
+            before, below = away, reached
+        return side * below

@@ -5,9 +5,10 @@ Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|s
        [--set "discovery/entry = value" ...] [--part I/N]
 
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
-suite are amplitudes from it. Then the twins are made, then the studies. What is there already is not made
-again, and what was interrupted goes on, so the command may be given again at any time. --label keeps the
-studies of an ablation beside the others: they use the same data. score.py makes the tables.
+suite are amplitudes from it. Then the twins are made, then the studies, and in the end the pilot's study
+once more, as the table knows more by then: scores are by the strengths that this one finds. What is there
+already is not made again, and what was interrupted goes on, so the command may be given again at any time.
+--label keeps the studies of an ablation beside the others: they use the same data. score.py makes the tables.
 
 Thresholds are tuned on development seeds only; the reported suite is made afterwards, and once what it
 shows has changed the rules, one of the seeds "again".
@@ -24,7 +25,7 @@ from eunoe.launch import Failure, overrides, parser
 
 from .case import FIRST_SEED, TIERS, Case, make_cases
 from .program import Program, Stopped
-from .strength import Strengths
+from .strength import PILOT_AT_THE_END, Strengths
 
 TRUTH = """include {study}
 
@@ -114,19 +115,19 @@ class Suite:
             if away.exists():
                 away.rename(sealed)
 
-    def pilot(self) -> Strengths:
+    def pilot(self, label: str, settings: list[str]) -> Strengths:
         first = FIRST_SEED[self.options.seeds]
         case = Case("pilot", "none", first - 1, first // 100)
         folder = self.make_data(case)
-        self.make_study(case, folder, "study", [])
-        return Strengths(folder / "study")
+        self.make_study(case, folder, label, settings)
+        return Strengths(folder / label)
 
     def run(self) -> None:
         effects = self.program.effects(self.study)
         if not effects:
             raise Failure("The study has no effects.")
         print("pilot", flush=True)
-        strengths = self.pilot()
+        strengths = self.pilot("study", [])
         number, of = self.options.part
         cases = make_cases(effects, self.options.tier, self.options.seeds, self.options.study_seeds)
         for case in cases[number - 1::of]:
@@ -147,6 +148,8 @@ class Suite:
                 print(f"  {error}")
                 continue
             self.make_study(case, folder, self.options.label, self.options.set)
+        if number == of:
+            self.pilot(PILOT_AT_THE_END, self.options.set)
 
 
 def main(words: list[str]) -> int:
