@@ -14,6 +14,8 @@ from eunoe.tables import Table
 from .results import Findings
 
 UNKNOWN = "not known yet"
+# Densities nearer to each other than that are called equal; the effect in question is three times as large.
+EQUAL = 0.02
 
 
 def _said(found: Interval, size: float = 100., unit: str = " %") -> str:
@@ -31,7 +33,10 @@ def _agreement(group: Group, measured: Group, number: Callable[[SpreadRun], floa
         return f"differs by {100. * found.value:+.1f} %; one run has no interval"
     if found.is_significant:
         return f"no: differs by {100. * found.value:+.1f} ± {100. * found.half:.1f} %"
-    return f"agrees within ± {100. * found.half:.1f} %"
+    farthest = abs(found.value) + found.half
+    if farthest > EQUAL:
+        return f"cannot be told: differs by {100. * found.value:+.1f} ± {100. * found.half:.1f} %"
+    return f"agrees within {100. * farthest:.1f} %"
 
 
 def _sign(found: Interval, wanted: str) -> str:
