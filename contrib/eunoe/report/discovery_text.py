@@ -102,7 +102,7 @@ def _tie(study: Study) -> list[str]:
     breakers = study.content.get("measurements that would break the tie", [])
     if breakers:
         best = breakers[0]
-        what = "everything" if best["observable"] == "all" else plain(best["observable"])
+        what = {"all": "everything", "all else": "everything else"}.get(best["observable"], plain(best["observable"]))
         again = " once more" if best["again"] else ""
         sentences.append(f"What would tell most: {what} of experiment {best['experiment']}{again}; it is "
                          f"expected to give {number(best['information'], 2)} of the "

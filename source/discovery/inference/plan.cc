@@ -284,16 +284,25 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   Json rows = rank(evidence, options.seed + 5);
   for (Json &row : rows)
     row["again"] = true;
-  if (!options.further_experiments.empty()) {
+  if (!options.further_experiments.empty())
     run_near(evidence, models, options.validate_runs, space, options.further_experiments, samples);
-    const auto measured =
-        imagined(options.further_experiments, samples, samples.simulator(), repeats);
-    if (!measured.empty()) {
-      const Target target(measured, samples, space, options.model_tolerance);
-      for (Json row : rank(Evidence(target, space), options.seed + 6)) {
-        row["again"] = false;
-        rows.push_back(row);
-      }
+  // What else could be measured: further experiments, and more in those that were made.
+  std::vector<std::string> experiments = options.further_experiments, made;
+  std::set<DataPoint> known;
+  for (const Target::Part &part : evidence.target().experiments()) {
+    made.push_back(part.measured.name);
+    known.insert(part.measured.points.begin(), part.measured.points.end());
+  }
+  experiments.insert(experiments.end(), made.begin(), made.end());
+  const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
+  if (!measured.empty()) {
+    const Target target(measured, samples, space, options.model_tolerance);
+    for (Json row : rank(Evidence(target, space), options.seed + 6)) {
+      row["again"] = false;
+      if (row["observable"] == "all" &&
+          std::find(made.begin(), made.end(), row["experiment"]) != made.end())
+        row["observable"] = "all else";
+      rows.push_back(row);
     }
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Json &a, const Json &b) {

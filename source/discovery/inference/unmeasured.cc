@@ -6,12 +6,15 @@ namespace eunoe::discovery {
 
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
                                          const Samples &samples, const Simulator &simulator,
-                                         const unsigned int repeats)
+                                         const unsigned int repeats,
+                                         const std::set<DataPoint> &without)
 {
   std::vector<MeasuredPoint> points;
   for (const std::string &experiment : experiments) {
     const auto &names = simulator.data_points(experiment);
     for (std::size_t c = 0; c < names.size(); ++c) {
+      if (without.count(names[c]) > 0)
+        continue;
       std::vector<double> values;
       bool complete = true;
       for (const Sample &sample : samples.of(experiment)) {

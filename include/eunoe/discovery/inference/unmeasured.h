@@ -4,13 +4,17 @@
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/target.h>
 
+#include <set>
+
 namespace eunoe::discovery {
 
 /// All data points of experiments as if each had been measured on the base model a few times
 /// without an instrument's noise: what stands for data before there are any.
+/// @param without data points that are left out
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
                                          const Samples &samples, const Simulator &simulator,
-                                         unsigned int repeats);
+                                         unsigned int repeats,
+                                         const std::set<DataPoint> &without = {});
 
 /// What is known of experiments before anything is measured.
 class Unmeasured
