@@ -7,6 +7,7 @@ import fcntl
 import importlib.util
 import io
 import json
+import math
 import os
 import signal
 import subprocess
@@ -21,10 +22,12 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
     sys.exit(0)
 
 from eunoe import commands
+from eunoe.intervals import Interval
 from eunoe.pictures.record import digest, read_record
 from eunoe.reproduction.cases import CASES, VARIANTS, Case
 from eunoe.reproduction.page import BLOCKS
 from eunoe.reproduction.results import Findings, length_name
+from eunoe.reproduction.verdict import agreement
 from eunoe.repository import DOC, ROOT
 
 HERE = Path(__file__).resolve().parent
@@ -60,6 +63,17 @@ class Cases(unittest.TestCase):
 
     def test_each_variant_is_run(self) -> None:
         self.assertEqual({case.variant for case in CASES}, set(VARIANTS))
+
+
+class Verdict(unittest.TestCase):
+    def test_densities_agree_only_where_the_interval_says_so(self) -> None:
+        for difference, half, said in ((0.002, 0.01, "agrees within 1.2 %"),
+                                       (-0.205, 0.298, "cannot be told: differs by -20.5 ± 29.8 %"),
+                                       (0.005, 0.018, "cannot be told: differs by +0.5 ± 1.8 %"),
+                                       (-0.22, 0.073, "no: differs by -22.0 ± 7.3 %"),
+                                       (0.1, math.nan, "differs by +10.0 %; one run has no interval"),
+                                       (math.nan, math.nan, "not known yet")):
+            self.assertEqual(agreement(Interval(difference, half)), said)
 
 
 class Campaign(unittest.TestCase):

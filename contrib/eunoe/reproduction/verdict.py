@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
 from eunoe.intervals import Interval, difference_of, mean_of
 from eunoe.report.comparison_text import layers_of, measured_group, text_of
@@ -24,9 +23,8 @@ def _said(found: Interval, size: float = 100., unit: str = " %") -> str:
     return text_of(found, size) + unit + ("" if not math.isnan(found.half) else " (one run)")
 
 
-def _agreement(group: Group, measured: Group, number: Callable[[SpreadRun], float]) -> str:
+def agreement(found: Interval) -> str:
     """Whether two means agree, by the interval of their difference."""
-    found = difference_of(group.of_runs(number), measured.of_runs(number))
     if math.isnan(found.value):
         return UNKNOWN
     if math.isnan(found.half):
@@ -67,7 +65,8 @@ def _by_group(groups: list[Group], measured: Group) -> Table:
                           ("peak of LRD", lambda run: run.peak[0]),
                           ("fall of LRD from the peak to layer 20", _fall)):
         rows += [[title, "measured: " + _said(mean_of(measured.of_runs(number))),
-                  f"{group.label}: {_said(mean_of(group.of_runs(number)))}", _agreement(group, measured, number)]
+                  f"{group.label}: {_said(mean_of(group.of_runs(number)))}",
+                  agreement(difference_of(group.of_runs(number), measured.of_runs(number)))]
                  for group in groups]
     return rows
 
