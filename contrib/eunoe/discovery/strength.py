@@ -6,7 +6,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-
+# The study of the pilot's data that ends a suite.
 PILOT_AT_THE_END = "end"
 
 

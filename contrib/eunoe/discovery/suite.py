@@ -148,7 +148,7 @@ class Suite:
                 print(f"  {error}")
                 continue
             self.make_study(case, folder, self.options.label, self.options.set)
-        if number == of:
+        if number == of and not self.options.only:
             self.pilot(PILOT_AT_THE_END, self.options.set)
 
 
