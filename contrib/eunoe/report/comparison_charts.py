@@ -91,6 +91,9 @@ def mechanism_figure(groups: Sequence[Group]) -> Figure:
         axes.set_ylabel(label)
         style.layer_axis(axes, max(group.layer[-1] for group in groups))
     style.plain_log_axis(panels[0].yaxis)
+    # Shares that are zero everywhere are drawn on an axis of percents.
+    low, high = panels[3].get_ylim()
+    panels[3].set_ylim(low if high > 1. else -0.5, max(high, 10.))
     _legend_below(figure, panels[2])
     return figure
 
