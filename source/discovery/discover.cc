@@ -71,9 +71,7 @@ public:
     const Model &first = round.findings.models.front();
     const double enough = first.log_prior + first.log_evidence - behind;
     for (const Model &model : round.findings.models)
-      if (model.effects.size() == 2 &&
-          std::none_of(answer.begin(), answer.end(),
-                       [&](const Model &m) { return m.effects == model.effects; }) &&
+      if (model.effects.size() == 2 && !is_among(model, answer) &&
           round.evidence.optimistic_pair(model, data) > enough)
         return true;
     for (const std::size_t k : round.evidence.usable()) {

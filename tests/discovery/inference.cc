@@ -311,44 +311,6 @@ void intervals(Laboratory &lab)
         std::to_string(within.likelier_than(0.9 * low)));
 }
 
-/// Models that other data refute leave the answer, and the rest has their probability.
-void withdrawals()
-{
-  const auto with = [](const std::vector<std::size_t> &effects, const double probability) {
-    Model model;
-    model.effects = effects;
-    model.is_discrepancy = effects.empty();
-    model.probability = probability;
-    return model;
-  };
-  const Model a = with({0}, 0.5), b = with({1}, 0.4), nothing_known = with({}, 0.02);
-  Findings before;
-  before.models = {a, b, with({0, 1}, 0.08), nothing_known};
-  before.answer = {a, b};
-  before.off_catalogue = 0.02;
-  before.verdict = Verdict::tie;
-  Findings after = before;
-  withdraw({a}, {}, after);
-  check("the model that is left is the name", after.verdict == Verdict::named &&
-                                                  after.answer.size() == 1 &&
-                                                  after.answer[0].effects == b.effects);
-  check("the rest has the probability of what is refuted",
-        std::abs(after.answer[0].probability - 0.8) < 1e-12 &&
-            std::abs(after.off_catalogue - 0.04) < 1e-12 &&
-            after.models.front().effects == b.effects);
-  after = before;
-  after.none_of_these = true;
-  withdraw({a}, {}, after);
-  check("it is no name where it may be none of them", after.verdict == Verdict::tie);
-  after = before;
-  withdraw({a, b}, {}, after);
-  check("what an answer did not have is no name", after.verdict == Verdict::tie &&
-                                                      after.answer.size() == 1 &&
-                                                      after.answer[0].effects.size() == 2);
-  withdraw(before.models, {}, after);
-  check("without a model there is no name", after.verdict == Verdict::off_catalogue);
-}
-
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as
 /// the data allow where an effect is hardly determined.
 void pairs()
@@ -409,7 +371,6 @@ EUNOE_MPI_TEST()
   false_trail();
   calibrations(lab);
   intervals(lab);
-  withdrawals();
   pairs();
   unpopular_amplitude();
 }

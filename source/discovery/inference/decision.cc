@@ -84,7 +84,8 @@ bool is_needless(const Model &model, const std::vector<Model> &answer)
   });
 }
 
-/// The likeliest models, as many as have the probability of an answer together.
+} // namespace
+
 void choose(const DecisionRule &rule, Findings &findings)
 {
   findings.answer.clear();
@@ -99,8 +100,6 @@ void choose(const DecisionRule &rule, Findings &findings)
       findings.answer.push_back(model);
   }
 }
-
-} // namespace
 
 void judge(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
            Findings &findings)
@@ -125,32 +124,6 @@ void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint3
 {
   choose(rule, findings);
   judge(evidence, rule, seed, findings);
-}
-
-void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings)
-{
-  const auto is_refuted = [&](const Model &model) {
-    return std::any_of(refuted.begin(), refuted.end(), [&](const Model &other) {
-      return !model.is_discrepancy && model.effects == other.effects;
-    });
-  };
-  std::vector<Model> &models = findings.models;
-  double left = 0.;
-  for (const Model &model : models)
-    left += is_refuted(model) ? 0. : model.probability;
-  if (left == 0.) {
-    findings.verdict = Verdict::off_catalogue;
-    return;
-  }
-  // What the answer did not have is unlikely, so that it may as well be none of the catalogue.
-  findings.none_of_these |= std::all_of(findings.answer.begin(), findings.answer.end(), is_refuted);
-  for (Model &model : models)
-    model.probability = is_refuted(model) ? 0. : model.probability / left;
-  std::stable_sort(models.begin(), models.end(),
-                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
-  findings.off_catalogue /= left;
-  choose(rule, findings);
-  findings.verdict = models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
 }
 
 } // namespace eunoe::discovery

@@ -20,6 +20,12 @@ Target::Prediction sum(const Target::Prediction &a, const Target::Prediction &b,
 
 } // namespace
 
+bool is_among(const Model &model, const std::vector<Model> &models)
+{
+  return std::any_of(models.begin(), models.end(),
+                     [&](const Model &other) { return other.effects == model.effects; });
+}
+
 Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
     : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
 {

@@ -50,7 +50,7 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
 /// Raises probabilities to the inverse of the temperature.
 void temper(std::vector<Model> &models, double temperature);
 
-/// Chooses the verdict from the models' probabilities.
+/// Chooses the answer and the verdict from the models' probabilities.
 void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
             Findings &findings);
 
@@ -58,10 +58,8 @@ void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t se
 void judge(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
            Findings &findings);
 
-/// Takes models that other data refute out, shares their probability among the rest, and chooses
-/// the answer anew. If they were all of the answer, "none of these" is in the new one, and is all
-/// of it if nothing else is left or as likely.
-void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings);
+/// Chooses the answer: the likeliest models, as many as have the probability of one together.
+void choose(const DecisionRule &rule, Findings &findings);
 
 /// Of an answer that is chosen: no model, one, or several.
 Verdict verdict_of(const Findings &findings);

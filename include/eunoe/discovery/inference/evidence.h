@@ -29,6 +29,9 @@ struct Model
   std::map<std::size_t, double> best; ///< likeliest amplitudes
 };
 
+/// Whether one of the models has the same effects.
+bool is_among(const Model &model, const std::vector<Model> &models);
+
 /// Marginal likelihoods of all models: amplitudes are integrated, too.
 class Evidence : public Likelihood
 {

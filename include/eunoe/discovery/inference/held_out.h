@@ -3,6 +3,7 @@
 
 #include <eunoe/discovery/inference/describe.h>
 #include <eunoe/discovery/inference/predictive.h>
+#include <eunoe/discovery/inference/refutation.h>
 
 #include <functional>
 #include <memory>
@@ -21,9 +22,8 @@ public:
   /// Largest number of runs of a test that is not in doubt.
   std::uint64_t n_runs() const;
 
-  /// Runs and tests. Models that the data refute leave the answer, and in the end those that were
-  /// not tested and only add to them an effect which the fit does not ask for. The last one that
-  /// leaves takes the name with it.
+  /// Runs and tests, in rounds as long as models that are not tested come into the answer, and
+  /// takes out what the data refute.
   /// @param evidence of the data of the fit
   /// @return table of discovery.json
   Json test(const Evidence &evidence, Findings &findings);
@@ -37,22 +37,28 @@ private:
         : target(std::move(of_data)), evidence(target, space), contest(predict(evidence))
     {
     }
-    double p(std::size_t place) const { return contest.p(place, target.data()); }
 
     const Target target;
     const Evidence evidence;
     const Contest contest;
   };
-  /// Runs the models and compares; null if the data do not vary.
-  std::unique_ptr<Comparison> compare(const Evidence &fit, const std::vector<Model> &models,
-                                      unsigned int runs);
+  /// What a comparison says of the models; without one, the data do not vary.
+  struct Test
+  {
+    std::unique_ptr<Comparison> comparison;
+    TestedModels tested;
+  };
+  /// Models of the answer, and others that held-out data might speak for.
+  static std::vector<Model> first_tested(const Findings &by_fit);
+  /// Runs the models and compares.
+  Test compare(const Evidence &fit, const std::vector<Model> &models, unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
-  bool is_doubtful(const Comparison &comparison, std::size_t n_answers) const;
+  bool is_doubtful(const TestedModels &tested, std::size_t n_answers) const;
   /// Adds models of the answer that are not yet tested, as far as the budget has room.
   void follow(const std::vector<Model> &answer, std::vector<Model> &models) const;
-  /// @param is_last whether untested models fall with a refuted one
-  Json test_models(const Evidence &fit, const Comparison &comparison,
-                   const std::vector<Model> &models, bool is_last, Findings &findings) const;
+  /// @param leader place of the model that leads the answer
+  Json describe_test(const Test &test, const Findings &by_fit,
+                     const std::optional<std::size_t> &leader) const;
 
   const StudyOptions &options;
   const DecisionRule &rule;

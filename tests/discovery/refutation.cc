@@ -1,0 +1,132 @@
+// What held-out data make of an answer, from the probabilities of the models that were tested.
+
+#include <eunoe/discovery/inference/refutation.h>
+
+#include "../tests.h"
+
+#include <cmath>
+
+namespace {
+
+using namespace eunoe::discovery;
+using test::check;
+
+constexpr double good = 0.5, doubtful = 0.03, refuted = 1e-4;
+
+Model with(const std::vector<std::size_t> &effects, const double probability)
+{
+  Model model;
+  model.effects = effects;
+  model.is_discrepancy = effects.empty();
+  model.probability = probability;
+  return model;
+}
+
+const Model a = with({0}, 0.5), b = with({1}, 0.4), both = with({0, 1}, 0.08), c = with({2}, 0.01),
+            none_of_these = with({}, 0.01);
+
+/// A tie of two effects.
+Findings by_fit()
+{
+  Findings findings;
+  findings.models = {a, b, both, c, none_of_these};
+  findings.answer = {a, b};
+  findings.off_catalogue = none_of_these.probability;
+  findings.verdict = Verdict::tie;
+  return findings;
+}
+
+struct Result
+{
+  Findings findings;
+  std::optional<std::size_t> leader;
+  unsigned int n_judged = 0;
+};
+
+Result of(const std::vector<Model> &models, const std::vector<double> &p,
+          const Untested untested = Untested::fall, const Findings &before = by_fit())
+{
+  Result result;
+  result.findings = before;
+  result.leader = refute(
+      {models, p, refuted}, untested, {}, [&](Findings &) { ++result.n_judged; }, result.findings);
+  return result;
+}
+
+bool is(const std::vector<Model> &answer, const std::vector<Model> &expected)
+{
+  return std::equal(answer.begin(), answer.end(), expected.begin(), expected.end(),
+                    [](const Model &x, const Model &y) { return x.effects == y.effects; });
+}
+
+void of_a_tie()
+{
+  const Result kept = of({a, b}, {good, good});
+  check("a tie that is not refuted stays one", kept.findings.verdict == Verdict::tie &&
+                                                   is(kept.findings.answer, {a, b}) &&
+                                                   kept.leader == 0U && kept.n_judged == 0);
+
+  const Result one = of({a, b}, {refuted, good});
+  check("the model that is left is the name",
+        one.findings.verdict == Verdict::named && is(one.findings.answer, {b}) && one.leader == 1U);
+  check("it is judged by the data of the fit, as it did not lead before", one.n_judged == 1);
+  // What only adds to the refuted model falls with it: a and the pair.
+  const double left = 1. - a.probability - both.probability;
+  check("the rest has the probability of what is refuted",
+        std::abs(one.findings.answer.front().probability - b.probability / left) < 1e-12 &&
+            std::abs(one.findings.off_catalogue - none_of_these.probability / left) < 1e-12 &&
+            one.findings.models.front().effects == b.effects);
+
+  Findings open = by_fit();
+  open.none_of_these = true;
+  check("it is no name where it may be none of them",
+        of({a, b}, {refuted, good}, Untested::fall, open).findings.verdict == Verdict::tie);
+  check("nor where the data are far from it, too",
+        of({a, b}, {refuted, doubtful}).findings.verdict == Verdict::tie);
+
+  Findings off = by_fit();
+  const auto spurn = [](Findings &findings) { findings.verdict = Verdict::off_catalogue; };
+  refute({{a, b}, {refuted, good}, refuted}, Untested::fall, {}, spurn, off);
+  check("nor where the data of the fit refute it", off.verdict == Verdict::off_catalogue);
+}
+
+void of_all_of_an_answer()
+{
+  const Result off = of({a, b}, {refuted, refuted});
+  check("without a model there is no name, and the page shows the fit's answer",
+        off.findings.verdict == Verdict::off_catalogue && is(off.findings.answer, {a, b}) &&
+            off.leader == 0U);
+
+  const Result other = of({a, b, c}, {refuted, refuted, good});
+  check("what an answer did not have is no name",
+        other.findings.verdict == Verdict::tie && other.findings.none_of_these &&
+            is(other.findings.answer, {c}) && other.leader == 2U);
+
+  const Result next = of({a, b}, {refuted, refuted}, Untested::stay);
+  check("what may still be tested comes into the answer",
+        is(next.findings.answer, {c}) && !next.leader && next.findings.none_of_these);
+
+  const Result all = of({a, b, both, c}, {refuted, refuted, refuted, refuted}, Untested::stay);
+  check("none of these is never refuted", all.findings.verdict == Verdict::off_catalogue &&
+                                              all.findings.models.front().is_discrepancy);
+}
+
+void of_no_answer()
+{
+  Findings none = by_fit();
+  none.answer.clear();
+  none.verdict = Verdict::none;
+  const Result result = of({a}, {refuted}, Untested::fall, none);
+  check("without an answer nothing changes", result.findings.verdict == Verdict::none &&
+                                                 is(result.findings.models, none.models) &&
+                                                 result.leader == 0U);
+}
+
+} // namespace
+
+EUNOE_MPI_TEST()
+{
+  of_a_tie();
+  of_all_of_an_answer();
+  of_no_answer();
+}
