@@ -146,7 +146,7 @@ void contests(Laboratory &lab)
   const auto number = static_cast<double>(fresh.draws().size());
   const double error = 4. * std::sqrt(level * (1. - level) / number);
   check("a contest keeps its level", truths / number < level + error, std::to_string(truths));
-  check("a contest refutes more wrong models", against_right > 2 * alone && alone > 0,
+  check("a contest refutes more wrong models", 2 * against_right > 3 * alone && alone > 0,
         std::to_string(alone) + ", " + std::to_string(against_right));
   check_close("and says how often it will", contest.refuted_by(1, 0, level), against_right / number,
               0.1);

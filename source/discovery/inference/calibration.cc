@@ -87,7 +87,8 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
   result.stated /= n;
   result.right /= n;
   double highest = -1e300;
-  for (double temperature = 0.7; temperature < 3.; temperature *= 1.05)
+  // Never below 1: twins know nothing of what is wrong with the model besides.
+  for (double temperature = 1.; temperature < 3.; temperature *= 1.05)
     if (const double score = log_score(trials, temperature); score > highest) {
       highest = score;
       result.temperature = temperature;

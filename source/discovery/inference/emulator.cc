@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace eunoe::discovery {
@@ -43,9 +44,9 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   mean = rows.colwise().mean().transpose();
   reduction = Modes(points, base_deviations(rows, least_deviation));
   const std::vector<Group> groups = make_groups(samples, columns);
-  estimate_covariance(groups);
+  estimate_covariance(without_effects(groups));
   fit_scatter(groups);
-  estimate_covariance(groups);
+  estimate_covariance(near_base(groups));
   const BaseInformation without_effects = information_of_base(groups);
   for (std::size_t k = 0; k < n_effects; ++k) {
     std::vector<GaussianProcess::Point> with;
@@ -90,12 +91,34 @@ std::vector<ExperimentEmulator::Group> ExperimentEmulator::make_groups(
   return groups;
 }
 
+std::vector<ExperimentEmulator::Group> ExperimentEmulator::without_effects(
+    const std::vector<Group> &groups)
+{
+  std::vector<Group> result;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(result),
+               [](const Group &group) { return group.effect == -1; });
+  return result;
+}
+
+std::vector<ExperimentEmulator::Group> ExperimentEmulator::near_base(
+    const std::vector<Group> &groups) const
+{
+  constexpr double weak = 4.; // standard deviations of a run
+  std::vector<Group> result;
+  std::copy_if(groups.begin(), groups.end(), std::back_inserter(result), [&](const Group &group) {
+    const double noise = static_cast<double>(size()) / static_cast<double>(group.rows.rows());
+    return group.effect == -1 ||
+           (group.effect >= 0 && (whitening * group.mean).squaredNorm() < weak * weak + noise);
+  });
+  return result;
+}
+
 void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
 {
   Eigen::Index n = 0;
   double degrees = 0.;
   for (const Group &group : groups)
-    if (group.rows.rows() > 1 && group.effect != -2) {
+    if (group.rows.rows() > 1) {
       n += group.rows.rows();
       degrees += static_cast<double>(group.rows.rows() - 1);
     }
@@ -103,7 +126,7 @@ void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
   Eigen::Index row = 0;
   for (const Group &group : groups) {
     const Eigen::Index r = group.rows.rows();
-    if (r < 2 || group.effect == -2)
+    if (r < 2)
       continue;
     const auto k = static_cast<std::size_t>(std::max(0, group.effect));
     const double scale =

@@ -65,6 +65,12 @@ private:
   };
   std::vector<Group> make_groups(const std::vector<Sample> &samples,
                                  const std::vector<Eigen::Index> &columns) const;
+  static std::vector<Group> without_effects(const std::vector<Group> &groups);
+  /// Those that scatter as the base model does: without effects, or with one that changes little.
+  /// Where an effect is strong, single modes may scatter ten times as much, and deviations of all
+  /// runs together have far too heavy tails for a test of whether anything is missing.
+  std::vector<Group> near_base(const std::vector<Group> &groups) const;
+  /// @param groups from whose replicates it is estimated
   void estimate_covariance(const std::vector<Group> &groups);
   void fit_scatter(const std::vector<Group> &groups);
   BaseInformation information_of_base(const std::vector<Group> &groups) const;
