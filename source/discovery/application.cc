@@ -70,24 +70,41 @@ void refuse_if_any(const Problems &problems)
     throw UserError(problems);
 }
 
-/// Runs the base models of a study once, and checks that they give all data points of the measured
-/// data.
-void check_base_models(const StudyInput &study, DemSimulator &simulator)
+/// Runs the base models of a study a few times, and checks that they give all data points of the
+/// measured data. Those that only some of these runs give are left out.
+/// @return a note on each that is left out
+std::vector<std::string> check_base_models(StudyInput &study, DemSimulator &simulator)
 {
+  constexpr unsigned int runs = 3;
   const StudyParameters &p = study.parameters;
-  // A seed that the study uses as well.
-  simulator.find_data_points(100000 * p.options.seed + 1);
+  // With seeds that the study uses as well.
+  simulator.find_data_points(100000 * p.options.seed + 1, {}, runs);
+  std::vector<std::string> notes;
+  std::vector<DataPoint> required;
+  for (auto *list : {&study.data.fit, &study.data.held_out}) {
+    std::vector<MeasuredPoint> kept;
+    for (const MeasuredPoint &row : *list)
+      if (simulator.rare_points().count(row.point) == 0) {
+        kept.push_back(row);
+        required.push_back(row.point);
+      } else
+        notes.push_back(
+            "Left out, as not every run of the base model gives it: " + row.point.experiment +
+            ", " + row.point.observable + ", index " + std::to_string(row.point.index) + ".");
+    *list = kept;
+  }
   std::map<std::string, std::vector<DataPoint>> points;
   for (const Experiment &experiment : study.experiments)
     points[experiment.name()] = simulator.data_points(experiment.name());
   Problems problems;
   check_data_points(study.data, points, p.measured_data, problems);
+  if (study.data.fit.empty())
+    problems.add(p.measured_data + ":",
+                 "has nothing to fit that every run of the base model gives.",
+                 "Measure something else, or make the case larger.");
   refuse_if_any(problems);
-  std::vector<DataPoint> required;
-  for (const auto *list : {&study.data.fit, &study.data.held_out})
-    for (const MeasuredPoint &row : *list)
-      required.push_back(row.point);
   simulator.require(required);
+  return notes;
 }
 
 /// Refuses a study whose folders cannot be written to, before it spends hours on runs.
@@ -139,7 +156,7 @@ void write_page(const StudyInput &study, MPI_Comm comm, Log &log)
 
 /// @param tells_verdict whether the exit code is that of the verdict. MPI's launchers take every
 /// code but 0 for a failure.
-int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm, Log &log)
+int make_study(StudyInput &study, const bool tells_verdict, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
   StudyFolder folder(p.output_path, comm);
@@ -153,11 +170,14 @@ int make_study(const StudyInput &study, const bool tells_verdict, MPI_Comm comm,
     }
     folder.write("used.prm", p.as_input_file());
     stop_request::listen();
-    check_base_models(study, simulator);
+    const std::vector<std::string> left_out = check_base_models(study, simulator);
+    for (const std::string &note : left_out)
+      log.line(note);
     StudyOptions options = p.options;
     options.further_experiments = further_experiments(study);
-    const Discovery discovery =
-        discover(options, study.data, study.plain_factors(), simulator, log);
+    Discovery discovery = discover(options, study.data, study.plain_factors(), simulator, log);
+    for (const std::string &note : left_out)
+      discovery.content["notes"].push_back(note);
     // Nuisances stay at their null values, as in the model that was validated.
     write_models(study, discovery.model_after, folder);
     write_answer(study, discovery, simulator, folder);

@@ -129,22 +129,33 @@ void DemSimulator::take_over(const RunRequest &request, const RunRecord &record)
   records.emplace(one.key, record);
 }
 
-void DemSimulator::find_data_points(const std::uint32_t seed, const Amplitudes &amplitudes)
+void DemSimulator::find_data_points(const std::uint32_t seed, const Amplitudes &amplitudes,
+                                    const unsigned int runs)
 {
   adopt_earlier_runs();
   std::vector<RunRequest> requests;
   for (const Experiment &experiment : experiments)
-    requests.push_back({experiment.name(), amplitudes, seed});
+    for (unsigned int r = 0; r < runs; ++r)
+      requests.push_back({experiment.name(), amplitudes, seed + r});
   run(requests);
+  std::map<DataPoint, unsigned int> given;
   for (const RunRequest &request : requests) {
     const RunRecord &record = records.at(keys.at(text_of(request)));
     if (!record.failure.empty())
       throw UserError((amplitudes.empty() ? "The base model" : "The truth") + std::string(" of ") +
                       "experiment '" + request.experiment + "' cannot be run: " + record.failure);
     std::vector<DataPoint> &points = known_points[request.experiment];
-    for (const Measurement &m : record.measurements)
-      if (std::isfinite(m.value))
-        points.push_back({request.experiment, m.observable, m.index});
+    for (const Measurement &m : record.measurements) {
+      const DataPoint point{request.experiment, m.observable, m.index};
+      if (std::isfinite(m.value) && ++given[point] == 1)
+        points.push_back(point);
+    }
+  }
+  for (auto &[experiment, points] : known_points) {
+    const auto first_rare = std::stable_partition(
+        points.begin(), points.end(), [&](const DataPoint &point) { return given[point] == runs; });
+    rare.insert(first_rare, points.end());
+    points.erase(first_rare, points.end());
   }
 }
 

@@ -102,10 +102,11 @@ std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
   const auto n = static_cast<double>(runs.size());
   std::map<std::string, std::pair<double, double>> squares; // sum and number, by observable
   for (std::size_t c = 0; c < points.size(); ++c)
-    for (const std::vector<double> &values : runs) {
-      squares[points[c].observable].first += values[c] * values[c];
-      squares[points[c].observable].second += 1.;
-    }
+    for (const std::vector<double> &values : runs)
+      if (std::isfinite(values[c])) { // a bin may be empty in some of them
+        squares[points[c].observable].first += values[c] * values[c];
+        squares[points[c].observable].second += 1.;
+      }
   std::vector<MeasuredPoint> rows;
   for (std::size_t c = 0; c < points.size(); ++c) {
     const auto &[sum, number] = squares[points[c].observable];

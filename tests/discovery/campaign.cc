@@ -9,6 +9,7 @@
 #include "../on_one_rank.h"
 #include "drop_process.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace {
@@ -118,6 +119,19 @@ std::vector<RunResult> run_first(const Setting &setting, Log &log)
   return first;
 }
 
+/// Only data points that all runs of the base model give can be compared.
+void find_rare_points(const Setting &setting, Log &log)
+{
+  DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
+  simulator.find_data_points(1, {}, 3);
+  const std::vector<DataPoint> &points = simulator.data_points("box");
+  const DataPoint highest{"box", "height", 4};
+  check("what only some runs give is no data point",
+        std::find(points.begin(), points.end(), highest) == points.end() &&
+            simulator.rare_points().count(highest) == 1 &&
+            simulator.rare_points().count(points.front()) == 0);
+}
+
 /// Another simulator finds all in the table.
 void run_from_table(const Setting &setting, const std::vector<RunResult> &first, Log &log)
 {
@@ -187,4 +201,5 @@ EUNOE_MPI_TEST()
   const std::vector<RunResult> first = run_first(setting, log);
   run_from_table(setting, first, log);
   run_after_a_change(setting, first, log);
+  find_rare_points(setting, log);
 }

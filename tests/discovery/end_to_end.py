@@ -76,6 +76,8 @@ def make_data(program: Program) -> None:
     assert {tuple(row[1:3]) for row in rows[1:]} == {("drift", "0"), ("height", "2")}, rows
     for name in ("few.csv", "few.json", "few.json.runs.sqlite"):
         (folder / name).unlink()
+    # What only some runs of the model give is left out of a study, with a note.
+    (folder / "measured.csv").write_text(data + "box,height,4,0.02,0.001,4,fit\n")
     # From here on no program can read the truth.
     for name in ("truth.sealed.json", "truth.prm"):
         (folder / name).unlink()
@@ -114,6 +116,7 @@ def check_answer(folder: Path) -> None:
     content = json.loads((folder / "discovery.json").read_text())
     assert content["verdict"] == "named"
     assert content["candidates"][0]["effect"] == "tilt"
+    assert any("not every run" in note and "height, index 4" in note for note in content["notes"])
     assert 0.3 < content["amplitudes"][0]["amplitude"] < 1.2, content["amplitudes"]
     assert content["provenance"]["sha256"].keys() >= {"measured data", "case of box", "effect tilt"}
     ledger = content["ledger"]

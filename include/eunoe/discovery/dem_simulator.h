@@ -21,9 +21,13 @@ public:
   DemSimulator(const std::vector<Experiment> &experiments, const std::vector<Effect> &factors,
                const std::string &table_file, unsigned int ranks_per_run, MPI_Comm comm, Log &log);
 
-  /// Runs every experiment once, the base model or with these amplitudes, to see which data points
-  /// it gives. Throws a UserError if one fails; collective. To be called before `data_points`.
-  void find_data_points(std::uint32_t seed, const Amplitudes &amplitudes = {});
+  /// Runs every experiment, the base model or with these amplitudes, to see which data points it
+  /// gives: those of all these runs, with seeds from `seed` on. Throws a UserError if one fails;
+  /// collective. To be called before `data_points`.
+  void find_data_points(std::uint32_t seed, const Amplitudes &amplitudes = {},
+                        unsigned int runs = 1);
+  /// Data points that only some of these runs gave, such as a bin without powder in others.
+  const std::set<DataPoint> &rare_points() const { return rare; }
 
   /// Adds a simulation to the table that this engine has made elsewhere; collective.
   void take_over(const RunRequest &request, const RunRecord &record);
@@ -68,7 +72,7 @@ private:
   MPI_Comm comm;
   Log &log;
   std::map<std::string, std::vector<DataPoint>> known_points;
-  std::set<DataPoint> required;
+  std::set<DataPoint> rare, required;
   std::map<std::string, RunRecord> records; ///< by key
   std::map<std::string, std::string> keys;  ///< by what was requested
   std::uint64_t made = 0, cached = 0;
