@@ -75,10 +75,10 @@ void refuse_if_any(const Problems &problems)
 /// @return a note on each that is left out
 std::vector<std::string> check_base_models(StudyInput &study, DemSimulator &simulator)
 {
-  constexpr unsigned int runs = 3;
   const StudyParameters &p = study.parameters;
-  // With seeds that the study uses as well.
-  simulator.find_data_points(100000 * p.options.seed + 1, {}, runs);
+  // As many as a study has at least, with seeds that it uses as well.
+  constexpr unsigned int fewest = 8;
+  simulator.find_data_points(100000 * p.options.seed + 1, {}, fewest);
   std::vector<std::string> notes;
   std::vector<DataPoint> required;
   for (auto *list : {&study.data.fit, &study.data.held_out}) {

@@ -139,9 +139,12 @@ void DemSimulator::find_data_points(const std::uint32_t seed, const Amplitudes &
       requests.push_back({experiment.name(), amplitudes, seed + r});
   run(requests);
   std::map<DataPoint, unsigned int> given;
+  std::map<std::string, unsigned int> succeeded;
   for (const RunRequest &request : requests) {
     const RunRecord &record = records.at(keys.at(text_of(request)));
-    if (!record.failure.empty())
+    succeeded[request.experiment] += record.failure.empty();
+    if (!record.failure.empty() && request.seed == seed + runs - 1 &&
+        succeeded[request.experiment] == 0)
       throw UserError((amplitudes.empty() ? "The base model" : "The truth") + std::string(" of ") +
                       "experiment '" + request.experiment + "' cannot be run: " + record.failure);
     std::vector<DataPoint> &points = known_points[request.experiment];
@@ -152,8 +155,9 @@ void DemSimulator::find_data_points(const std::uint32_t seed, const Amplitudes &
     }
   }
   for (auto &[experiment, points] : known_points) {
+    const unsigned int all = succeeded[experiment];
     const auto first_rare = std::stable_partition(
-        points.begin(), points.end(), [&](const DataPoint &point) { return given[point] == runs; });
+        points.begin(), points.end(), [&](const DataPoint &point) { return given[point] == all; });
     rare.insert(first_rare, points.end());
     points.erase(first_rare, points.end());
   }

@@ -22,8 +22,8 @@ public:
                const std::string &table_file, unsigned int ranks_per_run, MPI_Comm comm, Log &log);
 
   /// Runs every experiment, the base model or with these amplitudes, to see which data points it
-  /// gives: those of all these runs, with seeds from `seed` on. Throws a UserError if one fails;
-  /// collective. To be called before `data_points`.
+  /// gives: those of all these runs, with seeds from `seed` on, but for runs that break off. Throws
+  /// a UserError if all do; collective. To be called before `data_points`.
   void find_data_points(std::uint32_t seed, const Amplitudes &amplitudes = {},
                         unsigned int runs = 1);
   /// Data points that only some of these runs gave, such as a bin without powder in others.
