@@ -1,5 +1,5 @@
 // The scatter of an emulator is that of the base model, whatever strong effects do to single
-// observables.
+// observables; what they do to these is told for each.
 
 #include <eunoe/discovery/inference/emulator.h>
 #include <eunoe/discovery/statistics/random_stream.h>
@@ -15,8 +15,8 @@ using test::check;
 
 constexpr Eigen::Index n_points = 5, force = 4;
 
-/// Runs of an effect that moves all observables alike, and makes one of them, a force, scatter
-/// twenty times as much where it is strong.
+/// Runs of an effect that moves all observables alike; the change of one of them, a force, differs
+/// from run to run by half of itself, so that it scatters twenty times as much at the end.
 std::vector<Sample> runs(RandomStream &random)
 {
   std::vector<Sample> samples;
@@ -27,7 +27,7 @@ std::vector<Sample> runs(RandomStream &random)
       sample.values.resize(n_points);
       for (Eigen::Index c = 0; c < n_points; ++c)
         sample.values(c) =
-            10. * amplitude + random.normal() * (c == force && amplitude >= 1. ? 20. : 1.);
+            10. * amplitude + random.normal() * (c == force ? std::hypot(1., 5. * amplitude) : 1.);
       samples.push_back(sample);
     }
   };
@@ -66,6 +66,20 @@ EUNOE_MPI_TEST()
   check("the scatter of each observable is the base model's",
         (deviation.array() > 0.75).all() && (deviation.array() < 1.3).all(),
         std::to_string(deviation.minCoeff()) + " to " + std::to_string(deviation.maxCoeff()));
-  check("a strong effect scatters more, as a whole", emulator.scatter({{0, 4.}}) > 2.,
-        std::to_string(emulator.scatter({{0, 4.}})));
+
+  const ExperimentEmulator::Prediction strong = emulator.predict({{0, 4.}}),
+                                       weak = emulator.predict({{0, 0.1}});
+  const Eigen::VectorXd growth = emulator.growth(strong.scatter).cwiseSqrt();
+  check("the force scatters twenty times as much with a strong effect",
+        growth(force) > 14. && growth(force) < 28., std::to_string(growth(force)));
+  check("the others do not", growth.head(force).maxCoeff() < 4.,
+        std::to_string(growth.head(force).maxCoeff()));
+  check("a weak effect scatters as the base model does",
+        emulator.growth(weak.scatter).maxCoeff() < 2.,
+        std::to_string(emulator.growth(weak.scatter).maxCoeff()));
+  check("the mean of the force is known the less",
+        strong.outcome.leverage(force) > 10. * strong.outcome.leverage(0),
+        std::to_string(strong.outcome.leverage(force) / strong.outcome.leverage(0)));
+  check("replicates that scatter less than the base model do not make it scatter less",
+        weak.common >= 1., std::to_string(weak.common));
 }

@@ -30,11 +30,18 @@ Json name_of_point(const DataPoint &point)
       {"experiment", point.experiment}, {"observable", point.observable}, {"index", point.index}};
 }
 
-/// Variance of a measured mean about a prediction at each data point, in base deviations squared.
-Eigen::VectorXd point_variance(const Target::Part &part, const Target::Prediction &prediction,
-                               const Eigen::Index e)
+/// Variance of each data point of a run over that of the base model.
+Eigen::VectorXd growth_of(const Target::Part &part, const Target::Prediction &prediction)
 {
-  return (part.point_ratio.cwiseMax(prediction.scatter(e)).array() / part.measured.repeats.array() +
+  return part.emulator.growth(part.rotation.transpose().cwiseAbs2() *
+                              prediction.scatter.segment(part.first, part.emulator.size()));
+}
+
+/// Variance of a measured mean about a prediction at each data point, in base deviations squared.
+Eigen::VectorXd point_variance(const Target::Part &part, const Target::Prediction &prediction)
+{
+  return (part.point_ratio.cwiseMax(growth_of(part, prediction)).array() /
+              part.measured.repeats.array() +
           prediction.leverage.segment(part.first, part.emulator.size()).mean())
       .matrix();
 }
@@ -217,13 +224,11 @@ Json describe_envelopes(const Evidence &evidence, const Fitted &before,
   std::size_t n_points = 0;
   for (const Target::Part &part : target.experiments())
     n_points += part.measured.points.size();
-  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
-    const Target::Part &part = target.experiments()[e];
-    const auto k = static_cast<Eigen::Index>(e);
+  for (const Target::Part &part : target.experiments()) {
     const Eigen::VectorXd unit = part.emulator.base_deviation();
     const Eigen::VectorXd base = part.emulator.base_mean(),
                           with_nuisances = values_of(part, before.mean);
-    const Eigen::VectorXd variance = point_variance(part, before.prediction, k);
+    const Eigen::VectorXd variance = point_variance(part, before.prediction);
     const boost::math::students_t t(std::max(1., part.emulator.degrees_of_freedom()));
     for (Eigen::Index c = 0; c < unit.size(); ++c) {
       Json row = name_of_point(part.measured.points[static_cast<std::size_t>(c)]);
@@ -242,7 +247,7 @@ Json describe_envelopes(const Evidence &evidence, const Fitted &before,
       row["flagged"] = p <= level;
       if (after) {
         row["after"] = values_of(part, after->mean)(c);
-        row["after deviation"] = unit(c) * std::sqrt(after->prediction.scatter(k));
+        row["after deviation"] = unit(c) * std::sqrt(growth_of(part, after->prediction)(c));
       }
       rows.push_back(row);
     }
@@ -254,12 +259,10 @@ double gap(const Evidence &evidence, const Fitted &model)
 {
   double square = 0., number = 0.;
   const Target &target = evidence.target();
-  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
-    const Target::Part &part = target.experiments()[e];
+  for (const Target::Part &part : target.experiments()) {
     const Eigen::VectorXd deviation = (part.measured.value - values_of(part, model.mean))
                                           .cwiseQuotient(part.emulator.base_deviation());
-    square += deviation.squaredNorm() -
-              point_variance(part, model.prediction, static_cast<Eigen::Index>(e)).sum();
+    square += deviation.squaredNorm() - point_variance(part, model.prediction).sum();
     number += static_cast<double>(deviation.size());
   }
   return std::copysign(std::sqrt(std::abs(square) / number), square);
@@ -286,11 +289,9 @@ Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted
   constexpr std::size_t most = 12;
   std::vector<std::pair<double, Json>> rows;
   const Target &target = evidence.target();
-  for (std::size_t e = 0; e < target.n_experiments(); ++e) {
-    const Target::Part &part = target.experiments()[e];
+  for (const Target::Part &part : target.experiments()) {
     const Eigen::VectorXd unit = part.emulator.base_deviation();
-    const Eigen::VectorXd variance =
-        point_variance(part, first.prediction, static_cast<Eigen::Index>(e));
+    const Eigen::VectorXd variance = point_variance(part, first.prediction);
     const Eigen::VectorXd a = values_of(part, first.mean), b = values_of(part, second.mean);
     for (Eigen::Index c = 0; c < unit.size(); ++c) {
       const auto squared = [&](const Eigen::VectorXd &mean) {

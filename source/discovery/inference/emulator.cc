@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 namespace eunoe::discovery {
 
@@ -30,8 +29,7 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
                                        const std::vector<Eigen::Index> &columns,
                                        const std::vector<DataPoint> &points,
                                        const Eigen::VectorXd &least_deviation)
-    : n_effects(space.n_effects()), n_nuisances(space.n_nuisances()), growth(n_effects, 0.),
-      largest(n_effects, 1.)
+    : n_effects(space.n_effects()), n_nuisances(space.n_nuisances())
 {
   std::vector<const Sample *> of_base;
   for (const Sample &sample : samples)
@@ -44,9 +42,17 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   mean = rows.colwise().mean().transpose();
   reduction = Modes(points, base_deviations(rows, least_deviation));
   const std::vector<Group> groups = make_groups(samples, columns);
-  estimate_covariance(without_effects(groups));
+  double own_share = estimate_covariance(without_effects(groups));
+  // Few runs make a covariance in whose units all others scatter too much.
+  constexpr int rounds = 2;
+  for (int i = 0; i < rounds; ++i) {
+    fit_scatter(groups);
+    own_share = estimate_covariance(near_base(groups));
+  }
+  // The directions in which data are weighed most are those in which the covariance happens to be
+  // small: new data scatter more along them (Dodelson and Schneider 2013).
+  whitening *= std::sqrt(1. - own_share);
   fit_scatter(groups);
-  estimate_covariance(near_base(groups));
   const BaseInformation without_effects = information_of_base(groups);
   for (std::size_t k = 0; k < n_effects; ++k) {
     std::vector<GaussianProcess::Point> with;
@@ -55,7 +61,7 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
         const double u = group.position(static_cast<Eigen::Index>(k));
         with.push_back({u, group.position.tail(static_cast<Eigen::Index>(n_nuisances)),
                         whitening * group.mean,
-                        scatter_at(k, u) / static_cast<double>(group.rows.rows())});
+                        chaos.common(k, u) / static_cast<double>(group.rows.rows())});
       }
     processes.emplace_back(std::move(with), without_effects);
   }
@@ -113,7 +119,15 @@ std::vector<ExperimentEmulator::Group> ExperimentEmulator::near_base(
   return result;
 }
 
-void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
+Scatter::Replicates ExperimentEmulator::whitened(const Group &group) const
+{
+  const double amplitude =
+      group.effect < 0 ? 0. : group.position(static_cast<Eigen::Index>(group.effect));
+  return {group.effect, amplitude, whitening * group.mean,
+          centred(group.rows) * whitening.transpose()};
+}
+
+double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
 {
   Eigen::Index n = 0;
   double degrees = 0.;
@@ -128,12 +142,13 @@ void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
     const Eigen::Index r = group.rows.rows();
     if (r < 2)
       continue;
-    const auto k = static_cast<std::size_t>(std::max(0, group.effect));
-    const double scale =
-        group.effect < 0
-            ? 1.
-            : 1. / std::sqrt(scatter_at(k, group.position(static_cast<Eigen::Index>(k))));
-    deviations.middleRows(row, r) = scale * centred(group.rows);
+    deviations.middleRows(row, r) = centred(group.rows);
+    if (group.effect >= 0) {
+      const Scatter::Replicates own = whitened(group);
+      deviations.middleRows(row, r) = own.deviations *
+                                      chaos.likeliest(own).cwiseSqrt().cwiseInverse().asDiagonal() *
+                                      unwhitening().transpose();
+    }
     unbiased.middleRows(row, r) = deviations.middleRows(row, r) *
                                   std::sqrt(static_cast<double>(r) / static_cast<double>(r - 1));
     row += r;
@@ -148,56 +163,19 @@ void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
   // A run that the covariance was not estimated from lies farther out: as far as each row would if
   // it were left out (Sherman and Morrison).
   constexpr double least = 0.05;
-  for (Eigen::Index i = 0; i < residuals.rows(); ++i)
-    residuals.row(i) /= std::sqrt(
-        std::max(least, 1. - (1. - covariance.shrinkage) * residuals.row(i).squaredNorm() / dof));
+  const Eigen::VectorXd left =
+      (1. - (1. - covariance.shrinkage) * residuals.rowwise().squaredNorm().array() / dof)
+          .cwiseMax(least);
+  residuals = left.cwiseSqrt().cwiseInverse().asDiagonal() * residuals;
+  return 1. - left.mean();
 }
 
-/// The scatter of runs with an effect grows exponentially with the root of its amplitude. A prior
-/// keeps it near that of the base model where few replicates tell. It does not shrink: data that
-/// happen to lie nearer than expected would speak for any effect with less scatter.
 void ExperimentEmulator::fit_scatter(const std::vector<Group> &groups)
 {
-  constexpr double prior_deviation = 0.7, most = 2.3, step = 0.1;
-  // Chaos is not normal, and modes are correlated beyond what shrinkage leaves.
-  constexpr double independent_share = 0.5;
-  for (std::size_t k = 0; k < n_effects; ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    largest[k] = 0.;
-    for (const Group &group : groups)
-      if (group.effect == static_cast<int>(k))
-        largest[k] = std::max(largest[k], std::abs(group.position(at)));
-    if (largest[k] == 0.)
-      continue;
-    double highest = -std::numeric_limits<double>::infinity(), best = 0.;
-    for (double b = 0.; b < most + 0.5 * step; b += step) {
-      double log_likelihood = -0.5 * std::pow(b / prior_deviation, 2);
-      for (const Group &group : groups) {
-        const auto r = static_cast<double>(group.rows.rows());
-        if (group.effect != static_cast<int>(k) || r < 2.)
-          continue;
-        const double t = b * std::sqrt(std::abs(group.position(at)) / largest[k]);
-        const double square =
-            (centred(group.rows) * whitening.transpose()).squaredNorm() * independent_share;
-        const double number = (r - 1.) * static_cast<double>(size()) * independent_share;
-        log_likelihood -= 0.5 * (number * t + square * std::exp(-t));
-      }
-      if (log_likelihood > highest) {
-        highest = log_likelihood;
-        best = b;
-      }
-    }
-    growth[k] = best;
-  }
-}
-
-double ExperimentEmulator::scatter_at(const std::size_t effect, const double amplitude) const
-{
-  if (growth[effect] == 0.)
-    return 1.;
-  constexpr double most = 10.;
-  return std::min(most,
-                  std::exp(growth[effect] * std::sqrt(std::abs(amplitude) / largest[effect])));
+  std::vector<Scatter::Replicates> replicates;
+  for (const Group &group : groups)
+    replicates.push_back(whitened(group));
+  chaos = Scatter(n_effects, replicates);
 }
 
 /// Regression of the runs without effects on the nuisances.
@@ -238,26 +216,32 @@ void ExperimentEmulator::share_base(BaseInformation all)
   }
 }
 
-GaussianProcess::Prediction ExperimentEmulator::predict(
+ExperimentEmulator::Prediction ExperimentEmulator::predict(
     const std::map<std::size_t, double> &effects) const
 {
-  GaussianProcess::Prediction result = alone;
+  Prediction result{alone, Eigen::VectorXd::Ones(size()), 1.};
   for (const auto &[k, amplitude] : effects) {
     const GaussianProcess::Prediction one = processes[k].predict(amplitude);
-    result.mean += one.mean - alone.mean;
-    result.gradient += one.gradient - alone.gradient;
-    result.leverage += one.leverage - alone.leverage;
+    const Eigen::VectorXd change = one.mean - alone.mean;
+    const double common = chaos.common(k, amplitude);
+    const Eigen::VectorXd scatter = chaos.of_modes(k, amplitude, change);
+    result.outcome.mean += change;
+    result.outcome.gradient += one.gradient - alone.gradient;
+    // The process takes the noise of all modes for the same.
+    result.outcome.leverage += one.leverage.cwiseProduct(scatter) / common - alone.leverage;
+    result.scatter = result.scatter.cwiseProduct(scatter);
+    result.common *= common;
   }
-  result.leverage = result.leverage.cwiseMax(1e-4);
+  result.outcome.leverage = result.outcome.leverage.cwiseMax(1e-4);
   return result;
 }
 
-double ExperimentEmulator::scatter(const std::map<std::size_t, double> &effects) const
+Eigen::VectorXd ExperimentEmulator::growth(const Eigen::VectorXd &scatter) const
 {
-  double product = 1.;
-  for (const auto &[k, amplitude] : effects)
-    product *= scatter_at(k, amplitude);
-  return product;
+  const Eigen::MatrixXd base = reduction.basis().transpose() * unwhitening();
+  const Eigen::ArrayXd before = base.rowwise().squaredNorm();
+  const Eigen::ArrayXd after = (base.cwiseAbs2() * scatter).array();
+  return (before > 0.).select(after / before, 1.);
 }
 
 Eigen::VectorXd ExperimentEmulator::values(const Eigen::VectorXd &whitened) const

@@ -15,7 +15,7 @@ Target::Prediction sum(const Target::Prediction &a, const Target::Prediction &b,
 {
   return {a.mean + b.mean - base.mean, a.gradient + b.gradient - base.gradient,
           (a.leverage + b.leverage - base.leverage).cwiseMax(1e-4),
-          a.scatter.cwiseProduct(b.scatter)};
+          a.scatter.cwiseProduct(b.scatter), a.common.cwiseProduct(b.common)};
 }
 
 } // namespace

@@ -182,17 +182,21 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
   const auto n_parts = static_cast<Eigen::Index>(parts.size());
   result.mean.resize(all.size());
   result.leverage.resize(all.size());
-  result.scatter.resize(n_parts);
+  result.scatter.resize(all.size());
+  result.common.resize(n_parts);
   for (Eigen::Index e = 0; e < n_parts; ++e) {
     const Part &part = parts[static_cast<std::size_t>(e)];
-    const GaussianProcess::Prediction one = part.emulator.predict(effects);
+    const ExperimentEmulator::Prediction whitened = part.emulator.predict(effects);
+    const GaussianProcess::Prediction &one = whitened.outcome;
     if (e == 0)
       result.gradient.resize(all.size(), one.gradient.cols());
     result.mean.segment(part.first, part.emulator.size()) = part.rotation * one.mean;
     result.gradient.middleRows(part.first, part.emulator.size()) = part.rotation * one.gradient;
     result.leverage.segment(part.first, part.emulator.size()) =
         part.rotation.cwiseAbs2() * one.leverage;
-    result.scatter(e) = part.emulator.scatter(effects);
+    result.scatter.segment(part.first, part.emulator.size()) =
+        part.rotation.cwiseAbs2() * whitened.scatter;
+    result.common(e) = whitened.common;
   }
   return result;
 }
@@ -211,10 +215,9 @@ Eigen::VectorXd Target::variance(const Prediction &prediction, const std::size_t
   for (std::size_t e = 0; e < parts.size(); ++e) {
     const Part &part = parts[e];
     const auto k = static_cast<Eigen::Index>(e);
-    const double scatter = prediction.scatter(k);
-    const double left = part.share_of_instrument(scatter);
+    const double left = part.share_of_instrument(prediction.common(k));
     result.segment(part.first, part.emulator.size()) =
-        (scatter / part.repeats +
+        (prediction.scatter.segment(part.first, part.emulator.size()).array() / part.repeats +
          prediction.leverage.segment(part.first, part.emulator.size()).array() +
          left * part.instrument.col(static_cast<Eigen::Index>(noise_level)).array())
             .matrix();

@@ -40,12 +40,13 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
     Eigen::VectorXd scatter = Eigen::VectorXd::Zero(n);
     for (int r = 0; r < repeats; ++r)
       scatter += row().transpose();
-    scatter *= std::sqrt(truth.scatter(k) / part.repeats / repeats);
-    result.segment(part.first, n) += part.rotation * scatter;
+    result.segment(part.first, n) +=
+        truth.scatter.segment(part.first, n).cwiseSqrt().cwiseProduct(part.rotation * scatter) /
+        std::sqrt(part.repeats * repeats);
     result.segment(part.first, n) += truth.leverage.segment(part.first, n)
                                          .cwiseSqrt()
                                          .cwiseProduct(part.rotation * row().transpose());
-    result.segment(part.first, n) += part.rotation * instrument(part, truth.scatter(k), quantile);
+    result.segment(part.first, n) += part.rotation * instrument(part, truth.common(k), quantile);
   }
   return result;
 }

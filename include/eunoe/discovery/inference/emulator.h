@@ -2,6 +2,7 @@
 #define eunoe_discovery_inference_emulator_h
 
 #include <eunoe/discovery/inference/samples.h>
+#include <eunoe/discovery/inference/scatter.h>
 #include <eunoe/discovery/statistics/gaussian_process.h>
 #include <eunoe/discovery/statistics/modes.h>
 
@@ -37,10 +38,16 @@ public:
     return whitening * (reduction.basis() * columns);
   }
 
+  struct Prediction
+  {
+    GaussianProcess::Prediction outcome;
+    Eigen::VectorXd scatter; ///< variance of each whitened mode of a run
+    double common = 1.;      ///< variance of all modes as a whole
+  };
   /// Prediction of a set of effects at their positions.
-  GaussianProcess::Prediction predict(const std::map<std::size_t, double> &effects) const;
-  /// Variance of a run's scatter over that of the base model.
-  double scatter(const std::map<std::size_t, double> &effects) const;
+  Prediction predict(const std::map<std::size_t, double> &effects) const;
+  /// Variance of each data point of a run over that of the base model, for one of whitened modes.
+  Eigen::VectorXd growth(const Eigen::VectorXd &scatter) const;
 
   /// Deviations of runs from the mean of their design point, as whitened rows that have the scatter
   /// of a new run, and the degrees of freedom of the covariance that is estimated from them.
@@ -70,20 +77,21 @@ private:
   /// Where an effect is strong, single modes may scatter ten times as much, and deviations of all
   /// runs together have far too heavy tails for a test of whether anything is missing.
   std::vector<Group> near_base(const std::vector<Group> &groups) const;
+  Scatter::Replicates whitened(const Group &group) const;
   /// @param groups from whose replicates it is estimated
-  void estimate_covariance(const std::vector<Group> &groups);
+  /// @return how far a row's own part in the covariance shortens its squared distance, as a share
+  double estimate_covariance(const std::vector<Group> &groups);
   void fit_scatter(const std::vector<Group> &groups);
   BaseInformation information_of_base(const std::vector<Group> &groups) const;
   void share_base(BaseInformation all);
-  double scatter_at(std::size_t effect, double amplitude) const;
 
   std::size_t n_effects, n_nuisances;
   Modes reduction;
   Eigen::VectorXd mean;
   Eigen::MatrixXd whitening, residuals;
   double dof = 1.;
-  GaussianProcess::Prediction alone;   ///< of the base model
-  std::vector<double> growth, largest; ///< per effect: exponent of the scatter, at this amplitude
+  Scatter chaos;
+  GaussianProcess::Prediction alone; ///< of the base model
   std::vector<GaussianProcess> processes;
 };
 

@@ -42,7 +42,8 @@ public:
     Eigen::VectorXd mean;
     Eigen::MatrixXd gradient; ///< by nuisances
     Eigen::VectorXd leverage; ///< variance of each coordinate's mean, in runs' variances
-    Eigen::VectorXd scatter;  ///< of runs, for each experiment
+    Eigen::VectorXd scatter;  ///< variance of each coordinate of a run
+    Eigen::VectorXd common;   ///< variance of a run as a whole, for each experiment
   };
   Prediction predict(const std::map<std::size_t, double> &effects) const;
 

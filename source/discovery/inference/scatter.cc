@@ -1,0 +1,131 @@
+#include <eunoe/discovery/inference/scatter.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eunoe::discovery {
+
+namespace {
+
+// Chaos is not normal, and modes are correlated beyond what shrinkage leaves.
+constexpr double independent_share = 0.5;
+
+double n_free(const Scatter::Replicates &group)
+{
+  return static_cast<double>(group.deviations.rows() - 1);
+}
+
+} // namespace
+
+Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all)
+    : growth(n_effects, 0.), largest(n_effects, 1.)
+{
+  const Eigen::Index n_modes = all.empty() ? 0 : all.front().change.size();
+  shares = Eigen::MatrixXd::Zero(n_modes, static_cast<Eigen::Index>(n_effects));
+  for (std::size_t k = 0; k < n_effects; ++k) {
+    std::vector<const Replicates *> groups;
+    double most = 0.;
+    for (const Replicates &group : all)
+      if (group.effect == static_cast<int>(k)) {
+        most = std::max(most, std::abs(group.amplitude));
+        if (group.deviations.rows() > 1)
+          groups.push_back(&group);
+      }
+    if (most == 0.)
+      continue;
+    largest[k] = most;
+    // What is common and what is each mode's own are known from the same runs.
+    constexpr int rounds = 2;
+    for (int i = 0; i < rounds; ++i) {
+      fit_growth(k, groups);
+      fit_shares(k, groups);
+    }
+  }
+}
+
+Eigen::VectorXd Scatter::squares(const Replicates &group)
+{
+  const double noise = 1. / static_cast<double>(group.deviations.rows());
+  return (group.change.cwiseAbs2().array() - noise).cwiseMax(0.);
+}
+
+double Scatter::exponent(const std::size_t effect, const double amplitude) const
+{
+  return growth[effect] * std::sqrt(std::abs(amplitude) / largest[effect]);
+}
+
+double Scatter::common(const std::size_t effect, const double amplitude) const
+{
+  constexpr double most = 10.;
+  return std::clamp(std::exp(exponent(effect, amplitude)), 1., most);
+}
+
+Eigen::VectorXd Scatter::of_modes(const std::size_t effect, const double amplitude,
+                                  const Eigen::VectorXd &change) const
+{
+  const auto share = shares.col(static_cast<Eigen::Index>(effect)).array();
+  return share * change.cwiseAbs2().array() + common(effect, amplitude);
+}
+
+Eigen::VectorXd Scatter::likeliest(const Replicates &group) const
+{
+  if (group.effect < 0)
+    return Eigen::VectorXd::Ones(group.change.size());
+  return shares.col(group.effect).array() * squares(group).array() +
+         std::exp(exponent(static_cast<std::size_t>(group.effect), group.amplitude));
+}
+
+/// A prior keeps the growth near that of the base model where few replicates tell.
+void Scatter::fit_growth(const std::size_t effect, const std::vector<const Replicates *> &groups)
+{
+  constexpr double prior_deviation = 0.7, least = -1., most = 2.4, step = 0.2;
+  double highest = -std::numeric_limits<double>::infinity(), best = 0.;
+  for (double b = least; b < most + 0.5 * step; b += step) {
+    double log_likelihood = -0.5 * std::pow(b / prior_deviation, 2);
+    growth[effect] = b;
+    for (const Replicates *group : groups) {
+      const Eigen::ArrayXd variance = likeliest(*group);
+      const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
+      log_likelihood -=
+          0.5 * independent_share * (n_free(*group) * variance.log() + square / variance).sum();
+    }
+    if (log_likelihood > highest) {
+      highest = log_likelihood;
+      best = b;
+    }
+  }
+  growth[effect] = best;
+}
+
+/// Mean of the squared share of each mode. Few are large, so that the prior of a share falls
+/// exponentially.
+void Scatter::fit_shares(const std::size_t effect, const std::vector<const Replicates *> &groups)
+{
+  constexpr double typical = 0.1;
+  constexpr double candidates[] = {0., 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1., 1.5};
+  const auto column = static_cast<Eigen::Index>(effect);
+  const auto n = static_cast<Eigen::Index>(std::size(candidates));
+  Eigen::ArrayXXd logs(shares.rows(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double share = candidates[i];
+    // Candidates stand for intervals of unequal width.
+    const double width =
+        0.5 * (candidates[std::min(i + 1, n - 1)] - candidates[std::max<Eigen::Index>(i - 1, 0)]);
+    logs.col(i).setConstant(std::log(width) - share / typical);
+    for (const Replicates *group : groups) {
+      const Eigen::ArrayXd variance =
+          share * share * squares(*group).array() + std::exp(exponent(effect, group->amplitude));
+      const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
+      logs.col(i) -=
+          0.5 * independent_share * (n_free(*group) * variance.log() + square / variance);
+    }
+  }
+  const Eigen::ArrayXXd weights = (logs.colwise() - logs.rowwise().maxCoeff()).exp();
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(shares.rows());
+  for (Eigen::Index i = 0; i < n; ++i)
+    sum += weights.col(i) * candidates[i] * candidates[i];
+  shares.col(column) = sum / weights.rowwise().sum();
+}
+
+} // namespace eunoe::discovery
