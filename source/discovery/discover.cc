@@ -297,7 +297,9 @@ void Study::run()
              (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
                                       format(last["probability"].get<double>()) + ")"
                                 : ", p = " + format(findings.p_nothing)));
-    if (curve.is_settled(*round, options.level) || !design.refine(round->evidence, findings))
+    // Who knows which effect it is still has to learn how much of it.
+    if (curve.is_settled(*round, options.level) ? !design.sharpen(round->evidence, findings.answer)
+                                                : !design.refine(round->evidence, findings))
       break;
   }
   round->look(rule);

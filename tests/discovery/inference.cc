@@ -311,6 +311,38 @@ void intervals(Laboratory &lab)
         std::to_string(within.likelier_than(0.9 * low)));
 }
 
+/// Runs are added at the amplitudes of an answer until their error hardly widens its interval.
+void sharpened()
+{
+  constexpr std::size_t c = 2;
+  Laboratory lab(nature(), 1);
+  const Amplitudes truth = {{"c", lab.simulator.amplitude_of("c", 8., both)}};
+  const auto error = [&](const Target &target) {
+    const double u = (truth.at("c") - lab.space.effect(c).null_value) / lab.space.effect(c).scale;
+    const Target::Prediction prediction = target.predict({{c, u}});
+    return prediction.leverage.cwiseQuotient(target.variance(prediction)).mean();
+  };
+  const double before = error(lab.target(truth, 3));
+  const std::uint64_t first = lab.samples.n_asked();
+  const auto sharpen = [&] {
+    const Target target = lab.target(truth, 3);
+    const Evidence evidence(target, lab.space);
+    Model model;
+    model.effects = {c};
+    model.best = {{c, evidence.best_amplitude(c, target.data())}};
+    return lab.design.sharpen(evidence, {model});
+  };
+  while (sharpen())
+    continue;
+  const double after = error(lab.target(truth, 3));
+  check("runs make an answer's amplitudes known", before > 0.3 && after < 0.25,
+        std::to_string(before) + " to " + std::to_string(after));
+  check("and are few", lab.samples.n_asked() - first < 300,
+        std::to_string(lab.samples.n_asked() - first));
+  check("where nothing is the answer, none are made",
+        !lab.design.sharpen(Evidence(lab.target({}, 3), lab.space), {}));
+}
+
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as
 /// the data allow where an effect is hardly determined.
 void pairs()
@@ -371,6 +403,7 @@ EUNOE_MPI_TEST()
   false_trail();
   calibrations(lab);
   intervals(lab);
+  sharpened();
   pairs();
   unpopular_amplitude();
 }

@@ -16,6 +16,8 @@ constexpr double amplitude_ratio = 1. / 3.;
 /// has no smaller one after it.
 constexpr double just_visible = 3.;
 constexpr int most_levels = 6;
+/// Design points of a round.
+constexpr std::uint64_t fewest = 8;
 
 double strength(const Target &target, const std::size_t effect, const double amplitude)
 {
@@ -153,7 +155,14 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const Finding
   return list;
 }
 
-bool Design::run(std::vector<Wish> list)
+std::uint64_t Design::size_of_round() const
+{
+  constexpr std::uint64_t growth = 10;
+  return std::max(fewest, (samples.n_known() + samples.n_asked()) / growth / experiments.size() /
+                              replicates);
+}
+
+bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 {
   constexpr double share_of_base = 0.1;
   double others = 0.;
@@ -164,9 +173,6 @@ bool Design::run(std::vector<Wish> list)
   double sum = 0.;
   for (const Wish &wish : list)
     sum += wish.weight;
-  constexpr std::uint64_t growth = 10, fewest = 8;
-  const std::uint64_t n_points = std::max(fewest, (samples.n_known() + samples.n_asked()) / growth /
-                                                      experiments.size() / replicates);
   // Systematic sampling: as many points of each as it has of the weight.
   std::vector<DesignPoint> points;
   double below = 0.;
@@ -185,7 +191,35 @@ bool Design::run(std::vector<Wish> list)
 
 bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
-  return run(wishes(evidence, findings));
+  return run(wishes(evidence, findings), size_of_round());
+}
+
+bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
+{
+  constexpr double temperature = 4., well_known = 0.2;
+  const Target &target = evidence.target();
+  std::vector<Wish> list;
+  std::vector<double> logs;
+  for (const Model &model : answer)
+    for (const auto &[k, best] : model.best)
+      for (const Evidence::Place &place : evidence.places(k)) {
+        std::map<std::size_t, double> effects = model.best;
+        effects[k] = place.amplitude;
+        const Target::Prediction prediction = target.predict(effects);
+        list.push_back({k, place.amplitude, unknown(target, prediction)});
+        // Runs that lie far from the data by chance must not keep others from being made there.
+        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction), target.data()) /
+                       temperature);
+      }
+  if (list.empty())
+    return false;
+  const double total = log_sum(logs);
+  double variance = 0.;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    variance += std::exp(logs[i] - total) * list[i].weight * list[i].weight;
+    list[i].weight *= std::exp(logs[i] - total);
+  }
+  return variance > well_known && run(std::move(list), fewest);
 }
 
 bool Design::fill(const Evidence &evidence)
@@ -194,7 +228,7 @@ bool Design::fill(const Evidence &evidence)
   for (const std::size_t k : evidence.usable())
     for (const Evidence::Place &place : evidence.places(k))
       list.push_back({k, place.amplitude, unknown(evidence.target(), place.hypothesis.prediction)});
-  return run(std::move(list));
+  return run(std::move(list), size_of_round());
 }
 
 } // namespace eunoe::discovery

@@ -29,6 +29,11 @@ public:
   /// @return whether anything could be run
   bool refine(const Evidence &evidence, const Findings &findings);
 
+  /// Runs where the amplitudes of these models may lie, until they are limited by what was measured
+  /// and no longer by what has been run.
+  /// @return whether anything could be run, and had to
+  bool sharpen(const Evidence &evidence, const std::vector<Model> &answer);
+
   /// Runs where the emulators of effects know least, whatever will be measured.
   /// @return whether anything could be run
   bool fill(const Evidence &evidence);
@@ -41,7 +46,9 @@ private:
     double amplitude, weight;
   };
   std::vector<Wish> wishes(const Evidence &evidence, const Findings &findings) const;
-  bool run(std::vector<Wish> wishes);
+  bool run(std::vector<Wish> wishes, std::uint64_t n_points);
+  /// Design points of a round: the more, the more runs there are.
+  std::uint64_t size_of_round() const;
   Eigen::VectorXd draw_nuisances();
   DesignPoint point(std::size_t effect, double amplitude);
 
