@@ -139,54 +139,118 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
   }
 }
 
-/// Makes the runs of a study without any effect until its budget is used, and evaluates many other
-/// data without any effect by them: p of nothing missing must be as often below a level as the
-/// level says, whatever trail the study has followed.
-void observe_level(const RecordedTable &table, StudyOptions options, const std::uint32_t seed)
+/// All runs that a study makes until its budget is used.
+class Runs
+{
+public:
+  Runs(const RecordedTable &table, const StudyKind &kind, const StudyOptions &study,
+       std::uint32_t seed)
+      : drawn(table, kind, seed), options(with_seed(study, seed)), space(drawn.simulator.factors()),
+        fit(table.fit), samples(options, space, drawn.simulator, fit),
+        design(options, space, samples, fit)
+  {
+    design.run_base();
+    design.run_effects([&] { return target(drawn.data); });
+    while (true) {
+      const Target now = target(drawn.data);
+      const Evidence evidence(now, space);
+      if (!design.refine(evidence, weigh(evidence, options, DecisionRule().quick())))
+        break;
+    }
+  }
+
+  Target target(const MeasuredData &data)
+  {
+    std::vector<std::string> notes;
+    return Target(sort_by_experiment(data.fit, samples, samples.simulator(), notes), samples, space,
+                  options.model_tolerance);
+  }
+
+  DrawnCase drawn;
+  const StudyOptions options;
+  const FactorSpace space;
+  const std::vector<std::string> fit;
+  Samples samples;
+  Design design;
+
+private:
+  static StudyOptions with_seed(StudyOptions study, const std::uint32_t seed)
+  {
+    study.seed = seed;
+    return study;
+  }
+};
+
+/// Makes the runs of a study without any effect, and evaluates many other data without any effect
+/// by them: p of nothing missing must be as often below a level as the level says, whatever trail
+/// the study has followed.
+void observe_level(const RecordedTable &table, const StudyOptions &options,
+                   const std::uint32_t seed)
 {
   constexpr std::uint32_t n_data = 200, first_data = 0x10000000u;
   constexpr unsigned int n_twins = 400;
-  options.seed = seed;
-  DrawnCase drawn(table, {"none"}, seed);
-  const FactorSpace space(drawn.simulator.factors());
-  Samples samples(options, space, drawn.simulator, table.fit);
-  Design design(options, space, samples, table.fit);
-  std::vector<std::string> notes;
-  const auto target = [&](const MeasuredData &data) {
-    return Target(sort_by_experiment(data.fit, samples, samples.simulator(), notes), samples, space,
-                  options.model_tolerance);
-  };
-  design.run_base();
-  design.run_effects([&] { return target(drawn.data); });
-  while (true) {
-    const Target now = target(drawn.data);
-    const Evidence evidence(now, space);
-    if (!design.refine(evidence, weigh(evidence, options, DecisionRule().quick())))
-      break;
-  }
+  Runs study(table, {"none"}, options, seed);
   std::map<double, unsigned int> below = {{0.05, 0}, {0.01, 0}, {0.001, 0}};
   for (std::uint32_t k = 0; k < n_data; ++k) {
     const std::uint32_t other = first_data + 1000u * seed + k;
     const Amplitudes nuisances = DrawnCase(table, {"none"}, other).one.truth;
-    const Target fresh = target(
-        drawn.simulator.measure(table.fit, {}, nuisances, drawn.repeats, drawn.instrument, other));
-    const Evidence evidence(fresh, space);
+    const Target fresh = study.target(study.drawn.simulator.measure(
+        table.fit, {}, nuisances, study.drawn.repeats, study.drawn.instrument, other));
+    const Evidence evidence(fresh, study.space);
     const double p =
         null_distribution(evidence, n_twins, seed).p(evidence.log_bayes_factors(fresh.data())(0));
     for (auto &[level, number] : below)
       number += p <= level;
   }
-  std::printf("seed %u, %lu runs:", seed, static_cast<unsigned long>(samples.n_asked()));
+  std::printf("seed %u, %lu runs:", seed, static_cast<unsigned long>(study.samples.n_asked()));
   for (const auto &[level, number] : below)
     std::printf(" p <= %g in %u of %u;", level, number, n_data);
   std::printf("\n");
   std::fflush(stdout);
 }
 
+/// Variance of data by the scatter of runs along the weights by which a study estimates an
+/// amplitude of strength 4: the simulator's, and that of the study's twins, over what it assumes.
+void observe_weights(const RecordedTable &table, const StudyOptions &options,
+                     const std::uint32_t seed)
+{
+  Runs study(table, {"single", 4., 1}, options, seed);
+  const auto &[name, strength] = *study.drawn.one.strengths.begin();
+  std::size_t k = 0;
+  while (study.space.effect(k).name != name)
+    ++k;
+  const Factor &effect = study.space.effect(k);
+  const double u = (study.drawn.one.truth.at(name) - effect.null_value) / effect.scale;
+  const Target target = study.target(study.drawn.data);
+  const auto mean = [&](const double share) { return target.predict({{k, share * u}}).mean; };
+  constexpr double step = 0.02;
+  const Target::Prediction prediction = target.predict({{k, u}});
+  Eigen::MatrixXd covariance = prediction.gradient * prediction.gradient.transpose();
+  covariance.diagonal() += target.variance(prediction);
+  const Eigen::VectorXd weights = covariance.llt().solve(mean(1. + step) - mean(1. - step));
+  double assumed = 0., of_twins = 0., of_simulator = 0.;
+  for (const Target::Part &part : target.experiments()) {
+    const Eigen::VectorXd own =
+        part.rotation.transpose() * weights.segment(part.first, part.emulator.size());
+    const Eigen::MatrixXd &rows = part.emulator.deviations();
+    const Eigen::MatrixXd true_root =
+        study.drawn.simulator.covariance(part.measured.name).llt().matrixL();
+    const Eigen::MatrixXd scaled = part.emulator.base_deviation().cwiseInverse().asDiagonal() *
+                                   true_root(part.measured.columns, Eigen::all);
+    assumed += own.squaredNorm() / part.repeats;
+    of_twins += (rows * own).squaredNorm() / static_cast<double>(rows.rows()) / part.repeats;
+    of_simulator +=
+        (part.emulator.whiten_scaled(scaled).transpose() * own).squaredNorm() / part.repeats;
+  }
+  std::printf("seed %u, %s: %.3f of the simulator, %.3f of twins\n", seed, name.c_str(),
+              of_simulator / assumed, of_twins / assumed);
+  std::fflush(stdout);
+}
+
 void run(const SuiteOptions &options)
 {
   std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt";
-  bool simulated = false, only_describe = false, ideal = false, level = false;
+  bool simulated = false, only_describe = false, ideal = false, level = false, weights = false;
   for (const std::string &option : options.others) {
     if (option == "simulated")
       simulated = true;
@@ -196,6 +260,8 @@ void run(const SuiteOptions &options)
       ideal = true;
     else if (option == "level")
       level = true;
+    else if (option == "weights")
+      weights = true;
     else if (option.rfind("table=", 0) == 0)
       path = option.substr(6);
     else
@@ -210,6 +276,10 @@ void run(const SuiteOptions &options)
     const std::uint32_t seed = options.first_seed + k;
     if (level) {
       observe_level(table, options.study, seed);
+      continue;
+    }
+    if (weights) {
+      observe_weights(table, options.study, seed);
       continue;
     }
     if (simulated) {

@@ -1,7 +1,7 @@
 """Makes a blind suite: hidden truths, their data, and a study of each.
 
 Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full]
-       [--seeds ci|development|reported|again|third] [--study-seeds N] [--ranks N] [--label NAME]
+       [--seeds ci|development|reported|again|third|fourth] [--study-seeds N] [--ranks N] [--label NAME]
        [--set "discovery/entry = value" ...] [--part I/N]
 
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
@@ -11,7 +11,7 @@ already is not made again, and what was interrupted goes on, so the command may 
 --label keeps the studies of an ablation beside the others: they use the same data. score.py makes the tables.
 
 Thresholds are tuned on development seeds only; the reported suite is made afterwards, and once what it
-shows has changed the rules, one of the seeds "again", and then of the "third".
+shows has changed the rules, one of the seeds "again", and then of the "third" and "fourth".
 """
 
 from __future__ import annotations

@@ -109,12 +109,18 @@ std::vector<ExperimentEmulator::Group> ExperimentEmulator::without_effects(
 std::vector<ExperimentEmulator::Group> ExperimentEmulator::near_base(
     const std::vector<Group> &groups) const
 {
-  constexpr double weak = 4.; // standard deviations of a run
+  constexpr double weak = 4.;   // standard deviations of a run
+  constexpr double alike = 1.5; // modes, in variance
   std::vector<Group> result;
   std::copy_if(groups.begin(), groups.end(), std::back_inserter(result), [&](const Group &group) {
+    if (group.effect < 0)
+      return group.effect == -1;
+    const Scatter::Replicates own = whitened(group);
+    const auto k = static_cast<std::size_t>(group.effect);
     const double noise = static_cast<double>(size()) / static_cast<double>(group.rows.rows());
-    return group.effect == -1 ||
-           (group.effect >= 0 && (whitening * group.mean).squaredNorm() < weak * weak + noise);
+    return own.change.squaredNorm() < weak * weak + noise &&
+           chaos.of_modes(k, own.amplitude, own.change).maxCoeff() <
+               alike * chaos.common(k, own.amplitude);
   });
   return result;
 }
@@ -143,12 +149,9 @@ double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
     if (r < 2)
       continue;
     deviations.middleRows(row, r) = centred(group.rows);
-    if (group.effect >= 0) {
-      const Scatter::Replicates own = whitened(group);
-      deviations.middleRows(row, r) = own.deviations *
-                                      chaos.likeliest(own).cwiseSqrt().cwiseInverse().asDiagonal() *
-                                      unwhitening().transpose();
-    }
+    if (group.effect >= 0)
+      deviations.middleRows(row, r) /= std::sqrt(
+          chaos.likeliest(static_cast<std::size_t>(group.effect), whitened(group).amplitude));
     unbiased.middleRows(row, r) = deviations.middleRows(row, r) *
                                   std::sqrt(static_cast<double>(r) / static_cast<double>(r - 1));
     row += r;

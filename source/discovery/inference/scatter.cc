@@ -58,7 +58,7 @@ double Scatter::exponent(const std::size_t effect, const double amplitude) const
 double Scatter::common(const std::size_t effect, const double amplitude) const
 {
   constexpr double most = 10.;
-  return std::clamp(std::exp(exponent(effect, amplitude)), 1., most);
+  return std::clamp(likeliest(effect, amplitude), 1., most);
 }
 
 Eigen::VectorXd Scatter::of_modes(const std::size_t effect, const double amplitude,
@@ -68,24 +68,23 @@ Eigen::VectorXd Scatter::of_modes(const std::size_t effect, const double amplitu
   return share * change.cwiseAbs2().array() + common(effect, amplitude);
 }
 
-Eigen::VectorXd Scatter::likeliest(const Replicates &group) const
+double Scatter::likeliest(const std::size_t effect, const double amplitude) const
 {
-  if (group.effect < 0)
-    return Eigen::VectorXd::Ones(group.change.size());
-  return shares.col(group.effect).array() * squares(group).array() +
-         std::exp(exponent(static_cast<std::size_t>(group.effect), group.amplitude));
+  return std::exp(exponent(effect, amplitude));
 }
 
 /// A prior keeps the growth near that of the base model where few replicates tell.
 void Scatter::fit_growth(const std::size_t effect, const std::vector<const Replicates *> &groups)
 {
   constexpr double prior_deviation = 0.7, least = -1., most = 2.4, step = 0.2;
+  const auto column = static_cast<Eigen::Index>(effect);
   double highest = -std::numeric_limits<double>::infinity(), best = 0.;
   for (double b = least; b < most + 0.5 * step; b += step) {
     double log_likelihood = -0.5 * std::pow(b / prior_deviation, 2);
     growth[effect] = b;
     for (const Replicates *group : groups) {
-      const Eigen::ArrayXd variance = likeliest(*group);
+      const Eigen::ArrayXd variance = shares.col(column).array() * squares(*group).array() +
+                                      likeliest(effect, group->amplitude);
       const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
       log_likelihood -=
           0.5 * independent_share * (n_free(*group) * variance.log() + square / variance).sum();
@@ -115,7 +114,7 @@ void Scatter::fit_shares(const std::size_t effect, const std::vector<const Repli
     logs.col(i).setConstant(std::log(width) - share / typical);
     for (const Replicates *group : groups) {
       const Eigen::ArrayXd variance =
-          share * share * squares(*group).array() + std::exp(exponent(effect, group->amplitude));
+          share * share * squares(*group).array() + likeliest(effect, group->amplitude);
       const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
       logs.col(i) -=
           0.5 * independent_share * (n_free(*group) * variance.log() + square / variance);

@@ -32,8 +32,8 @@ public:
   /// @param change of the mean by the effect, in whitened modes
   Eigen::VectorXd of_modes(std::size_t effect, double amplitude,
                            const Eigen::VectorXd &change) const;
-  /// The likeliest growth of each mode, be it below 1.
-  Eigen::VectorXd likeliest(const Replicates &group) const;
+  /// The likeliest growth as a whole, be it below 1.
+  double likeliest(std::size_t effect, double amplitude) const;
 
 private:
   double exponent(std::size_t effect, double amplitude) const;
