@@ -127,7 +127,8 @@ class Suite:
         if not effects:
             raise Failure("The study has no effects.")
         print("pilot", flush=True)
-        strengths = self.pilot("study", [])
+        is_ablation = self.options.label != "study"
+        strengths = self.pilot("study", [] if is_ablation else self.options.set)
         number, of = self.options.part
         cases = make_cases(effects, self.options.tier, self.options.seeds, self.options.study_seeds)
         for case in cases[number - 1::of]:
