@@ -155,11 +155,10 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const Finding
   return list;
 }
 
-std::uint64_t Design::size_of_round() const
+std::uint64_t Design::size_of_round(const std::uint64_t n_runs) const
 {
   constexpr std::uint64_t growth = 10;
-  return std::max(fewest, (samples.n_known() + samples.n_asked()) / growth / experiments.size() /
-                              replicates);
+  return std::max(fewest, n_runs / growth / experiments.size() / replicates);
 }
 
 bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
@@ -191,7 +190,8 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 
 bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
-  return run(wishes(evidence, findings), size_of_round());
+  // What a table knows already does not make a study's own rounds larger.
+  return run(wishes(evidence, findings), size_of_round(samples.n_asked()));
 }
 
 bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
@@ -228,7 +228,7 @@ bool Design::fill(const Evidence &evidence)
   for (const std::size_t k : evidence.usable())
     for (const Evidence::Place &place : evidence.places(k))
       list.push_back({k, place.amplitude, unknown(evidence.target(), place.hypothesis.prediction)});
-  return run(std::move(list), size_of_round());
+  return run(std::move(list), size_of_round(samples.n_known() + samples.n_asked()));
 }
 
 } // namespace eunoe::discovery

@@ -47,8 +47,8 @@ private:
   };
   std::vector<Wish> wishes(const Evidence &evidence, const Findings &findings) const;
   bool run(std::vector<Wish> wishes, std::uint64_t n_points);
-  /// Design points of a round: the more, the more runs there are.
-  std::uint64_t size_of_round() const;
+  /// Design points of a round after this many runs.
+  std::uint64_t size_of_round(std::uint64_t n_runs) const;
   Eigen::VectorXd draw_nuisances();
   DesignPoint point(std::size_t effect, double amplitude);
 
