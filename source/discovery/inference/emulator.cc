@@ -58,7 +58,7 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
     std::vector<GaussianProcess::Point> with;
     for (const Group &group : groups)
       if (group.effect == static_cast<int>(k)) {
-        const double u = group.position(static_cast<Eigen::Index>(k));
+        const double u = group.amplitude();
         with.push_back({u, group.position.tail(static_cast<Eigen::Index>(n_nuisances)),
                         whitening * group.mean,
                         chaos.common(k, u) / static_cast<double>(group.rows.rows())});
@@ -125,12 +125,16 @@ std::vector<ExperimentEmulator::Group> ExperimentEmulator::near_base(
   return result;
 }
 
+double ExperimentEmulator::Group::amplitude() const
+{
+  return effect < 0 ? 0. : position(static_cast<Eigen::Index>(effect));
+}
+
 Scatter::Replicates ExperimentEmulator::whitened(const Group &group) const
 {
-  const double amplitude =
-      group.effect < 0 ? 0. : group.position(static_cast<Eigen::Index>(group.effect));
-  return {group.effect, amplitude, whitening * group.mean,
-          centred(group.rows) * whitening.transpose()};
+  const Eigen::MatrixXd deviations = centred(group.rows) * whitening.transpose();
+  return {group.effect, group.amplitude(), whitening * group.mean,
+          deviations.colwise().squaredNorm().transpose(), static_cast<double>(group.rows.rows())};
 }
 
 double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
@@ -150,8 +154,8 @@ double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
       continue;
     deviations.middleRows(row, r) = centred(group.rows);
     if (group.effect >= 0)
-      deviations.middleRows(row, r) /= std::sqrt(
-          chaos.likeliest(static_cast<std::size_t>(group.effect), whitened(group).amplitude));
+      deviations.middleRows(row, r) /=
+          std::sqrt(chaos.likeliest(static_cast<std::size_t>(group.effect), group.amplitude()));
     unbiased.middleRows(row, r) = deviations.middleRows(row, r) *
                                   std::sqrt(static_cast<double>(r) / static_cast<double>(r - 1));
     row += r;

@@ -6,17 +6,17 @@
 
 namespace eunoe::discovery {
 
-namespace {
-
-// Chaos is not normal, and modes are correlated beyond what shrinkage leaves.
-constexpr double independent_share = 0.5;
-
-double n_free(const Scatter::Replicates &group)
+Eigen::ArrayXd Scatter::Replicates::squared_change() const
 {
-  return static_cast<double>(group.deviations.rows() - 1);
+  return (change.array().square() - 1. / runs).cwiseMax(0.);
 }
 
-} // namespace
+Eigen::ArrayXd Scatter::Replicates::log_likelihood(const Eigen::ArrayXd &variance) const
+{
+  // Chaos is not normal, and modes are correlated beyond what shrinkage leaves.
+  constexpr double independent_share = 0.5;
+  return -0.5 * independent_share * ((runs - 1.) * variance.log() + square.array() / variance);
+}
 
 Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all)
     : growth(n_effects, 0.), largest(n_effects, 1.)
@@ -29,7 +29,7 @@ Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all
     for (const Replicates &group : all)
       if (group.effect == static_cast<int>(k)) {
         most = std::max(most, std::abs(group.amplitude));
-        if (group.deviations.rows() > 1)
+        if (group.runs > 1.)
           groups.push_back(&group);
       }
     if (most == 0.)
@@ -42,12 +42,6 @@ Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all
       fit_shares(k, groups);
     }
   }
-}
-
-Eigen::VectorXd Scatter::squares(const Replicates &group)
-{
-  const double noise = 1. / static_cast<double>(group.deviations.rows());
-  return (group.change.cwiseAbs2().array() - noise).cwiseMax(0.);
 }
 
 double Scatter::exponent(const std::size_t effect, const double amplitude) const
@@ -82,13 +76,11 @@ void Scatter::fit_growth(const std::size_t effect, const std::vector<const Repli
   for (double b = least; b < most + 0.5 * step; b += step) {
     double log_likelihood = -0.5 * std::pow(b / prior_deviation, 2);
     growth[effect] = b;
-    for (const Replicates *group : groups) {
-      const Eigen::ArrayXd variance = shares.col(column).array() * squares(*group).array() +
-                                      likeliest(effect, group->amplitude);
-      const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
-      log_likelihood -=
-          0.5 * independent_share * (n_free(*group) * variance.log() + square / variance).sum();
-    }
+    for (const Replicates *group : groups)
+      log_likelihood += group
+                            ->log_likelihood(shares.col(column).array() * group->squared_change() +
+                                             likeliest(effect, group->amplitude))
+                            .sum();
     if (log_likelihood > highest) {
       highest = log_likelihood;
       best = b;
@@ -112,13 +104,9 @@ void Scatter::fit_shares(const std::size_t effect, const std::vector<const Repli
     const double width =
         0.5 * (candidates[std::min(i + 1, n - 1)] - candidates[std::max<Eigen::Index>(i - 1, 0)]);
     logs.col(i).setConstant(std::log(width) - share / typical);
-    for (const Replicates *group : groups) {
-      const Eigen::ArrayXd variance =
-          share * share * squares(*group).array() + likeliest(effect, group->amplitude);
-      const Eigen::ArrayXd square = group->deviations.colwise().squaredNorm().transpose();
-      logs.col(i) -=
-          0.5 * independent_share * (n_free(*group) * variance.log() + square / variance);
-    }
+    for (const Replicates *group : groups)
+      logs.col(i) += group->log_likelihood(share * share * group->squared_change() +
+                                           likeliest(effect, group->amplitude));
   }
   const Eigen::ArrayXXd weights = (logs.colwise() - logs.rowwise().maxCoeff()).exp();
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(shares.rows());

@@ -69,6 +69,7 @@ private:
     Eigen::VectorXd position, mean; ///< mean of the modes
     Eigen::MatrixXd rows;           ///< of modes
     int effect = -1;                ///< the only one that is not zero; -1: none, -2: several
+    double amplitude() const;       ///< of that effect
   };
   std::vector<Group> make_groups(const std::vector<Sample> &samples,
                                  const std::vector<Eigen::Index> &columns) const;

@@ -16,10 +16,16 @@ public:
   /// Runs at one position.
   struct Replicates
   {
-    int effect;                 ///< the only one; -1: none, -2: several
-    double amplitude;           ///< of that effect
-    Eigen::VectorXd change;     ///< of the mean, in whitened modes
-    Eigen::MatrixXd deviations; ///< from the mean, a row for each run
+    int effect = -1;        ///< the only one; -1: none, -2: several
+    double amplitude = 0.;  ///< of that effect
+    Eigen::VectorXd change; ///< of the mean, in whitened modes
+    Eigen::VectorXd square; ///< sum of the squared deviations from the mean, of each mode
+    double runs = 1.;
+
+    /// Squared change, less what the noise of the mean adds.
+    Eigen::ArrayXd squared_change() const;
+    /// Logarithm of the likelihood of each mode's deviations, up to a constant.
+    Eigen::ArrayXd log_likelihood(const Eigen::ArrayXd &variance) const;
   };
 
   Scatter() = default;
@@ -37,8 +43,6 @@ public:
 
 private:
   double exponent(std::size_t effect, double amplitude) const;
-  /// Squared change, less what the noise of the mean adds.
-  static Eigen::VectorXd squares(const Replicates &group);
   void fit_growth(std::size_t effect, const std::vector<const Replicates *> &groups);
   void fit_shares(std::size_t effect, const std::vector<const Replicates *> &groups);
 
