@@ -52,6 +52,15 @@ class Cases(unittest.TestCase):
         self.assertEqual((held.base, held.settings["powder spreading/gap"]), ("PS1_L0.25_lips", "0.1e-3"))
         self.assertIn("model parameters/contact history/forget interval", held.settings)
 
+    def test_softer_grains_have_longer_steps(self) -> None:
+        soft, held = Case("PS1", 1., 1, variant="soft"), Case("PS1", 0.25, 1, variant="lips_soft")
+        wall = "lagrangian physical properties/young modulus wall"
+        for case, base in ((soft, "PS1_L1"), (held, "PS1_L0.25_lips")):
+            self.assertEqual((case.base, case.settings[wall]), (base, "2.625e+06"))
+            self.assertEqual(case.settings["simulation control/time step"], "1.78099e-06")
+        self.assertTrue(soft.is_seen_closely)
+        self.assertFalse(held.is_seen_closely)
+
     def test_names_of_lengths(self) -> None:
         self.assertEqual([length_name(length) for length in (0.25, 0.5, 1., 2.)], ["L1/4", "L1/2", "L1", "L2"])
 

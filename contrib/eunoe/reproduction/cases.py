@@ -22,6 +22,7 @@ SPREADING, MODEL = "powder spreading", "model parameters"
 SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
 FORGET = f"{MODEL}/contact history/forget interval"
 BALANCE_INTERVAL = 10.5e-3  # s between two load balances of the published input files
+POWDER, YOUNG = "lagrangian physical properties", 26.25e6  # Pa
 SETS = ("PS1", "PS2", "PS3")
 N_LAYERS = 21
 
@@ -33,29 +34,42 @@ class Variant:
     """@param title in words, beside the cases that it is compared with
     @param settings entries of the input and their values
     @param base the variant that it is compared with and whose settings it shares; empty: none
-    @param forgets whether contacts forget as often as the published input files balance loads"""
+    @param forgets whether contacts forget as often as the published input files balance loads
+    @param softer what Young's modulus is divided by; the pull-off force stays, and the time step keeps its
+        share of the Rayleigh time, which goes with the inverse root of the modulus
+    @param closely whether maps and pictures of its runs are kept, as of those without a variant"""
 
     title: str
     settings: dict[str, Any] = field(default_factory=dict)
     base: str = ""
     forgets: bool = False
+    softer: float = 1.
+    closely: bool = False
+
+    @property
+    def elasticity(self) -> dict[str, Any]:
+        if self.softer == 1.:
+            return {}
+        young = f"{YOUNG / self.softer:.6g}"
+        return {f"{POWDER}/particle type 0/young modulus particles": young, f"{POWDER}/young modulus wall": young}
 
 
 VARIANTS = {
-    "": Variant("as the paper, at the cheap settings"),
+    "": Variant("as the paper, at the cheap settings", closely=True),
     "forget": Variant("contacts forget every 10.5 ms", forgets=True),
     "unopened": Variant("velocity Verlet without its opening half step",
                         {f"{MODEL}/integration method": "symplectic_euler"}),
     "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
     "lips": Variant("lips and gap of the small cases",
-                    {f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
+                    {f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}, closely=True),
     "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=True),
     "lips_unopened": Variant("velocity Verlet without its opening half step",
                              {f"{MODEL}/integration method": "symplectic_euler"}, base="lips"),
+    "soft": Variant("a tenth of Young's modulus", softer=10., closely=True),
+    "lips_soft": Variant("a tenth of Young's modulus", base="lips", softer=10.),
     "awake": Variant("without sleep", {SLEEP: "false"}),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
 }
-BASE_VARIANTS = {variant.base for variant in VARIANTS.values()}
 
 
 @dataclass(frozen=True)
@@ -105,10 +119,10 @@ class Case:
         return not self.title
 
     @property
-    def is_base(self) -> bool:
-        """Whether this is a case that others are compared with, of any property set, so that it is looked at
-        closely."""
-        return self.is_plain or (self.title == VARIANTS[self.variant].title and self.variant in BASE_VARIANTS)
+    def is_seen_closely(self) -> bool:
+        """Whether maps and pictures of its runs are kept."""
+        variant = VARIANTS[self.variant]
+        return variant.closely and (self.is_plain or self.title == variant.title)
 
     @property
     def input_file(self) -> str:
@@ -117,11 +131,11 @@ class Case:
     @cached_property
     def settings(self) -> dict[str, Any]:
         """Entries that differ from the input file's."""
-        step = 0.01 * self.percent * RAYLEIGH_TIME
+        variant = VARIANTS[self.variant]
+        step = 0.01 * self.percent * RAYLEIGH_TIME * math.sqrt(variant.softer)
         found = {f"{SPREADING}/length factor": f"{self.length * L1:.10f}",
                  f"{SPREADING}/depth": f"{self.depth:g}e-3",
-                 "simulation control/time step": f"{step:.6g}", **CHEAP}
-        variant = VARIANTS[self.variant]
+                 "simulation control/time step": f"{step:.6g}", **CHEAP, **variant.elasticity}
         if variant.forgets:
             found[FORGET] = math.floor(BALANCE_INTERVAL / step)
         return {**found, **VARIANTS[variant.base].settings, **variant.settings}
@@ -142,6 +156,8 @@ CASES = (
     *_in_turn(_series("PS1", 0.25, 1), _series("PS3", 0.25, 1)),
     *_series("PS1", 0.5, 1),
     *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS3", 0.25, 3, variant="lips")),
+    *_series("PS1", 1., 1, variant="soft"),
+    *_in_turn(_series("PS1", 0.25, 3, variant="lips_soft"), _series("PS1", 0.5, 2, variant="soft")),
     *_series("PS1", 1., 1),
     *_series("PS1", 0.25, 3, variant="lips_forget"),
     *_series("PS3", 0.5, 1),

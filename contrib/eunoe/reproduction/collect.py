@@ -56,7 +56,7 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
     except ApparatusError as error:
         raise Failure(f"{case.name}: {error}") from error
     # Maps are for the questions of the mechanism; other variants are compared by their densities alone.
-    if case.is_base:
+    if case.is_seen_closely:
         _maps(run, apparatus, target / BED)
     record = record_of(case, folder, len(run.layers))
     (target / RECORD).write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")

@@ -15,7 +15,7 @@ from eunoe.tables import Table, as_markdown
 
 from .cases import SETS
 from .pictures import picture_name
-from .results import Findings, Result, origin_of
+from .results import HELD, SOFT, Findings, Result, origin_of
 from .verdict import verdict_table
 
 PAGE = DOC / "reproduction.md"
@@ -92,8 +92,7 @@ def rest_block(findings: Findings) -> str:
     return _block(rest_table(groups), _results(groups))
 
 
-def held_block(findings: Findings) -> str:
-    groups = findings.held()
+def _all_about(groups: list[Group]) -> str:
     if not groups:
         return NOTHING
     parts = [_block(densities_table(groups), _results(groups), " ".join(map(rise_sentence, groups))),
@@ -101,6 +100,14 @@ def held_block(findings: Findings) -> str:
     if len(groups) > 1:
         parts.append(_block(differences_table(groups), _results(groups)))
     return "\n\n".join(parts)
+
+
+def held_block(findings: Findings) -> str:
+    return _all_about(findings.of_variant(HELD))
+
+
+def soft_block(findings: Findings) -> str:
+    return _all_about(findings.of_variant(SOFT))
 
 
 def variants_block(findings: Findings) -> str:
@@ -141,10 +148,16 @@ PICTURES = {
              "held_maps_PS1": "Displacement and density by place and layer, PS1, ends held",
              "held_maps_PS3": "Displacement and density by place and layer, PS3, ends held",
              "held_layers": "The bed at four weighings, ends held", "held_pass": "A pass in four pictures, ends held"},
+    "soft": {"soft": "LRD and CRD with softer grains, beside the measured ones",
+             "soft_middle": "LRD of the middle half of the plate, softer grains",
+             "soft_mechanism": "Displacement, rest, removal and zones by layer, softer grains",
+             "soft_maps_PS1": "Displacement and density by place and layer, PS1, softer grains",
+             "soft_layers": "The bed at four weighings, softer grains",
+             "soft_pass": "A pass in four pictures, softer grains"},
     "variants": {"variants_1": "LRD and CRD of the variants", "variants_2": "LRD and CRD of further variants"},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "rest": rest_block, "held": held_block,
+          "sets": sets_block, "rest": rest_block, "soft": soft_block, "held": held_block,
           "variants": variants_block, "needed": needed_block}
 
 

@@ -16,7 +16,7 @@ from eunoe.report.spread_run import Group, SpreadRun
 from .cases import CASES, Case
 from .collect import BED, DATA, RECORD
 
-HELD = "lips"  # the variant whose ends are held
+HELD, SOFT = "lips", "soft"  # the variants whose ends are held, and that make long plates affordable
 
 
 @dataclass(frozen=True)
@@ -70,10 +70,11 @@ class Findings:
         """The groups of a property set without a variant, shorter plates first."""
         return [group for group in self.plain() if group.runs[0].case.properties == properties]
 
-    def held(self) -> list[Group]:
-        """The groups whose ends are held by lips."""
-        return [Group(plain_label(results[0].case), results) for results in self.results.values()
-                if results[0].case.variant == HELD]
+    def of_variant(self, variant: str) -> list[Group]:
+        """The groups of a variant, shorter plates first."""
+        found = [results for results in self.results.values() if results[0].case.variant == variant]
+        found.sort(key=lambda results: results[0].case.length)
+        return [Group(plain_label(results[0].case), results) for results in found]
 
     def variants(self) -> list[tuple[Group, list[Group]]]:
         """Groups with variants, with the group that they are to be compared with, as far as that is there."""

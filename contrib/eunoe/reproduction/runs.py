@@ -46,7 +46,7 @@ class Campaign:
     def filmed(self, case: Case) -> list[str]:
         """Options for pictures of a pass of one run of a kind, for a movie: none of the other runs. Pictures
         change no particle's path."""
-        if not case.is_base or case.seed != 1:
+        if not case.is_seen_closely or case.seed != 1:
             return []
         cost = cost_of(self.command(case))
         first, last = (share * cost.steps * cost.time_step for share in FILMED)
