@@ -64,9 +64,10 @@ void likelihoods(Laboratory &lab)
   std::vector<double> logs;
   double worst = 0.;
   const Eigen::VectorXd distances = place.hypothesis.distances(d);
+  const Eigen::MatrixXd variances = target.variances(p);
   for (std::size_t l = 0; l < Target::n_noise_levels; ++l) {
     Eigen::MatrixXd covariance = p.gradient * p.gradient.transpose();
-    covariance.diagonal() += target.variance(p, l);
+    covariance.diagonal() += variances.col(static_cast<Eigen::Index>(l));
     const double distance = d.dot(covariance.inverse() * d);
     worst = std::max(worst, std::abs(distances(static_cast<Eigen::Index>(l)) / distance - 1.));
     const double log_determinant =

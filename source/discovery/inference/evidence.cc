@@ -129,10 +129,10 @@ void Evidence::make_discrepancy()
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
   if (trace > 0.)
     shape = 0.5 * shape + 0.5 * along / trace;
-  for (Eigen::Index l = 0; l < nothing().inverse.rows(); ++l) {
+  for (Eigen::Index l = 0; l < nothing().inverse.cols(); ++l) {
     Eigen::MatrixXd noise =
         nothing().prediction.gradient * nothing().prediction.gradient.transpose();
-    noise.diagonal() += nothing().inverse.row(l).cwiseInverse().transpose();
+    noise.diagonal() += nothing().inverse.col(l).cwiseInverse();
     for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
          strength *= 2.)
       discrepancies.emplace_back(noise + strength * strength * shape);

@@ -16,6 +16,16 @@ double degrees_of_t(const Target &target)
                   target.degrees_of_freedom() + 1. - static_cast<double>(target.data().size()));
 }
 
+/// A logarithm costs as much as ten products.
+double log_of_product(const Eigen::Ref<const Eigen::VectorXd> &factors)
+{
+  constexpr Eigen::Index together = 8; // whose product is in range
+  double result = 0.;
+  for (Eigen::Index i = 0; i < factors.size(); i += together)
+    result += std::log(factors.segment(i, std::min(together, factors.size() - i)).prod());
+  return result;
+}
+
 } // namespace
 
 double log_sum(const std::vector<double> &logarithms)
@@ -41,11 +51,7 @@ Likelihood::Likelihood(const Target &target)
 
 Hypothesis Likelihood::prepare(const Target::Prediction &prediction) const
 {
-  Eigen::MatrixXd variances(prediction.mean.size(),
-                            static_cast<Eigen::Index>(Target::n_noise_levels));
-  for (std::size_t l = 0; l < Target::n_noise_levels; ++l)
-    variances.col(static_cast<Eigen::Index>(l)) = aim.variance(prediction, l);
-  return prepare(prediction, variances);
+  return prepare(prediction, aim.variances(prediction));
 }
 
 Hypothesis Likelihood::prepare_roughly(const Target::Prediction &prediction) const
@@ -58,29 +64,34 @@ Hypothesis Likelihood::prepare(const Target::Prediction &prediction,
 {
   const Eigen::Index n = prediction.gradient.cols(), size = prediction.mean.size();
   const Eigen::Index levels = variances.cols();
-  Hypothesis result{prediction, variances.cwiseInverse().transpose(),
-                    Eigen::MatrixXd(levels * n, size), Eigen::VectorXd(levels)};
+  Hypothesis result{prediction, variances.cwiseInverse(), Eigen::MatrixXd(size, levels * n),
+                    Eigen::VectorXd(levels)};
+  // There are few nuisances: plain sums are faster than products by blocks.
   for (Eigen::Index l = 0; l < levels; ++l) {
-    const Eigen::VectorXd inverse = result.inverse.row(l).transpose();
-    result.constant(l) = 0.5 * inverse.array().log().sum();
-    if (n == 0)
-      continue;
-    const Eigen::MatrixXd scaled = prediction.gradient.transpose() * inverse.asDiagonal();
-    const Eigen::LLT<Eigen::MatrixXd> inner(Eigen::MatrixXd::Identity(n, n) +
-                                            scaled * prediction.gradient);
-    result.half.middleRows(l * n, n) = inner.matrixL().solve(scaled);
-    result.constant(l) -= inner.matrixLLT().diagonal().array().log().sum();
+    result.constant(l) = -0.5 * log_of_product(variances.col(l));
+    auto half = result.half.middleCols(l * n, n);
+    half = result.inverse.col(l).asDiagonal() * prediction.gradient;
+    const Eigen::MatrixXd root =
+        (Eigen::MatrixXd::Identity(n, n) + prediction.gradient.transpose().lazyProduct(half))
+            .llt()
+            .matrixL();
+    for (Eigen::Index q = 0; q < n; ++q) {
+      for (Eigen::Index r = 0; r < q; ++r)
+        half.col(q) -= root(q, r) * half.col(r);
+      half.col(q) /= root(q, q);
+      result.constant(l) -= std::log(root(q, q));
+    }
   }
   return result;
 }
 
 Eigen::MatrixXd Hypothesis::distances(const Eigen::Ref<const Eigen::MatrixXd> &deviations) const
 {
-  Eigen::MatrixXd result = inverse * deviations.cwiseAbs2();
-  if (half.rows() == 0)
+  Eigen::MatrixXd result = inverse.transpose() * deviations.cwiseAbs2();
+  if (half.cols() == 0)
     return result;
-  const Eigen::MatrixXd explained = (half * deviations).cwiseAbs2();
-  const Eigen::Index n = half.rows() / inverse.rows();
+  const Eigen::MatrixXd explained = (half.transpose() * deviations).cwiseAbs2();
+  const Eigen::Index n = half.cols() / inverse.cols();
   for (Eigen::Index l = 0; l < result.rows(); ++l)
     result.row(l) -= explained.middleRows(l * n, n).colwise().sum();
   return result;
@@ -104,7 +115,7 @@ Eigen::ArrayXd Likelihood::log_likelihoods_about(
     const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
   return log_sums(log_of_levels(hypothesis, mean, data)) -
-         std::log(static_cast<double>(hypothesis.inverse.rows()));
+         std::log(static_cast<double>(hypothesis.inverse.cols()));
 }
 
 Eigen::VectorXd Likelihood::inverse_variance(const Hypothesis &hypothesis,
@@ -112,7 +123,7 @@ Eigen::VectorXd Likelihood::inverse_variance(const Hypothesis &hypothesis,
 {
   const Eigen::ArrayXd logs = log_of_levels(hypothesis, hypothesis.prediction.mean, data).col(0);
   const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp();
-  return hypothesis.inverse.transpose() * (weights / weights.sum()).matrix();
+  return hypothesis.inverse * (weights / weights.sum()).matrix();
 }
 
 double Likelihood::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,

@@ -96,9 +96,7 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
     one.columns = prediction.gradient * posterior.nuisance_roots[k];
     prediction.mean += prediction.gradient * posterior.nuisances[k];
     one.variance = target.variance(prediction);
-    for (Eigen::Index l = 0; l < variances.cols(); ++l)
-      variances.col(l) +=
-          target.variance(prediction, static_cast<std::size_t>(l)) / static_cast<double>(draws);
+    variances += target.variances(prediction) / static_cast<double>(draws);
     means.col(i) = prediction.mean;
     prediction.gradient.resize(n, 0);
     one.twin = twins.col(i) = source.draw(prediction);

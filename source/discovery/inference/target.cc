@@ -143,11 +143,13 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
     for (Eigen::Index l = 0; l < instrument.cols(); ++l)
       instrument.col(l) =
           (rotation * covariance(excess.col(l)) * rotation.transpose()).diagonal().cwiseMax(0.);
+    const Eigen::VectorXd mean_instrument = instrument.rowwise().mean();
     Part part{std::move(one),
               std::move(emulator),
               std::move(noise),
               rotation,
               std::move(instrument),
+              mean_instrument,
               mean_excess.array() + 1.,
               1.,
               1.,
@@ -201,28 +203,31 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
   return result;
 }
 
-Eigen::VectorXd Target::variance(const Prediction &prediction) const
+template <typename Instrument>
+Eigen::MatrixXd Target::variances(const Prediction &prediction, const Instrument &instrument) const
 {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(all.size());
-  for (std::size_t l = 0; l < n_noise_levels; ++l)
-    result += variance(prediction, l) / n_noise_levels;
+  Eigen::MatrixXd result(all.size(), instrument(parts.front()).cols());
+  for (std::size_t e = 0; e < parts.size(); ++e) {
+    const Part &part = parts[e];
+    const Eigen::Index size = part.emulator.size();
+    const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
+    const Eigen::VectorXd of_runs = prediction.scatter.segment(part.first, size) / part.repeats +
+                                    prediction.leverage.segment(part.first, size);
+    result.middleRows(part.first, size) = (left * instrument(part)).colwise() + of_runs;
+  }
   return result;
 }
 
-Eigen::VectorXd Target::variance(const Prediction &prediction, const std::size_t noise_level) const
+Eigen::MatrixXd Target::variances(const Prediction &prediction) const
 {
-  Eigen::VectorXd result(all.size());
-  for (std::size_t e = 0; e < parts.size(); ++e) {
-    const Part &part = parts[e];
-    const auto k = static_cast<Eigen::Index>(e);
-    const double left = part.share_of_instrument(prediction.common(k));
-    result.segment(part.first, part.emulator.size()) =
-        (prediction.scatter.segment(part.first, part.emulator.size()).array() / part.repeats +
-         prediction.leverage.segment(part.first, part.emulator.size()).array() +
-         left * part.instrument.col(static_cast<Eigen::Index>(noise_level)).array())
-            .matrix();
-  }
-  return result;
+  return variances(
+      prediction, [](const Part &part) -> const auto & { return part.instrument; });
+}
+
+Eigen::VectorXd Target::variance(const Prediction &prediction) const
+{
+  return variances(
+      prediction, [](const Part &part) -> const auto & { return part.mean_instrument; });
 }
 
 } // namespace eunoe::discovery

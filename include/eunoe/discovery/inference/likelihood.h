@@ -12,8 +12,9 @@ namespace eunoe::discovery {
 struct Hypothesis
 {
   Target::Prediction prediction;
-  Eigen::MatrixXd inverse; ///< of the variances, levels x coordinates
-  Eigen::MatrixXd half; ///< what nuisances explain of a deviation, a block of rows for each level
+  Eigen::MatrixXd inverse; ///< of the variances, coordinates x levels
+  /// What nuisances explain of a deviation, coordinates x nuisances for each level in turn.
+  Eigen::MatrixXd half;
   Eigen::VectorXd constant; ///< of each level
 
   /// Squared Mahalanobis distances of deviations from the mean, levels x columns.

@@ -49,9 +49,9 @@ public:
 
   /// The instrument's noise is known by its posterior: levels of equal probability stand for it.
   static constexpr std::size_t n_noise_levels = 5;
-  /// Variance of each coordinate between data and prediction, nuisances apart, at a level of the
-  /// instrument's noise.
-  Eigen::VectorXd variance(const Prediction &prediction, std::size_t noise_level) const;
+  /// Variance of each coordinate between data and prediction, nuisances apart, a column for each
+  /// level of the instrument's noise.
+  Eigen::MatrixXd variances(const Prediction &prediction) const;
   /// Its mean over the levels.
   Eigen::VectorXd variance(const Prediction &prediction) const;
 
@@ -66,6 +66,7 @@ public:
     InstrumentNoise noise;
     Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
     Eigen::MatrixXd instrument;      ///< variance of the means by it: coordinates x noise levels
+    Eigen::VectorXd mean_instrument; ///< its mean over the levels
     Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
     double repeats = 1., ratio = 1.; ///< means over the data points
     Eigen::Index first = 0;          ///< coordinate
@@ -77,6 +78,10 @@ public:
   const std::vector<Part> &experiments() const { return parts; }
 
 private:
+  /// @param instrument columns of the variance by it, of a part
+  template <typename Instrument>
+  Eigen::MatrixXd variances(const Prediction &prediction, const Instrument &instrument) const;
+
   std::vector<Part> parts;
   Eigen::VectorXd all;
 };
