@@ -319,7 +319,7 @@ private:
   {
     const Eigen::LLT<Eigen::MatrixXd> llt(covariance(truth));
     return -0.5 * llt.matrixL().solve(data() - mean(truth)).squaredNorm() -
-           llt.matrixLLT().diagonal().array().log().sum();
+           half_log_determinant(llt);
   }
 
   const RecordedSimulator &simulator;

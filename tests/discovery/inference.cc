@@ -4,6 +4,7 @@
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/predictive.h>
+#include <eunoe/discovery/statistics/covariance.h>
 
 #include "suite.h"
 #include "synthetic.h"
@@ -70,9 +71,8 @@ void likelihoods(Laboratory &lab)
     covariance.diagonal() += variances.col(static_cast<Eigen::Index>(l));
     const double distance = d.dot(covariance.inverse() * d);
     worst = std::max(worst, std::abs(distances(static_cast<Eigen::Index>(l)) / distance - 1.));
-    const double log_determinant =
-        2. * Eigen::MatrixXd(covariance.llt().matrixL()).diagonal().array().log().sum();
-    logs.push_back(-0.5 * log_determinant - 0.5 * (dof + n) * std::log1p(distance / dof));
+    logs.push_back(-half_log_determinant(covariance.llt()) -
+                   0.5 * (dof + n) * std::log1p(distance / dof));
   }
   check("Mahalanobis distance", worst < 1e-8);
   check("t-likelihood, the noise integrated",

@@ -123,8 +123,7 @@ private:
     own.deviation = (own.rows.colwise().squaredNorm() / static_cast<double>(n)).cwiseSqrt();
     const auto scale = own.deviation.asDiagonal();
     const Covariance covariance =
-        shrunk_covariance(centred(rows) * scale.inverse(), static_cast<double>(n - 1),
-                          std::vector<int>(static_cast<std::size_t>(rows.cols()), 0));
+        shrunk_covariance(centred(rows) * scale.inverse(), static_cast<double>(n - 1));
     own.own_share = covariance.shrinkage;
     half[experiment] =
         scale * Eigen::MatrixXd(Eigen::LLT<Eigen::MatrixXd>(covariance.matrix).matrixL());

@@ -39,10 +39,7 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
 {
   Twins twins(evidence, seed + 1);
   RandomStream random(seed, 29);
-  std::vector<std::size_t> usable;
-  for (std::size_t k = 0; k < evidence.space().n_effects(); ++k)
-    if (!evidence.places(k).empty())
-      usable.push_back(k);
+  const std::vector<std::size_t> usable = evidence.usable();
   Calibration result;
   if (usable.empty())
     return result;

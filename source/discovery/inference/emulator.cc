@@ -160,8 +160,7 @@ double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
                                   std::sqrt(static_cast<double>(r) / static_cast<double>(r - 1));
     row += r;
   }
-  const Covariance covariance = shrunk_covariance(
-      deviations, degrees, std::vector<int>(static_cast<std::size_t>(reduction.n_modes()), 0));
+  const Covariance covariance = shrunk_covariance(deviations, degrees);
   const Eigen::LLT<Eigen::MatrixXd> llt(covariance.matrix);
   whitening =
       llt.matrixL().solve(Eigen::MatrixXd::Identity(reduction.n_modes(), reduction.n_modes()));

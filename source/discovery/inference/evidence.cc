@@ -1,4 +1,5 @@
 #include <eunoe/discovery/inference/evidence.h>
+#include <eunoe/discovery/statistics/covariance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -176,7 +177,7 @@ Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd>
   Eigen::ArrayXd constants(number);
   for (Eigen::Index i = 0; i < number; ++i) {
     const Eigen::LLT<Eigen::MatrixXd> &llt = discrepancies[static_cast<std::size_t>(i)];
-    constants(i) = -llt.matrixLLT().diagonal().array().log().sum();
+    constants(i) = -half_log_determinant(llt);
     distances.row(i) = llt.matrixL().solve(deviations).colwise().squaredNorm();
   }
   return log_sums(log_t(constants, distances)) - std::log(static_cast<double>(number));

@@ -1,5 +1,6 @@
 #include <eunoe/discovery/inference/plan.h>
 #include <eunoe/discovery/inference/unmeasured.h>
+#include <eunoe/discovery/statistics/covariance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +59,7 @@ public:
       means.emplace_back(what.rows * draw.mean);
       parts.emplace_back(what.rows * draw.variance.asDiagonal() * what.rows.transpose() +
                          columns * columns.transpose());
-      constants[i] -=
-          total + Eigen::MatrixXd(parts.back().matrixL()).diagonal().array().log().sum();
+      constants[i] -= total + half_log_determinant(parts.back());
     }
   }
 

@@ -1,5 +1,6 @@
 #include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/predictive.h>
+#include <eunoe/discovery/statistics/covariance.h>
 
 #include <boost/random/discrete_distribution.hpp>
 
@@ -130,7 +131,7 @@ Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &
   Eigen::ArrayXXd logs(static_cast<Eigen::Index>(levels.size()), data.cols());
   for (Eigen::Index l = 0; l < logs.rows(); ++l) {
     const Eigen::LLT<Eigen::MatrixXd> &level = levels[static_cast<std::size_t>(l)];
-    logs.row(l) = -level.matrixLLT().diagonal().array().log().sum() -
+    logs.row(l) = -half_log_determinant(level) -
                   0.5 * level.matrixL().solve(deviations).colwise().squaredNorm().array();
   }
   return log_sums(logs);

@@ -1,3 +1,4 @@
+#include <eunoe/discovery/statistics/covariance.h>
 #include <eunoe/discovery/statistics/gaussian_process.h>
 
 #include <algorithm>
@@ -146,7 +147,7 @@ Eigen::MatrixXd GaussianProcess::log_likelihoods(
                                               root.transpose() * precision * root);
       result(v, j) = -0.5 * (log_determinant + distances(v) -
                              inner.matrixL().solve(root.transpose() * along.col(v)).squaredNorm()) -
-                     inner.matrixLLT().diagonal().array().log().sum();
+                     half_log_determinant(inner);
     }
   }
   return result;

@@ -2,7 +2,6 @@
 #define eunoe_discovery_statistics_covariance_h
 
 #include <Eigen/Dense>
-#include <vector>
 
 namespace eunoe::discovery {
 
@@ -17,13 +16,13 @@ struct Covariance
 /// (Ledoit and Wolf 2004; Schaefer and Strimmer 2005, Statist. Appl. Genet. Mol. Biol. 4, 32).
 /// @param deviations from the means, replicates x modes
 /// @param degrees_of_freedom number of replicates less the number of means that were subtracted
-/// @param block of each column; columns of different blocks come from different runs and are
-///   uncorrelated
-Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, double degrees_of_freedom,
-                             const std::vector<int> &block);
+Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, double degrees_of_freedom);
 
 /// Rows less their mean.
 Eigen::MatrixXd centred(const Eigen::MatrixXd &rows);
+
+/// Half the logarithm of the determinant of the matrix that was factorised.
+double half_log_determinant(const Eigen::LLT<Eigen::MatrixXd> &llt);
 
 } // namespace eunoe::discovery
 
