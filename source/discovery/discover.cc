@@ -116,11 +116,8 @@ public:
     if (!round.findings.detected || round.findings.models.front().probability > sure)
       return true;
     double largest = 0.;
-    for (const Model &model : round.findings.answer) {
-      const Target::Prediction prediction = round.target.predict(model.best);
-      largest = std::max(
-          largest, prediction.leverage.cwiseQuotient(round.target.variance(prediction)).mean());
-    }
+    for (const Model &model : round.findings.answer)
+      largest = std::max(largest, round.target.unknown_share(round.target.predict(model.best)));
     return largest < well_known;
   }
 

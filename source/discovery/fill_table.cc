@@ -15,11 +15,8 @@ std::pair<std::string, double> least_known(const Evidence &evidence)
   std::pair<std::string, double> worst = {"nothing", 0.};
   for (const std::size_t k : evidence.usable()) {
     std::vector<double> errors;
-    for (const Evidence::Place &place : evidence.places(k)) {
-      const Target::Prediction &prediction = place.hypothesis.prediction;
-      errors.push_back(std::sqrt(
-          (prediction.leverage.array() / evidence.target().variance(prediction).array()).mean()));
-    }
+    for (const Evidence::Place &place : evidence.places(k))
+      errors.push_back(std::sqrt(evidence.target().unknown_share(place.hypothesis.prediction)));
     std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
     if (const double middle = errors[errors.size() / 2]; middle > worst.second)
       worst = {evidence.space().effect(k).name, middle};

@@ -316,7 +316,7 @@ void sharpened()
   const auto error = [&](const Target &target) {
     const double u = (truth.at("c") - lab.space.effect(c).null_value) / lab.space.effect(c).scale;
     const Target::Prediction prediction = target.predict({{c, u}});
-    return prediction.leverage.cwiseQuotient(target.variance(prediction)).mean();
+    return target.unknown_share(prediction);
   };
   const double before = error(lab.target(truth, 3));
   const std::uint64_t first = lab.samples.n_asked();

@@ -30,7 +30,7 @@ double strength(const Target &target, const std::size_t effect, const double amp
 /// Error of an emulator, as a share of the deviation of what is measured.
 double unknown(const Target &target, const Target::Prediction &prediction)
 {
-  return std::sqrt(prediction.leverage.cwiseQuotient(target.variance(prediction)).mean());
+  return std::sqrt(target.unknown_share(prediction));
 }
 
 } // namespace

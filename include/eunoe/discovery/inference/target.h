@@ -54,6 +54,11 @@ public:
   Eigen::MatrixXd variances(const Prediction &prediction) const;
   /// Its mean over the levels.
   Eigen::VectorXd variance(const Prediction &prediction) const;
+  /// Share of that variance which the prediction's own error makes: 0 where more runs tell nothing.
+  double unknown_share(const Prediction &prediction) const
+  {
+    return prediction.leverage.cwiseQuotient(variance(prediction)).mean();
+  }
 
   const Eigen::VectorXd &data() const { return all; }
   std::size_t n_experiments() const { return parts.size(); }
