@@ -7,7 +7,7 @@
 // and no study); ideal (how often an observer who knows all fingerprints detects single effects and
 // names them and two effects rightly, or another one for an effect that his catalogue lacks, and no
 // study); level (how often data without any effect seem to have one, for the runs of one study
-// each, see observe_level); table=FILE.
+// each, see observe_level); weights and tail (see observe_weights, observe_tail); table=FILE.
 
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
@@ -247,46 +247,69 @@ void observe_weights(const RecordedTable &table, const StudyOptions &options,
   std::fflush(stdout);
 }
 
+/// Small probabilities by the few draws that a study makes, beside those by many.
+void observe_tail(const RecordedTable &table, const StudyOptions &options, const std::uint32_t seed)
+{
+  constexpr unsigned int n_tails = 60, n_draws = 400;
+  Runs study(table, {"none"}, options, seed);
+  const Target target = study.target(study.drawn.data);
+  const Evidence evidence(target, study.space);
+  std::vector<double> all;
+  std::vector<Tail> tails;
+  for (unsigned int k = 0; k < n_tails; ++k) {
+    const Eigen::ArrayXd factors = evidence.log_bayes_factors(
+        Twins(evidence, 1000 + k).draw(evidence.nothing().prediction, n_draws));
+    all.insert(all.end(), factors.begin(), factors.end());
+    tails.emplace_back(std::vector<double>(factors.begin(), factors.end()));
+  }
+  std::sort(all.rbegin(), all.rend());
+  std::printf("seed %u, p by %zu draws, and by %u: tenth, median, nine tenths\n", seed, all.size(),
+              n_draws);
+  for (const double p : {0.05, 0.02, 0.01, 0.001, 0.0002}) {
+    const double value = all[static_cast<std::size_t>(p * static_cast<double>(all.size()))];
+    std::vector<double> found;
+    for (const Tail &tail : tails)
+      found.push_back(tail.p(value));
+    std::sort(found.begin(), found.end());
+    std::printf("%g: %.2g, %.2g, %.2g\n", p, found[n_tails / 10], found[n_tails / 2],
+                found[9 * n_tails / 10]);
+  }
+  std::fflush(stdout);
+}
+
+void study_simulations(const RecordedTable &table, const StudyOptions &options,
+                       const std::uint32_t seed)
+{
+  for (const LeftOut &left_out : simulated_data(table)) {
+    const RecordedStudy study = simulated_study(table, left_out, seed, options);
+    print_outcome(study.one, study.discovery);
+  }
+}
+
 void run(const SuiteOptions &options)
 {
-  std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt";
-  bool simulated = false, only_describe = false, ideal = false, level = false, weights = false;
-  for (const std::string &option : options.others) {
-    if (option == "simulated")
-      simulated = true;
-    else if (option == "describe")
-      only_describe = true;
-    else if (option == "ideal")
-      ideal = true;
-    else if (option == "level")
-      level = true;
-    else if (option == "weights")
-      weights = true;
-    else if (option.rfind("table=", 0) == 0)
+  using OfSeed = void (*)(const RecordedTable &, const StudyOptions &, std::uint32_t);
+  const std::map<std::string, OfSeed> of_seed = {{"level", observe_level},
+                                                 {"weights", observe_weights},
+                                                 {"tail", observe_tail},
+                                                 {"simulated", study_simulations}};
+  std::string path = std::string(DISCOVERY_TESTS) + "/recorded/micro.txt", what;
+  for (const std::string &option : options.others)
+    if (option.rfind("table=", 0) == 0)
       path = option.substr(6);
+    else if (of_seed.count(option) > 0 || option == "describe" || option == "ideal")
+      what = option;
     else
       throw std::runtime_error("unknown option " + option);
-  }
   const RecordedTable table(path);
-  if (only_describe)
+  if (what == "describe")
     return describe(table);
-  if (ideal)
+  if (what == "ideal")
     return observe(table, options);
   for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
     const std::uint32_t seed = options.first_seed + k;
-    if (level) {
-      observe_level(table, options.study, seed);
-      continue;
-    }
-    if (weights) {
-      observe_weights(table, options.study, seed);
-      continue;
-    }
-    if (simulated) {
-      for (const auto &left_out : simulated_data(table)) {
-        const RecordedStudy study = simulated_study(table, left_out, seed, options.study);
-        print_outcome(study.one, study.discovery);
-      }
+    if (!what.empty()) {
+      of_seed.at(what)(table, options.study, seed);
       continue;
     }
     for (const StudyKind &kind : standard_kinds())
