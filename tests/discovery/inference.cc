@@ -69,7 +69,7 @@ void likelihoods(Laboratory &lab)
   for (std::size_t l = 0; l < Target::n_noise_levels; ++l) {
     Eigen::MatrixXd covariance = p.gradient * p.gradient.transpose();
     covariance.diagonal() += variances.col(static_cast<Eigen::Index>(l));
-    const double distance = d.dot(covariance.inverse() * d);
+    const double distance = d.dot(covariance.llt().solve(d));
     worst = std::max(worst, std::abs(distances(static_cast<Eigen::Index>(l)) / distance - 1.));
     logs.push_back(-half_log_determinant(covariance.llt()) -
                    0.5 * (dof + n) * std::log1p(distance / dof));

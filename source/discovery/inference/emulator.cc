@@ -242,6 +242,26 @@ ExperimentEmulator::Prediction ExperimentEmulator::predict(
   return result;
 }
 
+Eigen::VectorXd ExperimentEmulator::whiten(const Eigen::VectorXd &values) const
+{
+  return whitening * reduction.reduce(values - mean);
+}
+
+Eigen::MatrixXd ExperimentEmulator::whiten_scaled(const Eigen::MatrixXd &columns) const
+{
+  return whitening * (reduction.basis() * columns);
+}
+
+Eigen::MatrixXd ExperimentEmulator::mode_covariance() const
+{
+  return unwhitening() * unwhitening().transpose();
+}
+
+Eigen::MatrixXd ExperimentEmulator::unwhitening() const
+{
+  return whitening.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(size(), size()));
+}
+
 Eigen::VectorXd ExperimentEmulator::growth(const Eigen::VectorXd &scatter) const
 {
   const Eigen::MatrixXd base = reduction.basis().transpose() * unwhitening();

@@ -38,4 +38,9 @@ Modes::Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviat
   }
 }
 
+Eigen::VectorXd Modes::reduce(const Eigen::VectorXd &values) const
+{
+  return matrix * values.cwiseQuotient(scale);
+}
+
 } // namespace eunoe::discovery

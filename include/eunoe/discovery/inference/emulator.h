@@ -28,15 +28,9 @@ public:
   Eigen::Index size() const { return whitening.rows(); }
   const Modes &modes() const { return reduction; }
   /// Whitened modes of values at the data points, less those of the base model's mean.
-  Eigen::VectorXd whiten(const Eigen::VectorXd &values) const
-  {
-    return whitening * reduction.reduce(values - mean);
-  }
+  Eigen::VectorXd whiten(const Eigen::VectorXd &values) const;
   /// whiten() of columns that are in units of the data points' deviations.
-  Eigen::MatrixXd whiten_scaled(const Eigen::MatrixXd &columns) const
-  {
-    return whitening * (reduction.basis() * columns);
-  }
+  Eigen::MatrixXd whiten_scaled(const Eigen::MatrixXd &columns) const;
 
   struct Prediction
   {
@@ -54,8 +48,8 @@ public:
   const Eigen::MatrixXd &deviations() const { return residuals; }
   double degrees_of_freedom() const { return dof; }
   /// Covariance of the modes of one run of the base model.
-  Eigen::MatrixXd mode_covariance() const { return unwhitening() * unwhitening().transpose(); }
-  Eigen::MatrixXd unwhitening() const { return whitening.inverse(); }
+  Eigen::MatrixXd mode_covariance() const;
+  Eigen::MatrixXd unwhitening() const;
   /// Mean and standard deviation of the base model's runs at each data point.
   const Eigen::VectorXd &base_mean() const { return mean; }
   const Eigen::VectorXd &base_deviation() const { return reduction.deviations(); }

@@ -37,10 +37,7 @@ public:
   const std::vector<Group> &groups() const { return all_groups; }
 
   /// Modes of values at the data points (or of differences of values).
-  Eigen::VectorXd reduce(const Eigen::VectorXd &values) const
-  {
-    return matrix * values.cwiseQuotient(scale);
-  }
+  Eigen::VectorXd reduce(const Eigen::VectorXd &values) const;
 
   /// Cosines, n_modes x n_points; its rows are orthonormal.
   const Eigen::MatrixXd &basis() const { return matrix; }
