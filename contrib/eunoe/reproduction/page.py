@@ -154,7 +154,8 @@ PICTURES = {
              "soft_maps_PS1": "Displacement and density by place and layer, PS1, softer grains",
              "soft_layers": "The bed at four weighings, softer grains",
              "soft_pass": "A pass in four pictures, softer grains"},
-    "variants": {"variants_1": "LRD and CRD of the variants", "variants_2": "LRD and CRD of further variants"},
+    "variants": {"variants_1": "LRD and CRD of the variants", "variants_2": "LRD and CRD of further variants",
+                 "variants_3": "LRD and CRD of variants with lips"},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
           "sets": sets_block, "rest": rest_block, "soft": soft_block, "held": held_block,
