@@ -13,16 +13,15 @@ from functools import cached_property
 from typing import Any
 
 from eunoe.launch import Failure
+from eunoe.paper_powder import TIME_STEP, softened
 from eunoe.repository import CASES as INPUT_FILES
 
-PAPER_STEP = 2.816e-7  # s, 15 % of the Rayleigh time of the smallest grain
-RAYLEIGH_TIME = PAPER_STEP / 0.15
 L1 = 1. / 7.  # of the full size
 SPREADING, MODEL = "powder spreading", "model parameters"
 SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
 FORGET = f"{MODEL}/contact history/forget interval"
 BALANCE_INTERVAL = 10.5e-3  # s between two load balances of the published input files
-POWDER, YOUNG = "lagrangian physical properties", 26.25e6  # Pa
+NEIGHBORHOOD = f"{MODEL}/contact detection/neighborhood threshold"
 SETS = ("PS1", "PS2", "PS3")
 N_LAYERS = 21
 
@@ -45,15 +44,6 @@ class Variant:
     forgets: bool = False
     softer: float = 1.
     closely: bool = False
-
-    @property
-    def elasticity(self) -> dict[str, Any]:
-        if self.softer == 1.:
-            return {}
-        young = f"{YOUNG / self.softer:.6g}"
-        # In a longer step grains move farther, so that searches would come three times as often.
-        return {f"{POWDER}/particle type 0/young modulus particles": young, f"{POWDER}/young modulus wall": young,
-                f"{MODEL}/contact detection/neighborhood threshold": "1.3"}
 
 
 VARIANTS = {
@@ -134,12 +124,15 @@ class Case:
     def settings(self) -> dict[str, Any]:
         """Entries that differ from the input file's."""
         variant = VARIANTS[self.variant]
-        step = 0.01 * self.percent * RAYLEIGH_TIME * math.sqrt(variant.softer)
+        powder = softened(1. / variant.softer, self.percent)
+        step = powder[TIME_STEP]
         found = {f"{SPREADING}/length factor": f"{self.length * L1:.10f}",
-                 f"{SPREADING}/depth": f"{self.depth:g}e-3",
-                 "simulation control/time step": f"{step:.6g}", **CHEAP, **variant.elasticity}
+                 f"{SPREADING}/depth": f"{self.depth:g}e-3", TIME_STEP: step, **CHEAP}
+        if variant.softer != 1.:
+            # In a longer step grains move farther, so that searches would come three times as often.
+            found.update({**powder, NEIGHBORHOOD: "1.3"})
         if variant.forgets:
-            found[FORGET] = math.floor(BALANCE_INTERVAL / step)
+            found[FORGET] = math.floor(BALANCE_INTERVAL / float(step))
         return {**found, **VARIANTS[variant.base].settings, **variant.settings}
 
 

@@ -14,22 +14,19 @@ difference from the reference with a 95 % interval (Welch's t), and the time of 
 from __future__ import annotations
 
 import argparse
-import math
 import statistics
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from eunoe.intervals import difference_of
 from eunoe.launch import Failure
+from eunoe.paper_powder import RAYLEIGH_TIME, TIME_STEP, TYPE, WALL, softened
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
 from .series import SeededVariant, arguments, compute, layers_of, publish, spread, spreading_command
 
-RAYLEIGH_TIME = 2.816e-7 / 0.15  # of the smallest grain of prm/spreading (s)
-TYPE = "lagrangian physical properties/particle type 0"
-WALL = "lagrangian physical properties"
-YOUNG, SURFACE_ENERGY = 26.25e6, 35e-5  # of property set PS1 (Pa, J/m2)
+SURFACE_ENERGY = 35e-5  # J/m2, of property set PS1
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
 
@@ -44,16 +41,15 @@ class Variant:
 
 
 def step(percent: float) -> dict[str, object]:
-    return {"simulation control/time step": f"{0.01 * percent * RAYLEIGH_TIME:.6g}"}
+    return {TIME_STEP: f"{0.01 * percent * RAYLEIGH_TIME:.6g}"}
 
 
 def softer(factor: float, exponent: float, percent: float = 15.) -> dict[str, object]:
     """Young's modulus times `factor`, surface energy times factor^exponent, and the time step that keeps its
-    share of the Rayleigh time, which goes with the inverse root of the modulus."""
-    young, energy = f"{factor * YOUNG:.6g}", f"{factor**exponent * SURFACE_ENERGY:.6g}"
-    return {f"{TYPE}/young modulus particles": young, f"{WALL}/young modulus wall": young,
-            f"{TYPE}/surface energy particles": energy, f"{WALL}/surface energy wall": energy,
-            **step(percent / math.sqrt(factor))}
+    share of the Rayleigh time."""
+    energy = f"{factor**exponent * SURFACE_ENERGY:.6g}"
+    return {**softened(factor, percent),
+            f"{TYPE}/surface energy particles": energy, f"{WALL}/surface energy wall": energy}
 
 
 VARIANTS = {
