@@ -19,7 +19,7 @@ double degrees_of_t(const Target &target)
 /// A logarithm costs as much as ten products.
 double log_of_product(const Eigen::Ref<const Eigen::VectorXd> &factors)
 {
-  constexpr Eigen::Index together = 8; // whose product is in range
+  constexpr Eigen::Index together = 4; // whose product is in range, be each as large as 1e75
   double result = 0.;
   for (Eigen::Index i = 0; i < factors.size(); i += together)
     result += std::log(factors.segment(i, std::min(together, factors.size() - i)).prod());

@@ -143,7 +143,7 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
     for (Eigen::Index l = 0; l < instrument.cols(); ++l)
       instrument.col(l) =
           (rotation * covariance(excess.col(l)) * rotation.transpose()).diagonal().cwiseMax(0.);
-    const Eigen::VectorXd mean_instrument = instrument.rowwise().mean();
+    const Eigen::MatrixXd mean_instrument = instrument.rowwise().mean();
     Part part{std::move(one),
               std::move(emulator),
               std::move(noise),
@@ -203,31 +203,29 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
   return result;
 }
 
-template <typename Instrument>
-Eigen::MatrixXd Target::variances(const Prediction &prediction, const Instrument &instrument) const
+Eigen::MatrixXd Target::variances(const Prediction &prediction,
+                                  Eigen::MatrixXd Part::*instrument) const
 {
-  Eigen::MatrixXd result(all.size(), instrument(parts.front()).cols());
+  Eigen::MatrixXd result(all.size(), (parts.front().*instrument).cols());
   for (std::size_t e = 0; e < parts.size(); ++e) {
     const Part &part = parts[e];
     const Eigen::Index size = part.emulator.size();
     const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
     const Eigen::VectorXd of_runs = prediction.scatter.segment(part.first, size) / part.repeats +
                                     prediction.leverage.segment(part.first, size);
-    result.middleRows(part.first, size) = (left * instrument(part)).colwise() + of_runs;
+    result.middleRows(part.first, size) = (left * (part.*instrument)).colwise() + of_runs;
   }
   return result;
 }
 
 Eigen::MatrixXd Target::variances(const Prediction &prediction) const
 {
-  return variances(
-      prediction, [](const Part &part) -> const auto & { return part.instrument; });
+  return variances(prediction, &Part::instrument);
 }
 
 Eigen::VectorXd Target::variance(const Prediction &prediction) const
 {
-  return variances(
-      prediction, [](const Part &part) -> const auto & { return part.mean_instrument; });
+  return variances(prediction, &Part::mean_instrument);
 }
 
 } // namespace eunoe::discovery

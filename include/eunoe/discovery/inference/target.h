@@ -71,7 +71,7 @@ public:
     InstrumentNoise noise;
     Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
     Eigen::MatrixXd instrument;      ///< variance of the means by it: coordinates x noise levels
-    Eigen::VectorXd mean_instrument; ///< its mean over the levels
+    Eigen::MatrixXd mean_instrument; ///< its mean over the levels, one column
     Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
     double repeats = 1., ratio = 1.; ///< means over the data points
     Eigen::Index first = 0;          ///< coordinate
@@ -83,9 +83,7 @@ public:
   const std::vector<Part> &experiments() const { return parts; }
 
 private:
-  /// @param instrument columns of the variance by it, of a part
-  template <typename Instrument>
-  Eigen::MatrixXd variances(const Prediction &prediction, const Instrument &instrument) const;
+  Eigen::MatrixXd variances(const Prediction &prediction, Eigen::MatrixXd Part::*instrument) const;
 
   std::vector<Part> parts;
   Eigen::VectorXd all;
