@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 from eunoe.launch import Failure
-from eunoe.paper_powder import TIME_STEP, softened
+from eunoe.powder import PAPER, TIME_STEP
 from eunoe.repository import CASES as INPUT_FILES
 
 L1 = 1. / 7.  # of the full size
@@ -124,7 +124,7 @@ class Case:
     def settings(self) -> dict[str, Any]:
         """Entries that differ from the input file's."""
         variant = VARIANTS[self.variant]
-        powder = softened(1. / variant.softer, self.percent)
+        powder = PAPER.softened(1. / variant.softer, self.percent)
         step = powder[TIME_STEP]
         found = {f"{SPREADING}/length factor": f"{self.length * L1:.10f}",
                  f"{SPREADING}/depth": f"{self.depth:g}e-3", TIME_STEP: step, **CHEAP}

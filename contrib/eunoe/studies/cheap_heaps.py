@@ -13,22 +13,17 @@ from __future__ import annotations
 
 import argparse
 import csv
-import math
-import re
 import statistics
-import subprocess
 from pathlib import Path
 
 from eunoe.intervals import difference_of
 from eunoe.launch import Failure, overrides
+from eunoe.powder import powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
 from .series import SeededVariant, arguments, compute, publish, spread, summary_of
 
-STEP = "simulation control/time step"
-YOUNG = ("lagrangian physical properties/particle type 0/young modulus particles",
-         "lagrangian physical properties/young modulus wall")
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 OBSERVABLES = {"base_angle": ("base angle (degrees)", 1.), "mass_on_disc": ("mass on the disc (mg)", 1e6)}
 SHARES = (15, 20, 25, 30, 40)
@@ -39,10 +34,10 @@ TITLES = {**{f"step{share}": f"{share} % of the Rayleigh time" for share in SHAR
 
 class Run(SeededVariant):
     def command(self, options: argparse.Namespace) -> list[str]:
-        settings = {STEP: f"{time_step(options, self.variant):.6g}",
+        share = int(self.variant[4:]) if self.variant.startswith("step") else 15
+        powder = options.powder
+        settings = {**(powder.softened(0.1, share) if self.variant == "soft" else powder.step(share)),
                     "simulation control/output path": options.folder / self.name}
-        if self.variant == "soft":
-            settings.update({entry: f"{0.1 * options.young:.6g}" for entry in YOUNG})
         if self.variant == "sleep":
             settings[SLEEP] = "true"
         return [options.program, str(options.case), "--seed", str(self.seed), *overrides(settings)]
@@ -54,25 +49,6 @@ class Run(SeededVariant):
         with open(folder / self.name / "measurements.csv", encoding="utf-8", newline="") as file:
             values = {row["observable"]: float(row["value"]) for row in csv.DictReader(file)}
         return {**{name: values[name] for name in OBSERVABLES}, "seconds": summary["loop_seconds"]}
-
-
-def time_step(options: argparse.Namespace, variant: str) -> float:
-    """The Rayleigh time goes with the inverse root of Young's modulus."""
-    share = int(variant[4:]) if variant.startswith("step") else 15
-    return 0.01 * share * options.rayleigh_time * (math.sqrt(10.) if variant == "soft" else 1.)
-
-
-def read_case(options: argparse.Namespace) -> None:
-    """The Rayleigh time and Young's modulus of the case, as the program says them."""
-    check = subprocess.run([options.program, str(options.case), "--check"], capture_output=True, text=True, check=False)
-    found = re.search(r"time step of (\S+) s is (\S+) % of the Rayleigh time", check.stdout)
-    used = subprocess.run([options.program, str(options.case), "--print-parameters"], capture_output=True, text=True,
-                          check=False)
-    young = re.search(r"young modulus particles\s*=\s*(\S+)", used.stdout)
-    if not found or not young:
-        raise Failure(f"{options.case} is not in order: run it with --check.")
-    options.rayleigh_time = float(found[1]) / (0.01 * float(found[2]))
-    options.young = float(young[1])
 
 
 def table_of(found: dict[str, list[dict]]) -> Table:
@@ -95,7 +71,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--case", type=Path, default=CASES / "discovery" / "micro_heap.prm")
     parser.add_argument("--variants", nargs="+", choices=TITLES, default=list(TITLES))
     options = parser.parse_args(words)
-    read_case(options)
+    options.powder = powder_of(options.program, options.case, [])
     names = list(dict.fromkeys((REFERENCE, *options.variants)))
     runs = [Run(name, seed) for seed in options.seeds for name in names]
     good = compute(runs, options)

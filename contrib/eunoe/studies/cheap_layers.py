@@ -15,59 +15,54 @@ from __future__ import annotations
 
 import argparse
 import statistics
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from eunoe.intervals import difference_of
 from eunoe.launch import Failure
-from eunoe.paper_powder import RAYLEIGH_TIME, TIME_STEP, TYPE, WALL, softened
+from eunoe.powder import Powder, powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
 from .series import SeededVariant, arguments, compute, layers_of, publish, spread, spreading_command
 
-SURFACE_ENERGY = 35e-5  # J/m2, of property set PS1
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
 
 
 @dataclass(frozen=True)
 class Variant:
-    """@param title in words
-    @param settings entries of the input and their values"""
+    """:param title: in words
+    :param settings: entries of the input and their values, for the powder of the case"""
 
     title: str
-    settings: dict[str, object] = field(default_factory=dict)
+    settings: Callable[[Powder], dict[str, str]]
 
 
-def step(percent: float) -> dict[str, object]:
-    return {TIME_STEP: f"{0.01 * percent * RAYLEIGH_TIME:.6g}"}
+def step(percent: float, title: str) -> Variant:
+    return Variant(title, lambda powder: powder.step(percent))
 
 
-def softer(factor: float, exponent: float, percent: float = 15.) -> dict[str, object]:
-    """Young's modulus times `factor`, surface energy times factor^exponent, and the time step that keeps its
-    share of the Rayleigh time."""
-    energy = f"{factor**exponent * SURFACE_ENERGY:.6g}"
-    return {**softened(factor, percent),
-            f"{TYPE}/surface energy particles": energy, f"{WALL}/surface energy wall": energy}
+def softer(exponent: float, title: str) -> Variant:
+    """A tenth of Young's modulus, surface energy over 10^exponent, and the time step that keeps its share of the
+    Rayleigh time."""
+    return Variant(title, lambda powder: {**powder.softened(0.1, 15.), **powder.less_cohesive(0.1**exponent)})
 
 
 VARIANTS = {
-    "step15": Variant("15 % of the Rayleigh time", step(15)),
-    "step20": Variant("20 %", step(20)),
-    "step25": Variant("25 %", step(25)),
-    "step30": Variant("30 %", step(30)),
-    "step40": Variant("40 %", step(40)),
-    "soft_pull": Variant("E / 10, the same pull-off force", softer(0.1, 0.)),
-    "soft_energy": Variant("E / 10, surface energy / 10^0.4", softer(0.1, 0.4)),
-    "soft_ratio": Variant("E / 10, surface energy / 10", softer(0.1, 1.)),
-    "sleep": Variant("with sleep", {**step(15), SLEEP: "true"}),
+    "step15": step(15., "15 % of the Rayleigh time"),
+    **{f"step{percent}": step(percent, f"{percent} %") for percent in (20, 25, 30, 40)},
+    "soft_pull": softer(0., "E / 10, the same pull-off force"),
+    "soft_energy": softer(0.4, "E / 10, surface energy / 10^0.4"),
+    "soft_ratio": softer(1., "E / 10, surface energy / 10"),
+    "sleep": Variant("with sleep", lambda powder: {**powder.step(15.), SLEEP: "true"}),
 }
 
 
 class Run(SeededVariant):
     def command(self, options: argparse.Namespace) -> list[str]:
-        return spreading_command(options, self, self.seed, VARIANTS[self.variant].settings)
+        return spreading_command(options, self, self.seed, VARIANTS[self.variant].settings(options.powder))
 
     def result(self, folder: Path) -> dict | None:
         return layers_of(folder / self.name)
@@ -97,6 +92,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--set", action="append", default=[])
     options = parser.parse_args(words)
+    options.powder = powder_of(options.program, options.case, options.set)
     names = list(dict.fromkeys((REFERENCE, *options.variants)))
     runs = [Run(name, seed) for seed in options.seeds for name in names]
     good = compute(runs, options)
