@@ -14,7 +14,6 @@ constant stiffness, and a heap creeps; its decks are compared without rolling re
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import re
 import shutil
@@ -24,6 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
+from eunoe.folders import occupy
 from eunoe.launch import Failure, output_of, overrides, parser
 from eunoe.prm_file import parse_prm
 from eunoe.repository import CASES, PROGRAM, ROOT
@@ -227,18 +227,6 @@ def make_heap(seed: int, model: Model, apparatus: Apparatus, options: argparse.N
     return target
 
 
-def occupy(folder: Path, truth: dict[str, object]) -> None:
-    """Notes what the heaps of a folder are of; a folder with heaps of another truth is refused."""
-    folder.mkdir(parents=True, exist_ok=True)
-    file = folder / "truth.json"
-    if file.exists():
-        old = json.loads(file.read_text(encoding="utf-8"))
-        other = [name for name, value in truth.items() if old.get(name) != value]
-        if other:
-            raise Failure(f"{folder} has heaps with another {', '.join(other)}. Give another folder.")
-    file.write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
-
-
 def parse(words: list[str]) -> argparse.Namespace:
     arguments = parser(__doc__)
     arguments.add_argument("folder", type=Path)
@@ -265,8 +253,10 @@ def main(words: list[str]) -> int:
     options = parse(words)
     model = model_of(options.case, options.program, options.set)
     apparatus = Apparatus.of(model)
-    occupy(options.folder, {"engine": options.engine, "case": options.case.name, "set": options.set,
-                            **{name: getattr(options, name) for name in ("friction", "rolling", "cohesion", "filling", "rest")}})
+    occupy(options.folder,
+           {"engine": options.engine, "case": options.case.name, "set": options.set,
+            **{name: getattr(options, name) for name in ("friction", "rolling", "cohesion", "filling", "rest")}},
+           "truth.json")
     repeats = []
     for seed in range(options.first_seed, options.first_seed + options.repeats):
         rows = read_particles(make_heap(seed, model, apparatus, options))

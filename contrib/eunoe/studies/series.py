@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
+from eunoe.folders import occupy
 from eunoe.launch import logged, mpirun, overrides, parser
 from eunoe.tables import Table, as_markdown, read_rows
 
@@ -42,6 +43,8 @@ class SeededVariant:
         return f"{self.variant}_seed{self.seed}"
 
 
+# Options that make other runs of the same names.
+MAKE_OTHERS = ("case", "layers", "set")
 # Settings of a run that is long enough to be interrupted: it continues from its checkpoint.
 CONTINUED = {"restart/restart": "auto", "restart/checkpoint": "true", "restart/wall time interval": 5}
 
@@ -90,7 +93,9 @@ def layers_of(folder: Path) -> dict | None:
 def compute(runs: Sequence[Run], options: argparse.Namespace,
             after_each: Callable[[], None] = lambda: None) -> bool:
     """Makes the runs that have not finished, unless only a table is wanted; false if one failed."""
-    options.folder.mkdir(parents=True, exist_ok=True)
+    if not options.table_only:
+        occupy(options.folder, {name: getattr(options, name) if name != "case" else str(options.case)
+                                for name in MAKE_OTHERS if hasattr(options, name)}, "options.json")
 
     def make(run: Run) -> bool:
         if run.result(options.folder):

@@ -72,11 +72,12 @@ def table_of(runs: dict[bool, list[dict]]) -> tuple[Table, float]:
 
 
 def sentence(runs: dict[bool, list[dict]], worst: float) -> str:
-    means = [[statistics.mean(run["LRD"][4:]) for run in runs[sleep]] for sleep in (False, True)]
+    first = min(5, len(runs[False][0]["LRD"]))
+    means = [[statistics.mean(run["LRD"][first - 1:]) for run in runs[sleep]] for sleep in (False, True)]
     seconds = [statistics.mean(run["seconds"] for run in runs[sleep]) for sleep in (False, True)]
     asleep = statistics.mean(run["asleep"] for run in runs[True])
     return (f"{len(runs[False])} and {len(runs[True])} seeds. Largest difference: {worst:.1f} standard errors. "
-            "Mean LRD from layer 5 on (awake, with sleep, difference in standard errors): "
+            f"Mean LRD from layer {first} on (awake, with sleep, difference in standard errors): "
             f"{', '.join(cells_of(*means))}. Loop: {seconds[0]:.0f} s awake, {seconds[1]:.0f} s with sleep, "
             f"{100. * asleep:.0f} % of all particle steps slept.")
 
