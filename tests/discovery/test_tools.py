@@ -18,9 +18,9 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
-from eunoe.discovery.foreign_heaps import occupy
 from eunoe.discovery.outcomes import outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
+from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
 from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
@@ -199,13 +199,22 @@ class StrengthOfAnEffect(InFolder):
         self.assertTrue(3. <= min(drawn) <= max(drawn) <= 40.)
 
 
-class HeapsOfOtherPrograms(InFolder):
-    def test_a_folder_has_heaps_of_one_truth(self) -> None:
+class SharedFolders(InFolder):
+    def test_a_folder_has_runs_of_one_kind(self) -> None:
         heaps = self.folder / "heaps"
-        occupy(heaps, {"friction": 0.3, "rolling": None})
-        occupy(heaps, {"friction": 0.3, "rolling": None})
-        with self.assertRaisesRegex(Failure, "heaps has heaps with another friction. Give another folder"):
-            occupy(heaps, {"friction": 0.4, "rolling": None})
+        occupy(heaps, {"friction": 0.3, "rolling": None}, "truth.json")
+        occupy(heaps, {"friction": 0.3, "rolling": None}, "truth.json")
+        with self.assertRaisesRegex(Failure, "heaps has runs with another friction. Give another folder"):
+            occupy(heaps, {"friction": 0.4, "rolling": None}, "truth.json")
+
+    def test_a_lock_is_held_by_one(self) -> None:
+        lock = self.folder / "case.lock"
+        with alone_with(lock) as first:
+            self.assertIsNotNone(first)
+            with alone_with(lock) as second:
+                self.assertIsNone(second)
+        with alone_with(lock) as again:
+            self.assertIsNotNone(again)
 
 
 class Scores(InFolder):

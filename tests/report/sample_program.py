@@ -32,7 +32,7 @@ def main(words: list[str]) -> int:
     print("starts", folder.name, flush=True)
     if (folder.parent / "wait").exists():
         stopped = []
-        signal.signal(signal.SIGTERM, lambda *_: stopped.append(True))
+        signal.signal(signal.SIGUSR1, lambda *_: stopped.append(True))
         (folder.parent / "waits").touch()
         while not stopped:
             time.sleep(0.01)

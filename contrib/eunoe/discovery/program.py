@@ -6,7 +6,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from eunoe.launch import mpirun
+from eunoe.launch import Failure, mpirun, output_of
 
 STOPPED = 3
 
@@ -19,24 +19,24 @@ class Program:
     def __init__(self, path: Path, ranks: int) -> None:
         self.path, self.ranks = path.resolve(), ranks
 
-    def run(self, arguments: list[str], log: Path) -> None:
-        """Runs the program with its output in a file. Throws unless it succeeds."""
+    def run(self, arguments: list[str], log: Path, lock: int) -> None:
+        """Runs the program with its output in a file; it holds the lock of this descriptor. Failure unless it
+        succeeds."""
         with open(log, "w", encoding="utf-8") as output:
             code = subprocess.run([*mpirun(self.ranks, "--oversubscribe"), str(self.path), *arguments], stdout=output,
-                                  stderr=subprocess.STDOUT, check=False).returncode
+                                  stderr=subprocess.STDOUT, check=False, pass_fds=[lock]).returncode
         if code == STOPPED:
             raise Stopped
         if code != 0:
-            raise RuntimeError(f"{self.path.name} gave exit code {code}; see {log}")
+            raise Failure(f"{self.path.name} gave exit code {code}; see {log}.")
 
     def effects(self, study: Path) -> dict[str, dict]:
         """The effects of a study by name: sign and confounders, as their files state them."""
-        done = subprocess.run([self.path, str(study), "--list-effects"], text=True, capture_output=True,
-                              check=True)
+        text = output_of([str(self.path), str(study), "--list-effects"], Path.cwd())
         effects = {}
         for name, sign, confounders in re.findall(
                 r"^(\S+): .*\n  amplitude: .*; sign: (\w+); confounders: (.*); process: .*$",
-                done.stdout, re.MULTILINE):
+                text, re.MULTILINE):
             effects[name] = {"sign": sign,
                              "confounders": [] if confounders == "none" else confounders.split(", ")}
         return effects

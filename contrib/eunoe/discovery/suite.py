@@ -7,7 +7,8 @@ Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|s
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
 suite are amplitudes from it. Then the twins are made, then the studies, and in the end the pilot's study
 once more, as the table knows more by then: scores are by the strengths that this one finds. What is there
-already is not made again, and what was interrupted goes on, so the command may be given again at any time.
+already is not made again, and what was interrupted goes on, so the command may be given again at any time; what
+another command is making is left out.
 --label keeps the studies of an ablation beside the others: they use the same data. score.py makes the tables.
 
 Thresholds are tuned on development seeds only; the reported suite is made afterwards, and once what it
@@ -21,6 +22,7 @@ import math
 import shutil
 from pathlib import Path
 
+from eunoe.folders import alone_with
 from eunoe.launch import Failure, overrides, parser
 
 from .case import FIRST_SEED, TIERS, Case, make_cases
@@ -76,7 +78,7 @@ class Suite:
         self.folder = options.folder.resolve()
         self.study = options.study.resolve()
 
-    def make_data(self, case: Case) -> Path:
+    def make_data(self, case: Case, lock: int) -> Path:
         folder = self.folder / case.name
         if (folder / "measured.csv").exists():
             return folder
@@ -88,10 +90,10 @@ class Suite:
                          encoding="utf-8")
         case.save(folder)
         (folder / "sealed" / "truth.json").unlink(missing_ok=True)
-        self.program.run(["--make-twin", str(truth)], folder / "twin.log")
+        self.program.run(["--make-twin", str(truth)], folder / "twin.log", lock)
         return folder
 
-    def make_study(self, case: Case, folder: Path, label: str, settings: list[str]) -> None:
+    def make_study(self, case: Case, folder: Path, label: str, settings: list[str], lock: int) -> None:
         target = folder / label
         if (target / "discovery.json").exists():
             return
@@ -107,8 +109,8 @@ class Suite:
         if sealed.exists():
             sealed.rename(away)
         try:
-            self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log")
-        except RuntimeError as error:
+            self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log", lock)
+        except Failure as error:
             print(f"  {error}")
             shutil.rmtree(target, ignore_errors=True)
         finally:
@@ -118,9 +120,16 @@ class Suite:
     def pilot(self, label: str, settings: list[str]) -> Strengths:
         first = FIRST_SEED[self.options.seeds]
         case = Case("pilot", "none", first - 1, first // 100)
-        folder = self.make_data(case)
-        self.make_study(case, folder, label, settings)
-        return Strengths(folder / label)
+        if not (self.folder / case.name / label / "discovery.json").exists():
+            self.make(case, label, settings)
+        return Strengths(self.folder / case.name / label)
+
+    def make(self, case: Case, label: str, settings: list[str]) -> None:
+        """Data and study of a case."""
+        with alone_with(self.folder / f"{case.name}.lock") as lock:
+            if lock is None:
+                raise Failure(f"Another command is making {case.name} in {self.folder}.")
+            self.make_study(case, self.make_data(case, lock), label, settings, lock)
 
     def run(self) -> None:
         effects = self.program.effects(self.study)
@@ -144,11 +153,9 @@ class Suite:
                 case.strengths[name] = math.copysign(reached, case.strengths[name])
             print(case.name, flush=True)
             try:
-                folder = self.make_data(case)
-            except RuntimeError as error:
+                self.make(case, self.options.label, self.options.set)
+            except Failure as error:
                 print(f"  {error}")
-                continue
-            self.make_study(case, folder, self.options.label, self.options.set)
         if number == of and not self.options.only:
             self.pilot(PILOT_AT_THE_END, self.options.set)
 

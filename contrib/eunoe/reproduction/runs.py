@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import signal
@@ -13,6 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
+from eunoe.folders import alone_with
 from eunoe.launch import mpirun, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
@@ -22,6 +22,7 @@ from .cost import cost_of
 # Shares of a run between which pictures for a movie are written: a pass and a half after the tenth layer.
 FILMED = (0.62, 0.7)
 FILM_INTERVAL = 4e-3  # s
+STOP = signal.SIGUSR1  # mpirun hands it on; after SIGTERM it would not wait for the checkpoint
 STOPPED = 3  # exit code of a run that was asked to stop and has left a checkpoint
 
 
@@ -60,11 +61,8 @@ class Campaign:
     def make(self, case: Case) -> int | None:
         """Goes on with a case until it has finished. Returns its exit code; None if it had finished before or if
         another process runs it. The lock is the program's, too, so it outlives this process."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        with open(self.folder / f"{case.name}.lock", "w", encoding="utf-8") as lock:
-            try:
-                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
+        with alone_with(self.folder / f"{case.name}.lock") as lock:
+            if lock is None:
                 print(f"{case.name} runs already", flush=True)
                 return None
             if self.stopping.is_set() or self.is_finished(case):
@@ -72,8 +70,10 @@ class Campaign:
             self.note_machine(case)
             with open(self.folder / f"{case.name}.log", "a", encoding="utf-8") as log:
                 child = subprocess.Popen([*self.command(case), *self.filmed(case)], stdout=log, stderr=log,
-                                         pass_fds=[lock.fileno()])
+                                         pass_fds=[lock])
             self.children[case.name] = child
+            if self.stopping.is_set():  # since it was looked at
+                child.send_signal(STOP)
             code = child.wait()
             del self.children[case.name]
         print(f"{case.name} ended with exit code {code}", flush=True)
@@ -91,7 +91,7 @@ class Campaign:
         """Asks all runs to leave a checkpoint and end; no further one starts."""
         self.stopping.set()
         for child in list(self.children.values()):
-            child.send_signal(signal.SIGTERM)
+            child.send_signal(STOP)
 
     def work(self, cases: list[Case], jobs: int, after_each: Callable[[Case], None]) -> bool:
         """Makes the cases that have not finished, so many at a time; false if one failed."""
