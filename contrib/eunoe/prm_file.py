@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from eunoe.launch import Failure
 
-class MissingEntry(Exception):
+
+class MissingEntry(Failure):
     """A subsection or an entry that the parameter file lacks."""
 
 

@@ -13,8 +13,10 @@ from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutput
 from vtkmodules.vtkIOLegacy import vtkDataSetReader
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 
+from eunoe.launch import Failure
 
-class VtkError(Exception):
+
+class VtkError(Failure):
     """A file that cannot be read, with a sentence that says why."""
 
 

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eunoe.launch import parser
-
-
+from eunoe.launch import Failure, parser
 from eunoe.report import style
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_pictures import overview_figure
@@ -25,7 +23,11 @@ def main(words: list[str]) -> int:
     arguments.add_argument("picture", type=Path)
     options = arguments.parse_args(words)
     run, layer = read_run(options.folder), options.layer
-    figure, _ = overview_figure(read_vtu(run.layer_pictures()[layer], FIELDS),
+    pictures = run.layer_pictures()
+    if layer not in pictures:
+        raise Failure(f"{options.folder} has no picture of layer {layer}; it has those of "
+                      f"{', '.join(map(str, pictures)) or 'none'}.")
+    figure, _ = overview_figure(read_vtu(pictures[layer], FIELDS),
                                 Apparatus.read(run.folder / "apparatus.json"), layer, list(run.layers.time))
     figure.savefig(options.picture, dpi=style.RESOLUTION)
     return 0

@@ -9,7 +9,6 @@ Each case runs in a folder of its own. Needs numpy, matplotlib and Pillow.
 from __future__ import annotations
 
 import io
-import subprocess
 from pathlib import Path
 
 import matplotlib
@@ -24,7 +23,7 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from eunoe.launch import overrides, parser
+from eunoe.launch import output_of, overrides, parser
 from eunoe.report import style
 from eunoe.report.canvas import MM, Window, draw_circles
 from eunoe.repository import CASES, DOC, ROOT
@@ -154,8 +153,8 @@ def main(words: list[str]) -> int:
     options.pictures.mkdir(parents=True, exist_ok=True)
     for name in options.cases:
         if not options.draw_only:
-            subprocess.run([program, str(CASES / "examples" / f"{name}.prm"),
-                            *overrides({"simulation control/output path": folder / name})], check=True, cwd=ROOT)
+            output_of([program, str(CASES / "examples" / f"{name}.prm"),
+                       *overrides({"simulation control/output path": folder / name})], ROOT)
         if not options.run_only:
             figure = (draw_bounces(folder / name) if name == "bouncing_sphere" else
                       draw_case(name, folder / name))

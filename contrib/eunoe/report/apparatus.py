@@ -13,8 +13,10 @@ from typing import Sequence
 
 import numpy as np
 
+from eunoe.launch import Failure
 
-class ApparatusError(Exception):
+
+class ApparatusError(Failure):
     """The file is missing or no run wrote it; the text is a sentence for the user."""
 
 

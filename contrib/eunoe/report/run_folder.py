@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
+from eunoe.launch import Failure
 from eunoe.prm_file import Parameters, parse_prm
 from eunoe.vtk_files import Snapshot, read_pvd
 
 
-class ReportError(Exception):
+class ReportError(Failure):
     """No report can be made; the text is a sentence for the user that says why."""
 
 

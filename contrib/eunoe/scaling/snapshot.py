@@ -9,7 +9,7 @@ import numpy as np
 
 from eunoe.launch import Failure
 from eunoe.prm_file import MissingEntry, Parameters, parse_prm
-from eunoe.vtk_files import VtkError, read_vtu
+from eunoe.vtk_files import read_vtu
 
 from .apparatus import mesh_of
 from .mesh import Mesh
@@ -57,5 +57,3 @@ def read(file: Path, skin: float) -> tuple[Mesh, np.ndarray, np.ndarray]:
                       "folder of its run, beside used.prm.") from error
     except (MissingEntry, ValueError, KeyError) as error:
         raise Failure(f"The mesh of {folder} is not understood: {error}") from error
-    except VtkError as error:
-        raise Failure(str(error)) from error

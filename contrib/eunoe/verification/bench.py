@@ -10,7 +10,7 @@ from typing import Any, Callable
 
 import numpy as np
 
-from eunoe.launch import overrides
+from eunoe.launch import Failure, overrides
 from eunoe.repository import CASES, ROOT
 from eunoe.tables import read_columns
 
@@ -78,7 +78,7 @@ class Bench:
                 return step * 100. * self.rayleigh_share / percent
             # The share is written with one digit behind the point.
             step *= 150. * self.rayleigh_share / percent if percent >= 1. else 10.
-        raise RuntimeError(f"{case}: no time step is {100. * self.rayleigh_share:g} % of the Rayleigh time.")
+        raise Failure(f"{case}: no time step is {100. * self.rayleigh_share:g} % of the Rayleigh time.")
 
     def _start(self, case: str, entries: dict[str, Any], option: str) -> str:
         """Starts the program and returns its output."""
@@ -86,7 +86,7 @@ class Bench:
         # Files that a case names are relative to the folder where the program starts.
         done = subprocess.run(command, check=False, capture_output=True, text=True, cwd=ROOT)
         if done.returncode != 0:
-            raise RuntimeError(f"{case} ended with exit code {done.returncode}: {done.stderr}")
+            raise Failure(f"{case} ended with exit code {done.returncode}: {done.stderr}")
         return done.stdout
 
 

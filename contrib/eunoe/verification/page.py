@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from eunoe.launch import Failure
+
 from .bench import Check, Row, RowMaker
 
 # Processors and libraries may round the last digits differently. A difference above this share of
@@ -69,6 +71,6 @@ def renew(file: Path, maker: RowMaker, row: Row) -> None:
     if first == last:
         table = re.search(r"^\| row \| quantity \|.*\n(?:\|.*\n)*", text, re.M)
         if not table:
-            raise RuntimeError(f"{file} has no table that begins with '| row | quantity |'")
+            raise Failure(f"{file} has no table that begins with '| row | quantity |'.")
         first = last = table.end()
     file.write_text(text[:first] + lines + text[last:], encoding="utf-8")
