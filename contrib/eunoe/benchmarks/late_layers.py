@@ -5,8 +5,8 @@ adaptive sparse contacts.
 Usage: contrib/tools late-layers folder [--program build/release/eunoe-particles] [--layers 21] [--ranks 1]
            [--spread-only] [--set ENTRY=VALUE ...]
 
-Spreading takes long; a call that was interrupted goes on where it stopped, and pairs of calls with different
-programs can share the layers of a folder. Prints the speed of the time loop of the last pass, the share of
+Spreading takes long; a call that was interrupted goes on where it stopped, and calls with different programs and
+entries can share the layers of a folder. The last passes are made anew by each call. Prints the speed of the time loop of the last pass, the share of
 particle steps that were slept, and the ratio of the two loops.
 """
 
@@ -26,6 +26,7 @@ from .late_pass import ENABLE, row
 from .programs import Eunoe, add_program
 
 CASE = CASES / "benchmarks" / "late_layers.prm"
+PASSES = {"with_sleep": [], "all_awake": [f"{ENABLE} = false"]}
 EVERY = 50000  # steps between checkpoints, of which all of the last pass are kept
 
 
@@ -71,8 +72,9 @@ def main(words: list[str]) -> int:
     if options.spread_only:
         return 0
     begin = {"restart/restart": "true", "restart/restart folder": begin_last_pass(options)}
-    asleep = start(options, "with_sleep", begin, options.set)
-    awake = start(options, "all_awake", begin, [f"{ENABLE} = false", *options.set])
+    for name in PASSES:
+        shutil.rmtree(options.folder / name, ignore_errors=True)
+    asleep, awake = (start(options, name, begin, [*more, *options.set]) for name, more in PASSES.items())
     print(as_text([["", "million particle-steps/s", "loop", "asleep", "search", "deciding who sleeps"],
                    row("all awake", [awake]), row("with sleep", [asleep])]))
     print(f"\nWith sleep it takes {awake['loop_seconds'] / asleep['loop_seconds']:.2f} times less.")

@@ -3,7 +3,8 @@
 Usage: contrib/tools soak build/release/eunoe-particles case.prm FOLDER
            [--steps 5000000] [--ranks 1] [--allowed-growth 2] [--set ENTRY=VALUE ...]
 
-The case should go on for ever: insert what leaves, search, balance, write. Exit code 1 and a sentence
+The case should go on for ever: insert what leaves, search, balance, write. The run is in the subfolder `soak`,
+which is emptied first. Exit code 1 and a sentence
 if the run fails, or if the largest memory of its last quarter exceeds that of its second one by more
 than the allowed growth (MB, all ranks together).
 """
@@ -64,15 +65,16 @@ def main(words: list[str]) -> int:
     arguments.add_argument("--ranks", type=int, default=1)
     arguments.add_argument("--allowed-growth", type=float, default=2.)
     options = arguments.parse_args(words)
-    shutil.rmtree(options.folder, ignore_errors=True)
-    options.folder.mkdir(parents=True)
+    folder = options.folder / "soak"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
     settings = [f"simulation control/iteration end = {options.steps}",
                 "simulation control/output path = results", *options.settings]
     samples = run([*mpirun(options.ranks, "--oversubscribe"), os.path.abspath(options.program),
-                   os.path.abspath(options.case), *overrides(settings)], options.folder)
+                   os.path.abspath(options.case), *overrides(settings)], folder)
     quarter = len(samples) // 4
     early, late = max(samples[quarter:2 * quarter]), max(samples[3 * quarter:])
-    summary = json.loads((options.folder / "results" / "summary.json").read_text(encoding="utf-8"))
+    summary = json.loads((folder / "results" / "summary.json").read_text(encoding="utf-8"))
     print(f"{summary['steps']} steps, {summary['contact_searches']} searches, "
           f"{summary['inserted_particles']} particles inserted, {summary['particles']} at the end; "
           f"memory {early:.1f} MB in the second quarter, {late:.1f} MB in the last")

@@ -157,10 +157,11 @@ class Run:
     def folder_of(self, folder: Path, stage: Stage) -> Path:
         return folder / f"{self.proof}_seed{self.seed}_{stage.name}" if stage.shared else folder / self.name / stage.name.replace(" ", "_")
 
-    def make(self, options: argparse.Namespace) -> bool:
-        """Makes the stages that have not finished; false if one failed."""
+    def make(self, options: argparse.Namespace, only_shared: bool = False) -> bool:
+        """Makes the stages that have not finished, or only the first ones, which variants share; false if one
+        failed."""
         proof, before = PROOFS[self.proof], None
-        for stage in proof.stages:
+        for stage in (stage for stage in proof.stages if stage.shared or not only_shared):
             here = self.folder_of(options.folder, stage)
             if not summary_of(here):
                 settings = {"simulation control/output path": here.resolve(), "simulation control/log frequency": 0,
@@ -224,6 +225,9 @@ def main(words: list[str]) -> int:
         return good
 
     with ThreadPoolExecutor(options.jobs) as pool:
+        if not options.table_only:
+            list(pool.map(lambda run: run.make(options, only_shared=True),
+                          [run for run in runs if run.variant == "awake"]))
         good = all(list(pool.map(make, () if options.table_only else runs)))
     done = [(run, result) for run in runs if (result := run.result(options.folder))]
     if not done:
