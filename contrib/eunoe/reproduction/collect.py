@@ -11,13 +11,12 @@ from eunoe.launch import Failure
 from eunoe.report.apparatus import Apparatus, ApparatusError
 from eunoe.report.bed_maps import read_maps, write_table
 from eunoe.report.run_folder import Run, read_run
-from eunoe.repository import DOC
 from eunoe.studies.series import summary_of
 
 from .cases import Case
+from .places import DATA
 from .runs import Campaign, processor_of
 
-DATA = DOC / "reproduction" / "data"
 TABLES = ("layers.csv", "measurements.csv", "apparatus.json")
 BED, RECORD = "bed.csv", "run.json"
 # Of summary.json.

@@ -10,15 +10,14 @@ from eunoe.report.comparison_text import (densities_table, differences_table, me
                                           rise_sentence)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import Group
-from eunoe.repository import DOC
 from eunoe.tables import Table, as_markdown
 
 from .cases import SETS
 from .pictures import picture_name
+from .places import PAGE
 from .results import HELD, SOFT, Findings, Result, origin_of
 from .verdict import verdict_table
 
-PAGE = DOC / "reproduction.md"
 NOTHING = "No run of these has finished yet."
 
 

@@ -14,7 +14,8 @@ from eunoe.report.run_folder import read_layers
 from eunoe.report.spread_run import Group, SpreadRun
 
 from .cases import CASES, Case
-from .collect import BED, DATA, RECORD
+from .collect import BED, RECORD
+from .places import DATA
 
 HELD, SOFT = "lips", "soft"  # the variants whose ends are held, and that make long plates affordable
 

@@ -25,14 +25,15 @@ from pathlib import Path
 
 from eunoe.launch import Failure, parser
 from eunoe.reproduction.cases import CASES, Case, chosen
-from eunoe.reproduction.collect import DATA, collect
-from eunoe.reproduction.page import PAGE, renew
-from eunoe.reproduction.pictures import draw, draw_movies
+from eunoe.reproduction.places import DATA, PAGE
 from eunoe.reproduction.plan import measured_speed, plan_of
-from eunoe.reproduction.results import Findings
 from eunoe.reproduction.runs import STOPPED, Campaign
 from eunoe.repository import DOC
 from eunoe.tables import as_text
+
+
+# What draws and reads pictures is imported where it is used: a batch job, which only asks for its command, may
+# be on a node without these packages.
 
 
 def parse(words: list[str]) -> argparse.Namespace:
@@ -64,6 +65,9 @@ def show_plan(campaign: Campaign, cases: list[Case], speed: float | None) -> Non
 
 def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
     """Page and pictures from the small results, and from the states if they are there."""
+    from eunoe.reproduction.page import renew
+    from eunoe.reproduction.pictures import draw, draw_movies
+    from eunoe.reproduction.results import Findings
     findings = Findings(options.data)
     draw(findings, campaign, options.pictures)
     renew(options.page, findings, options.pictures)
@@ -74,6 +78,8 @@ def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
 
 def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
     """Runs, takes over the results of each run when it has finished, and rebuilds; false if a run failed."""
+    from eunoe.reproduction.collect import collect
+
     def take(case: Case) -> None:
         try:
             collect(campaign, case, options.data)
@@ -104,7 +110,7 @@ def main(words: list[str]) -> int:
     if options.command:
         for case in cases:
             campaign.note_machine(case)
-            print(shlex.join(campaign.command(case)))
+            print(shlex.join([*campaign.command(case), *campaign.filmed(case)]))
         return 0
     good = go_on(options, campaign, cases)
     return STOPPED if campaign.stopping.is_set() else 0 if good else 1
