@@ -22,6 +22,7 @@ import sample_run
 from eunoe.intervals import difference_of, mean_of
 from eunoe.report import of_run
 from eunoe.report.bed_maps import maps_of, read_table, write_table
+from eunoe.report.comparison_report import default_labels
 from eunoe.report.comparison_text import densities_table, differences_table, measured_group, rise_sentence
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
@@ -218,6 +219,10 @@ class Page(unittest.TestCase):
         code, _, errors = self.make("--label", "a")
         self.assertEqual(code, 2)
         self.assertIn("There are 1 labels for 3 runs", errors)
+
+    def test_labels_of_folders_with_one_name(self) -> None:
+        folders = [Path(name) for name in ("A_seed1/run", "A_seed2/run", "B/run", "C_seed3")]
+        self.assertEqual(default_labels(folders), ["A/run", "A/run", "B/run", "C"])
 
     def test_figures_go_to_a_folder(self) -> None:
         self.assertEqual(self.make("--figures", str(self.folder / "paper"))[0], 0)

@@ -216,6 +216,10 @@ class Report(InFolder):
         self.assert_says("The last picture")
         self.assert_says("abc1234")
 
+    def test_other_run_that_has_not_finished(self) -> None:
+        self.file("used.prm", "set process = general\n")
+        self.assert_says("The run has not finished")
+
     def test_heap(self) -> None:
         sample_run.write_heap(self.folder)
         page = self.page()

@@ -39,9 +39,17 @@ def spread_run(run: Run, problems: list[str]) -> SpreadRun:
     return SpreadRun(run.name, run.layers, apparatus, maps)
 
 
-def default_label(folder: Path) -> str:
-    """The folder's name; names that differ in the seed alone have one label."""
-    return re.sub(r"[_-]?seed[_-]?\d+$", "", folder.resolve().name) or folder.resolve().name
+def _without_seed(name: str) -> str:
+    return re.sub(r"[_-]?seed[_-]?\d+$", "", name) or name
+
+
+def default_labels(folders: Sequence[Path]) -> list[str]:
+    """The folders' names; names that differ in the seed alone have one label. Where folders have one name, as in
+    A/run and B/run, that of the folder around them comes before it."""
+    places = [folder.resolve() for folder in folders]
+    names = [place.name for place in places]
+    return [_without_seed(place.name) if names.count(place.name) == 1 else
+            f"{_without_seed(place.parent.name)}/{_without_seed(place.name)}" for place in places]
 
 
 def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str]) -> list[Group]:
@@ -50,7 +58,7 @@ def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str
         raise ReportError(f"There are {len(labels)} labels for {len(folders)} runs: give --label once for each "
                           "run, in the same order, or not at all. Runs of one label are pooled.")
     runs: dict[str, list[SpreadRun]] = {}
-    for folder, label in zip(folders, labels or map(default_label, folders)):
+    for folder, label in zip(folders, labels or default_labels(folders)):
         runs.setdefault(label, []).append(spread_run(read_run(folder), problems))
     if len(runs) > MOST_GROUPS:
         raise ReportError(f"{len(runs)} labels are too many for one page: give at most {MOST_GROUPS}.")

@@ -137,9 +137,10 @@ def read_run(folder: Path) -> Run:
     text = prm.read_text(errors="replace") if prm.is_file() else ""
     parameters = parse_prm(text) if text else None
     spreading = parameters is not None and parameters.entries.get("process") == "powder spreading"
-    if not table.is_file() and (spreading or not summary_file.is_file()):
-        raise ReportError(f"{folder} has no layers.csv: it is not the output folder of a "
-                          "spreading run, or the run did not start.")
+    if not table.is_file() and spreading:
+        raise ReportError(f"{folder} has no layers.csv yet: the run has not started its first layer.")
+    if not any(file.is_file() for file in (table, prm, summary_file)):
+        raise ReportError(f"{folder} is not the output folder of a run: it has neither layers.csv nor used.prm.")
     try:
         summary = json.loads(summary_file.read_text()) if summary_file.is_file() else None
     except ValueError as error:
