@@ -47,7 +47,7 @@ class Pictures(unittest.TestCase):
         """Exit code and what went to stderr."""
         stderr = io.StringIO()
         with contextlib.redirect_stderr(stderr), contextlib.redirect_stdout(io.StringIO()):
-            code = commands.run("pictures", [str(self.folder / "work"), "--build", str(self.folder), "--pictures",
+            code = commands.run("pictures", [str(self.folder / "my work"), "--build", str(self.folder), "--pictures",
                                              str(self.folder / "pictures"), "--only", *names])
         return code, stderr.getvalue()
 

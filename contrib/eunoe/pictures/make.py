@@ -65,13 +65,17 @@ def revision_of(program: Path) -> str:
 
 
 def words_of(command: str, rule_folder: Path, options: argparse.Namespace) -> list[str]:
-    """The command with the names of programs and folders filled in."""
-    launch = "".join(f"{word} " for word in mpirun(options.ranks))
+    """The command with the names of programs and folders filled in, which may have spaces."""
     build = options.build.resolve()
-    return shlex.split(command.format(
-        particles=f"{launch}{build / 'eunoe-particles'}", program=build / "eunoe-particles",
-        discovery=f"{launch}{build / 'eunoe-discovery'}", python=sys.executable, folder=rule_folder,
-        ranks=options.ranks))
+    programs = {f"{{{name}}}": [*mpirun(options.ranks), str(build / f"eunoe-{name}")]
+                for name in ("particles", "discovery")}
+    names = {"program": str(build / "eunoe-particles"), "python": sys.executable, "folder": str(rule_folder)}
+    quoted = {name: shlex.quote(value) for name, value in names.items()}
+    words: list[str] = []
+    for word in shlex.split(command):
+        is_script = words[-1:] == ["-c"]
+        words += programs.get(word) or [word.format(**(quoted if is_script else names))]
+    return words
 
 
 def run(command: str, rule_folder: Path, options: argparse.Namespace) -> None:
