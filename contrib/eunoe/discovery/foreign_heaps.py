@@ -245,7 +245,6 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--rest", type=float, default=0.05, help="time for coming to rest (s)")
     options = arguments.parse_args(words)
     options.folder = options.folder.resolve()
-    options.only = ""
     return options
 
 

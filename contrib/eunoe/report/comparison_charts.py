@@ -117,7 +117,7 @@ def _draw_map(figure: Figure, axes: Axes, group: Group, values: np.ndarray, labe
 def _draw_zones(axes: Axes, group: Group) -> None:
     """The inner ends of the zones at rest, mean over the runs."""
     n = group.over_maps("resting_of_layers").shape[1]
-    for side, colour in (("left", style.INK), ("right", style.INK)):
+    for side in ("left", "right"):
         places = []
         for run in group.mapped:
             filled = run.maps.tracked.sum(axis=2) > 0
@@ -127,7 +127,7 @@ def _draw_zones(axes: Axes, group: Group) -> None:
             places.append([(end[0] + zone if side == "left" else end[1] - zone) if zone > 0. else np.nan
                            for end, zone in zip(ends[:n], length[:n])])
         mean = np.array(places).mean(axis=0)
-        axes.plot(MM * mean, group.mapped[0].maps.layers[:n], color=colour, linewidth=0.9)
+        axes.plot(MM * mean, group.mapped[0].maps.layers[:n], color=style.INK, linewidth=0.9)
 
 
 def maps_figure(group: Group) -> Figure:

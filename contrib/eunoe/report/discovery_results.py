@@ -18,7 +18,6 @@ class Fingerprint:
     effect: str
     amplitude: float
     change: np.ndarray
-    error: np.ndarray  # standard error of the change
 
 
 class Study:
@@ -54,7 +53,6 @@ class Study:
     def fingerprints(self) -> tuple[list[tuple[str, str, int]], list[Fingerprint]]:
         """The measured cells, and each effect's change of them at the end of its range."""
         cells = [(c["experiment"], c["observable"], c["index"]) for c in self.content["envelopes"]]
-        prints = [Fingerprint(row["effect"], row["amplitude"], np.array(row["change"], dtype=float),
-                              np.array(row["error"], dtype=float))
+        prints = [Fingerprint(row["effect"], row["amplitude"], np.array(row["change"], dtype=float))
                   for row in self.content.get("fingerprints", [])]
         return cells, prints

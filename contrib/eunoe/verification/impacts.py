@@ -22,8 +22,8 @@ class Impact:
     force: np.ndarray
 
     @classmethod
-    def of(cls, results: Results, mass: float, n: int) -> Impact:
-        """From the kinetic energy of n equal spheres alone, without the contact law: the closing
+    def of(cls, results: Results, mass: float) -> Impact:
+        """From the kinetic energy of equal spheres alone, without the contact law: the closing
         speed is positive until the energy is smallest, then negative.
 
         @param mass effective (kg)
@@ -55,10 +55,10 @@ def sphere_mass(diameter: float, density: float) -> float:
     return math.pi / 6. * density * diameter**3
 
 
-def elastic(bench: Bench, cases: tuple, effective_mass, n: int) -> Row:
+def elastic(bench: Bench, cases: tuple, effective_mass) -> Row:
     checks, impacts = [], {}
     for name, case, density, overlap, force, duration in cases:
-        impact = Impact.of(bench.run(case), effective_mass(density), n)
+        impact = Impact.of(bench.run(case), effective_mass(density))
         impacts[name] = impact
         checks += [
             relative(f"{name}: largest overlap", 1e6 * impact.overlap.max(), overlap, FOUR_DIGITS, "um"),
@@ -81,14 +81,14 @@ def elastic(bench: Bench, cases: tuple, effective_mass, n: int) -> Row:
 def pair(bench: Bench) -> Row:
     return elastic(bench, (("glass", "chung_ooi_1_glass", 2800., 274.1, 10.70, 40.34),
                            ("limestone", "chung_ooi_1_limestone", 2500., 368.3, 7.108, 54.20)),
-                   lambda density: 0.5 * sphere_mass(20e-3, density), 2)
+                   lambda density: 0.5 * sphere_mass(20e-3, density))
 
 
 @row("chung_ooi_2", "Chung and Ooi, test 2: sphere on a rigid plane, elastic")
 def plane(bench: Bench) -> Row:
     return elastic(bench, (("aluminium alloy", "chung_ooi_2_aluminium", 2699., 49.72, 11.37, 731.7),
                            ("magnesium alloy", "chung_ooi_2_magnesium", 1800., 52.12, 7.233, 767.1)),
-                   lambda density: sphere_mass(0.2, density), 1)
+                   lambda density: sphere_mass(0.2, density))
 
 
 @row("chung_ooi_3", "Chung and Ooi, test 3: normal impact with dissipation")
@@ -106,7 +106,7 @@ def restitution(bench: Bench) -> Row:
             after = results.particles.velocity[0, 2] / 3.9
             measured[name].append(after)
             checks.append(absolute(f"{name}: restitution for e = {e:g}", after, e, 1e-3))
-        impact = Impact.of(results, sphere_mass(5e-3, density), 1)
+        impact = Impact.of(results, sphere_mass(5e-3, density))
         checks += [
             relative(f"{name}: elastic overlap", 1e6 * impact.overlap.max(), overlap, THREE_DIGITS, "um"),
             relative(f"{name}: elastic force", impact.force.max(), force, THREE_DIGITS, "N"),
