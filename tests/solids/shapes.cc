@@ -77,6 +77,12 @@ void examine_spreaders()
           {{0.6e-3, 0.1e-3, 0.}, {1.4e-3, 1.1e-3, 2e-3}});
   examine("half_round_bar", "0, 0, 0 : 2e-3 : 0.4e-3 : 0.4e-3 : 32", 32 * half_facet * 2e-3,
           2. * 32 * half_facet + 2. * 2e-3, {{-0.4e-3, 0., 0.}, {0.4e-3, 0.4e-3, 2e-3}});
+  // With an odd number of facets the lowest one is flat, at the height of the lowest line.
+  const double half_of_five = 0.4e-3 * std::sin(0.1 * M_PI),
+               rise = 0.4e-3 * (1. - std::cos(0.1 * M_PI)),
+               around = 10. * half_of_five + sides + 2. * rise;
+  examine("half_round_bar", "0, 0.1e-3, 0 : 2e-3 : 0.4e-3 : 1e-3 : 5", around * 2e-3,
+          2. * around + 2. * 2e-3, {{-0.4e-3, 0.1e-3, 0.}, {0.4e-3, 1.1e-3, 2e-3}});
   examine("flat_blade", "1e-3, 0.1e-3, 0 : 2e-3 : 0.3e-3 : 1e-3", (0.3e-3 + 2. * 1e-3) * 2e-3,
           2. * (0.3e-3 + 2. * 1e-3) + 2. * 2e-3, {{0.7e-3, 0.1e-3, 0.}, {1e-3, 1.1e-3, 2e-3}});
 }

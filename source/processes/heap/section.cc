@@ -66,6 +66,11 @@ void HeapParameters::decide(Parameters &parameters) const
   parameters.control.time_end = 2.1 * longest_wait + (a.y_top - a.y_bottom) / lifting_velocity;
 }
 
+double HeapParameters::fastest_solid() const
+{
+  return lifting_velocity;
+}
+
 RunEstimate HeapParameters::estimate(const Parameters &parameters) const
 {
   const Apparatus a(*this, parameters.physics);

@@ -36,6 +36,14 @@ void SpreadingParameters::check_with(const Parameters &parameters,
                     "transfer plate, as the bed is only " +
                     format(bed) + " m deep, and " + format(first_bed) + " m for the first layer.",
                 "Give a smaller error or a larger 'feedstock margin'.");
+  const double all_strokes = first_stroke + (std::max(1u, n_layers) - 1) * stroke;
+  check.require(feedstock != "full" ||
+                    (1. + stroke_error) * all_strokes <= std::max(bed, all_strokes + bed_margin),
+                {section}, "feedstock stroke error",
+                "is " + format(stroke_error) +
+                    ": with 'feedstock = full' all strokes together would raise the platform above "
+                    "the level of the transfer plate.",
+                "Give a smaller error, a larger 'feedstock margin' or 'feedstock = replenished'.");
   refuse_decisions_of_process(check, "its last layer is weighed", "'number of layers' rules");
 }
 

@@ -36,6 +36,7 @@ struct HeapParameters : public ProcessSection
   void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
   void decide(Parameters &parameters) const override;
   RunEstimate estimate(const Parameters &parameters) const override;
+  double fastest_solid() const override;
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
   std::vector<ObservableDescription> observables() const override;
   std::vector<Measurement> measure(
