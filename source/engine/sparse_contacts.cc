@@ -113,7 +113,7 @@ std::vector<std::uint8_t> SparseContacts::find_restless(ParticleArrays &p,
   // Ghosts outside all pairs get no flags from their owners.
   std::vector<std::uint8_t> restless(p.size(), 1);
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    restless[row] = now - moved[row] < rest.steps(p.radius(row));
+    restless[row] = now - moved[row] < std::max(1., rest.steps(p.radius(row)));
   return restless;
 }
 

@@ -76,7 +76,12 @@ EUNOE_MPI_TEST()
   for (const auto &[title, integration, lag] :
        {Expected{"velocity Verlet", "velocity_verlet", 0.},
         Expected{"explicit Euler", "explicit_euler", 1.},
-        Expected{"symplectic Euler", "symplectic_euler", -1.}})
+        Expected{"symplectic Euler", "symplectic_euler", -1.},
+        // What moves does not sleep, even if it may as soon as it rests.
+        Expected{"with sleep and no rest time",
+                 "velocity_verlet\n subsection adaptive sparse contacts\n"
+                 "  set enable adaptive sparse contacts = true\n  set rest time = 0\n end\n",
+                 0.}})
   {
     const std::string name = title + ": ";
     const Errors errors = fly(integration, lag);
