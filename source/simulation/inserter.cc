@@ -20,6 +20,11 @@ bool Inserter::is_due(const unsigned long long step) const
   return step == 0 || (parameters.frequency > 0 && step % parameters.frequency == 0);
 }
 
+bool Inserter::waits_for_ever() const
+{
+  return method && !method->finished() && parameters.frequency == 0;
+}
+
 Inserter::Event Inserter::next_event(const Domain &domain, const ParticleArrays &particles,
                                      const std::vector<Solid> &solids, const double time)
 {

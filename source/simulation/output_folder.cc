@@ -54,6 +54,9 @@ nlohmann::ordered_json OutputFolder::save() const
   nlohmann::ordered_json saved;
   saved["tables"] = nlohmann::ordered_json::object();
   saved["pictures"] = nlohmann::ordered_json::object();
+  // Those that this part of the run does not write are continued by a later one.
+  saved["tables"].update(nlohmann::ordered_json(sizes_before));
+  saved["pictures"].update(nlohmann::ordered_json(files_before));
   for (const auto &[name, table] : tables)
     saved["tables"][name] = table->size();
   for (const auto &[name, pictures] : series)

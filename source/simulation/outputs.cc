@@ -38,11 +38,12 @@ bool Outputs::want_solid_loads(const unsigned long long step) const
                      [step](const auto &entry) { return entry.second->wants_solid_loads(step); });
 }
 
-void Outputs::begin(Simulation &simulation)
+void Outputs::begin(const Clock &clock, Simulation &simulation)
 {
-  next_pictures = simulation.time();
+  next_pictures = clock.time();
   step(simulation);
-  draw(simulation);
+  if (are_pictures_due(clock, true))
+    draw(simulation);
 }
 
 void Outputs::step(Simulation &simulation)
@@ -57,15 +58,20 @@ void Outputs::finish(Simulation &simulation)
     observable->finish(simulation);
 }
 
-bool Outputs::are_pictures_due(const Clock &clock)
+bool Outputs::are_pictures_due(const Clock &clock, const bool begins)
 {
   const double half_step = 0.5 * clock.time_step(), now = clock.time();
-  const bool is_due =
-      control.output_control == "time"
-          ? now >= next_pictures - half_step
-          : control.output_frequency > 0 && clock.step() % control.output_frequency == 0;
-  if (is_due)
+  const bool by_time = control.output_control == "time";
+  // A run that goes on may have another interval.
+  if (next_pictures > now + control.output_time + half_step)
+    next_pictures = now;
+  const bool is_due = by_time ? now >= next_pictures - half_step
+                              : control.output_frequency > 0 &&
+                                    (begins || clock.step() % control.output_frequency == 0);
+  if (is_due && by_time)
     next_pictures += control.output_time;
+  if (next_pictures <= now - half_step)
+    next_pictures = now + control.output_time;
   const bool is_in_window =
       now >= control.output_window[0] - half_step && now <= control.output_window[1] + half_step;
   return is_due && is_in_window && folder.is_open();

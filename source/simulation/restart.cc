@@ -55,8 +55,13 @@ void Simulation::resume()
                  ", t = " + format(clock.time()) + " s, " + std::to_string(system.n_global()) +
                  " particles");
   checkpoints.close();
+  if (checkpoints.begins_phase() && inserter.waits_for_ever())
+    get_log().warning(
+        "Nothing is inserted in this phase, although not all particles have come: with "
+        "'insertion frequency = 0' they come at the first step of a run only. Give a "
+        "frequency.");
   if (!checkpoints.is_own())
-    outputs.begin(*this);
+    outputs.begin(clock, *this);
 }
 
 /// Continues as if the run had not stopped.

@@ -24,6 +24,8 @@ public:
 
   /// Whether particles are inserted after a step.
   bool is_due(unsigned long long step) const;
+  /// Whether particles that have not come never will, after the first step.
+  bool waits_for_ever() const;
 
   /// What is inserted and taken out at one time.
   struct Event

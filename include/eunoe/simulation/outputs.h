@@ -35,14 +35,15 @@ public:
   bool want_solid_loads(unsigned long long step) const;
 
   /// Looks at the state with which a run begins that takes over that of another one; collective.
-  void begin(Simulation &simulation);
+  void begin(const Clock &clock, Simulation &simulation);
   /// Lets the observables look at a step.
   void step(Simulation &simulation);
   /// Lets them look once more after the last one.
   void finish(Simulation &simulation);
 
   /// Whether the regular pictures are due; to be asked once after every step.
-  bool are_pictures_due(const Clock &clock);
+  /// @param begins whether the run begins with this step
+  bool are_pictures_due(const Clock &clock, bool begins = false);
   /// Writes them; collective.
   void draw(Simulation &simulation);
 
