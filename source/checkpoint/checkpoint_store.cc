@@ -138,11 +138,21 @@ void CheckpointStore::keep_opened()
     const std::string from = folder + "/" + earlier.front();
     const std::string to = folder + "/" + name + "_phase" + earlier.front().substr(name.size());
     std::error_code failure;
-    fs::create_hard_link(from, to, failure);
-    if (failure && !fs::exists(to))
-      fs::copy_file(from, to, failure);
-    if (failure && !fs::exists(to))
+    if (fs::equivalent(from, to, failure))
+      return;
+    // What another run kept under this name gives way when this one is complete.
+    const std::string beside = to + ".new";
+    fs::remove(beside, failure);
+    fs::create_hard_link(from, beside, failure);
+    if (failure)
+      fs::copy_file(from, beside, failure);
+    if (!failure)
+      fs::rename(beside, to, failure);
+    if (failure) {
+      std::error_code ignored;
+      fs::remove(beside, ignored);
       throw UserError(cannot_be_written(to, failure.message()));
+    }
   });
 }
 
@@ -151,11 +161,26 @@ void CheckpointStore::go_on()
   files = earlier;
 }
 
+/// Removes what is left of a checkpoint in the writing of which a run was killed.
+void CheckpointStore::remove_unfinished() const
+{
+  const std::string unfinished = ".new";
+  std::error_code failure;
+  for (const auto &entry : fs::directory_iterator(folder, failure)) {
+    const std::string file = entry.path().filename().string();
+    if (fs::is_regular_file(entry.symlink_status(failure)) && file.size() > unfinished.size() &&
+        file.compare(file.size() - unfinished.size(), std::string::npos, unfinished) == 0 &&
+        is_ours(file.substr(0, file.size() - unfinished.size())))
+      remove_file(entry.path().string());
+  }
+}
+
 std::string CheckpointStore::write(CheckpointWriter &writer, const unsigned long long step)
 {
   char number[32];
   std::snprintf(number, sizeof number, "_%012llu", step);
   const std::string file = name + number + ending;
+  on_first_rank(comm, [&] { remove_unfinished(); });
   writer.write(folder + "/" + file);
   on_first_rank(comm, [&] {
     files.erase(std::remove(files.begin(), files.end(), file), files.end());

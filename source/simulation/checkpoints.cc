@@ -76,7 +76,7 @@ std::vector<std::string> Checkpoints::folders_nearby() const
   std::string text;
   if (is_first_rank(comm)) {
     const fs::path own = fs::path(folder + "/").lexically_normal().parent_path();
-    for (const fs::path &place : {fs::path("."), own / ".."}) {
+    for (const fs::path &place : {fs::path("."), fs::absolute(own).parent_path()}) {
       std::error_code failure;
       if (CheckpointStore(place.string(), parameters.name(), 1, MPI_COMM_SELF).has_any())
         found.insert(fs::canonical(place, failure).string());

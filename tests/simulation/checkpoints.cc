@@ -86,7 +86,15 @@ EUNOE_MPI_TEST()
   writer.head["clock"] = Clock(1., 100).save();
   writer.head["clock"]["step"] = 50;
   writer.head["input"] = input;
+  const std::string unfinished = folder + "/restart_000000000040.checkpoint.new",
+                    not_ours = folder + "/notes.new";
+  if (is_first_rank())
+    for (const std::string &file : {unfinished, not_ours})
+      write_file(file, "half");
   checkpoints.write(writer, 50, log);
+  MPI_Barrier(MPI_COMM_WORLD);
+  check("what a killed run left unfinished goes",
+        !std::filesystem::exists(unfinished) && std::filesystem::exists(not_ours));
   Checkpoints later(may, folder, MPI_COMM_WORLD), too_late(may, folder, MPI_COMM_WORLD);
   check("it is opened", n_problems(later, 100) == 0 && later.opened() != nullptr);
   check("it is behind the end", n_problems(too_late, 49) == 1);

@@ -51,6 +51,7 @@ private:
   std::vector<std::string> listed() const;
   /// All that are there, by their steps, the last first.
   std::vector<std::string> present() const;
+  void remove_unfinished() const;
   /// All, in the order in which they are tried; collective.
   std::vector<std::string> find(std::string &defect);
   std::string index() const { return folder + "/" + name + ".latest"; }
