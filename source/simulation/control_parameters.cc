@@ -81,10 +81,11 @@ unsigned long long ControlParameters::last_step(const unsigned long long step,
 {
   // No run does more steps than this, and it is the same number as a double.
   constexpr double most = 0x1p63;
+  const double steps = (time_end - time) / time_step;
   return end_control == "iteration"
              ? iteration_end
              : step + static_cast<unsigned long long>(
-                          std::clamp(std::ceil((time_end - time) / time_step - 1e-9), 0., most));
+                          std::clamp(std::ceil(steps - 1e-9 * std::max(1., steps)), 0., most));
 }
 
 } // namespace eunoe

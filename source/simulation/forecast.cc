@@ -57,19 +57,25 @@ std::vector<DiameterRange> find_diameters(const Parameters &parameters, const bo
                                           const std::vector<std::vector<NewParticle>> &events,
                                           MPI_Comm comm)
 {
+  std::vector<DiameterRange> diameters;
   if (are_given) {
     // The largest of the negatives, so that one call serves both.
-    double extremes[2] = {-std::numeric_limits<double>::max(), 0.};
+    const std::size_t n_types = parameters.physics.types.size();
+    std::vector<double> extremes(2 * n_types, -std::numeric_limits<double>::max());
     for (const std::vector<NewParticle> &event : events)
       for (const NewParticle &particle : event) {
-        extremes[0] = std::max(extremes[0], -2. * particle.radius);
-        extremes[1] = std::max(extremes[1], 2. * particle.radius);
+        double *const of_type = &extremes[2 * static_cast<std::size_t>(particle.type)];
+        of_type[0] = std::max(of_type[0], -2. * particle.radius);
+        of_type[1] = std::max(of_type[1], 2. * particle.radius);
       }
-    MPI_Allreduce(MPI_IN_PLACE, extremes, 2, MPI_DOUBLE, MPI_MAX, comm);
-    if (extremes[1] > 0.)
-      return {{0, -extremes[0], extremes[1]}};
+    MPI_Allreduce(MPI_IN_PLACE, extremes.data(), static_cast<int>(extremes.size()), MPI_DOUBLE,
+                  MPI_MAX, comm);
+    for (std::size_t t = 0; t < n_types; ++t)
+      if (extremes[2 * t + 1] > 0.)
+        diameters.push_back({t, -extremes[2 * t], extremes[2 * t + 1]});
+    if (!diameters.empty())
+      return diameters;
   }
-  std::vector<DiameterRange> diameters;
   for (const std::size_t t : parameters.physics.types_in_use()) {
     const auto sizes = parameters.physics.types[t].sizes.make();
     diameters.push_back({t, sizes->smallest(), sizes->largest()});

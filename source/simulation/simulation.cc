@@ -186,8 +186,11 @@ void Simulation::advance()
   }
   const bool searches = criterion.is_due(solids);
   system.note_step(criterion.largest_step(), criterion.largest_near_share());
-  if (searches)
+  if (searches) {
+    if (look_is_due)
+      system.update_ghosts(); // for the inspection
     search();
+  }
   if (look_is_due || (sleeper.is_enabled() && searches))
     update_sleep(false);
 

@@ -80,6 +80,11 @@ DOUBTFUL = {
                      ["the stiffest contact of particle type 0 takes"]),
     "small particles in a list": ([*LIST, "insertion info/list diameters = 1e-5, 1e-3"],
                                   ["exceeds 25 % of the Rayleigh time"]),
+    "small particles of the second type in a list": (
+        [*LIST, "lagrangian physical properties/number of particle types = 2",
+         "insertion info/insertion frequency = 1", TYPE.replace("0", "1") + "diameter = 1e-5",
+         TYPE.replace("0", "1") + "number of particles = 2"],
+        ["exceeds 25 % of the Rayleigh time of particle type 1", "between two events, the particles move by no more"]),
     "no particles but a solid": ([TYPE + "number = 0", *SOLID, BOX + "0.004, 0.004, 0.004 : 0.006, 0.006, 0.006"],
                                  ["no particles come into the run."]),
     "a solid in millimetres": ([*SOLID, BOX + "-5000, -5000, 0.001 : 5000, 5000, 5000"],

@@ -66,7 +66,15 @@ public:
 
   std::vector<std::vector<NewParticle>> known_events() const override
   {
-    return {particles(event_of(0), 1)};
+    // The first of each type.
+    std::vector<std::vector<NewParticle>> events = {particles(event_of(0), 1)};
+    std::size_t event = 0;
+    for (const Kind &kind : kinds) {
+      if (event > 0 && event < n_events && events_of(kind) > 0)
+        events.push_back(particles(event_of(event), 1));
+      event += events_of(kind);
+    }
+    return events;
   }
 
   void skip(const std::size_t n, std::size_t) override { n_done = n; }

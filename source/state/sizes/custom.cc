@@ -8,6 +8,7 @@
 #include <fstream>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -178,7 +179,8 @@ public:
   std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &shared) const override;
 
 private:
-  /// Throws std::invalid_argument if the file cannot be read.
+  /// Throws std::invalid_argument if the file cannot be read. It is read once: it may change before
+  /// powder is filled in again.
   SizeTable table() const;
 
   std::vector<double> diameters = {0.001, 0.0005};
@@ -187,6 +189,7 @@ private:
   std::string file = "custom_distribution.txt";
   std::string function_type = "PDF"; ///< of each diameter, or "CDF": up to it
   bool interpolates = false;         ///< sizes between the listed ones
+  mutable std::optional<SizeTable> of_file;
 };
 
 void Custom::declare(dealii::ParameterHandler &prm)
@@ -213,7 +216,9 @@ void Custom::declare(dealii::ParameterHandler &prm)
 
 SizeTable Custom::table() const
 {
-  SizeTable result = from_file ? read_table(file) : SizeTable{diameters, fractions};
+  if (from_file && !of_file)
+    of_file = read_table(file);
+  SizeTable result = from_file ? *of_file : SizeTable{diameters, fractions};
   // What a CDF gains at each diameter.
   if (function_type == "CDF")
     std::adjacent_difference(result.shares.begin(), result.shares.end(), result.shares.begin());
