@@ -34,7 +34,7 @@ public:
   {
     if (!last)
       return {};
-    return {{"particles", 0, last->particles},
+    return {{"particles_at_end", 0, last->particles},
             {"kinetic_energy", 0, last->kinetic},
             {"rotational_energy", 0, last->rotational},
             {"potential_energy", 0, last->potential}};
@@ -42,7 +42,7 @@ public:
 
   std::vector<ObservableDescription> descriptions() const override
   {
-    return {{"particles", "1", "", "number of particles at the end"},
+    return {{"particles_at_end", "1", "", "number of particles"},
             {"kinetic_energy", "J", "", "energy of translation at the end"},
             {"rotational_energy", "J", "", "energy of rotation at the end"},
             {"potential_energy", "J", "", "potential energy at the end, from the origin"}};

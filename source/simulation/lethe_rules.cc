@@ -116,7 +116,7 @@ const std::vector<Ignored> &ignored()
        of_fluids},
       {control, {"output boundaries"}, "is not needed: cell averages draw the mesh."},
       {control, {"log precision"}, "is not needed."},
-      {control, {"group files"}, "is not needed: every picture is one file a rank."},
+      {control, {"group files"}, "is not needed: every picture is one file of all ranks."},
       {{"timer"}, {}, "is not needed: summary.json has the times of all parts of the program."},
       {{"boundary forces"}, {"verbosity"}, of_tables},
       {{"post-processing", "solid forces"}, {"verbosity"}, of_tables},
