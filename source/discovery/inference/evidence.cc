@@ -208,7 +208,8 @@ Eigen::ArrayXXd Evidence::log_posterior_of_singles(
 
 Eigen::ArrayXd Evidence::log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return log_sums(log_posterior_of_singles(data)) - log_nothing(data);
+  return log_sums(log_posterior_of_singles(data)) - log_nothing(data) -
+         std::log(prior.one_effect + prior.none_of_these);
 }
 
 void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool roughly) const
@@ -236,8 +237,9 @@ void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool ro
 double Evidence::log_density(const std::size_t effect, const double amplitude) const
 {
   const std::vector<Place> &places = grid[effect];
-  return place_near(effect, amplitude).log_prior -
-         std::log(places[1].amplitude / places[0].amplitude);
+  const std::size_t first = first_of_side(effect, amplitude);
+  const double step = std::log(places[first + 1].amplitude / places[first].amplitude);
+  return place_near(effect, amplitude).log_prior - std::log(step);
 }
 
 double Evidence::log_at(const std::map<std::size_t, double> &effects,
@@ -283,10 +285,15 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
   model.log_evidence = evidence;
 }
 
+std::size_t Evidence::first_of_side(const std::size_t effect, const double amplitude) const
+{
+  return (amplitude > 0.) == (grid[effect].front().amplitude > 0.) ? 0 : n_places;
+}
+
 const Evidence::Place &Evidence::place_near(const std::size_t effect, const double amplitude) const
 {
   const std::vector<Place> &places = grid[effect];
-  const std::size_t side = (amplitude > 0.) == (places.front().amplitude > 0.) ? 0 : n_places;
+  const std::size_t side = first_of_side(effect, amplitude);
   const double first = places[side].amplitude;
   const double place = std::log(amplitude / first) / std::log(places[side + 1].amplitude / first);
   return places[side + static_cast<std::size_t>(std::clamp(std::lround(place), 0l, n_places - 1l))];

@@ -89,6 +89,8 @@ private:
   /// @param roughly without the levels of the instrument's noise
   void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
   void polish(Model &pair, const Eigen::VectorXd &data) const;
+  /// Number of the first place on the side of the null value on which an amplitude lies.
+  std::size_t first_of_side(std::size_t effect, double amplitude) const;
   double log_density(std::size_t effect, double amplitude) const;
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
