@@ -29,12 +29,12 @@ struct Laboratory
     design.run_effects([this] { return target({}, 1); });
   }
 
-  Target target(const Amplitudes &truth, std::uint32_t seed)
+  Target target(const Amplitudes &truth, std::uint32_t seed, const double tolerance = 0.)
   {
     std::vector<std::string> notes;
     return Target(sort_by_experiment(simulator.measure(both, {}, truth, 4, 0.3, seed).fit, samples,
                                      simulator, notes),
-                  samples, space, 0.);
+                  samples, space, tolerance);
   }
 
   SyntheticSimulator simulator;
@@ -51,6 +51,26 @@ Nature nature()
   result.n_nuisances = 1;
   result.seed = 5;
   return result;
+}
+
+/// What the model may be wrong by is in the likelihood and in twins alike.
+void tolerances(Laboratory &lab)
+{
+  constexpr unsigned int draws = 2000;
+  double with_out[2];
+  for (const bool with : {false, true}) {
+    const Target target = lab.target({}, 3, with ? 0.1 : 0.);
+    const Evidence evidence(target, lab.space);
+    const Target::Prediction &nothing = evidence.nothing().prediction;
+    Twins twins(evidence, 1);
+    const double of_twins =
+        (twins.draw(nothing, draws).colwise() - nothing.mean).squaredNorm() / draws;
+    with_out[with] = target.variance(nothing).sum() + nothing.gradient.squaredNorm();
+    check("twins scatter as the likelihood says", std::abs(of_twins / with_out[with] - 1.) < 0.1,
+          std::to_string(of_twins) + ", " + std::to_string(with_out[with]));
+  }
+  check("with the model's tolerance more", with_out[true] > 1.5 * with_out[false],
+        std::to_string(with_out[true] / with_out[false]));
 }
 
 void likelihoods(Laboratory &lab)
@@ -339,6 +359,20 @@ void sharpened()
         !lab.design.sharpen(Evidence(lab.target({}, 3), lab.space), {}));
 }
 
+/// Log evidence of a pair: prior and likelihood summed over all places of both effects.
+double evidence_by_places(const Evidence &evidence, const Target &target, const Model &model)
+{
+  const std::size_t a = model.effects[0], b = model.effects[1];
+  std::vector<double> logs;
+  for (const Evidence::Place &p : evidence.places(a))
+    for (const Evidence::Place &q : evidence.places(b))
+      logs.push_back(p.log_prior + q.log_prior +
+                     evidence.log_likelihood(
+                         evidence.prepare(target.predict({{a, p.amplitude}, {b, q.amplitude}})),
+                         target.data()));
+  return log_sum(logs);
+}
+
 /// An interval of one of two effects allows for the other's amplitude, and reaches as far down as
 /// the data allow where an effect is hardly determined.
 void pairs()
@@ -361,6 +395,9 @@ void pairs()
     const Evidence evidence(target, lab.space);
     const Model model = evidence.models(target.data()).front();
     check("both effects are found", model.effects == std::vector<std::size_t>{c, d});
+    const double places = evidence_by_places(evidence, target, model);
+    check("their evidence is that of all amplitudes", std::abs(model.log_evidence - places) < 0.3,
+          std::to_string(model.log_evidence) + ", " + std::to_string(places));
     const AmplitudePosterior posterior(evidence, model, target.data(), c);
     const double width =
         (posterior.quantile(0.95) - posterior.quantile(0.05)) /
@@ -394,6 +431,7 @@ EUNOE_MPI_TEST()
 {
   Laboratory lab(nature(), 1);
   likelihoods(lab);
+  tolerances(lab);
   levels(lab);
   contests(lab);
   false_trail();

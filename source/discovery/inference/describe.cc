@@ -42,7 +42,8 @@ Eigen::VectorXd point_variance(const Target::Part &part, const Target::Predictio
 {
   return (part.point_ratio.cwiseMax(growth_of(part, prediction)).array() /
               part.measured.repeats.array() +
-          prediction.leverage.segment(part.first, part.emulator.size()).mean())
+          prediction.leverage.segment(part.first, part.emulator.size()).mean() +
+          part.tolerance.array().square())
       .matrix();
 }
 

@@ -173,7 +173,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
       if (!test.comparison)
         return {{"result", "the held-out data do not vary"}};
       last = std::move(test);
-    } catch (const UserError &) {
+    } catch (const TooFewRuns &) {
       if (round == 0)
         return {{"result", "the held-out experiments could not be simulated"}};
       break;

@@ -1,4 +1,3 @@
-#include <eunoe/core/problems.h>
 #include <eunoe/discovery/inference/target.h>
 #include <eunoe/discovery/statistics/covariance.h>
 
@@ -21,10 +20,10 @@ Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Sampl
       base.push_back(sample.values(measured.columns));
   constexpr std::size_t fewest = 4;
   if (base.size() < fewest)
-    throw UserError("Only " + std::to_string(base.size()) + " runs of the base model of '" +
-                    measured.name +
-                    "' reached their end, which is too few to compare anything with. See the "
-                    "failures in its table of runs, or ask for more runs.");
+    throw TooFewRuns("Only " + std::to_string(base.size()) + " runs of the base model of '" +
+                     measured.name +
+                     "' reached their end, which is too few to compare anything with. See the "
+                     "failures in its table of runs, or ask for more runs.");
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(base.size()), base.front().size());
   for (std::size_t r = 0; r < base.size(); ++r)
     rows.row(static_cast<Eigen::Index>(r)) = base[r].transpose();
@@ -129,25 +128,30 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
     }
     const Eigen::VectorXd mean_excess = excess.rowwise().mean();
     const auto covariance = [&](const Eigen::VectorXd &of_points) -> Eigen::MatrixXd {
-      const Eigen::VectorXd error =
-          of_points.array() / one.repeats.array() +
-          (model_tolerance * emulator.base_mean().cwiseQuotient(unit)).array().square();
       const Eigen::MatrixXd root =
-          emulator.whiten_scaled(Eigen::MatrixXd(error.cwiseSqrt().matrix().asDiagonal()));
+          emulator.whiten_scaled(Eigen::MatrixXd(of_points.cwiseSqrt().asDiagonal()));
       return root * root.transpose();
     };
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance(mean_excess));
+    const Eigen::VectorXd tolerance =
+        model_tolerance * emulator.base_mean().cwiseQuotient(unit).cwiseAbs();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
+        covariance(mean_excess.cwiseQuotient(one.repeats) + tolerance.cwiseAbs2()));
     const Eigen::MatrixXd rotation = eigen.eigenvectors().transpose();
+    const auto variance = [&](const Eigen::VectorXd &of_points) -> Eigen::VectorXd {
+      return (rotation * covariance(of_points) * rotation.transpose()).diagonal().cwiseMax(0.);
+    };
+    const Eigen::VectorXd tolerated = variance(tolerance.cwiseAbs2());
     // All levels have nearly the same axes.
     Eigen::MatrixXd instrument(size, n_noise_levels);
     for (Eigen::Index l = 0; l < instrument.cols(); ++l)
-      instrument.col(l) =
-          (rotation * covariance(excess.col(l)) * rotation.transpose()).diagonal().cwiseMax(0.);
+      instrument.col(l) = variance(excess.col(l).cwiseQuotient(one.repeats));
     const Eigen::MatrixXd mean_instrument = instrument.rowwise().mean();
     Part part{std::move(one),
               std::move(emulator),
               std::move(noise),
               rotation,
+              tolerance,
+              tolerated,
               std::move(instrument),
               mean_instrument,
               mean_excess.array() + 1.,
@@ -212,7 +216,7 @@ Eigen::MatrixXd Target::variances(const Prediction &prediction,
     const Eigen::Index size = part.emulator.size();
     const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
     const Eigen::VectorXd of_runs = prediction.scatter.segment(part.first, size) / part.repeats +
-                                    prediction.leverage.segment(part.first, size);
+                                    prediction.leverage.segment(part.first, size) + part.tolerated;
     result.middleRows(part.first, size) = (left * (part.*instrument)).colwise() + of_runs;
   }
   return result;

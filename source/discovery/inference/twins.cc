@@ -5,7 +5,7 @@
 
 namespace eunoe::discovery {
 
-/// Noise of an instrument that is not known, either, in whitened modes.
+/// Noise of an instrument that is not known, either, and error of the model, in whitened modes.
 Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter,
                                   const double quantile)
 {
@@ -15,7 +15,8 @@ Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter
       part.noise.draw(quantile, random) * part.share_of_instrument(scatter);
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (const Eigen::Index c : groups[g].points)
-      noise(c) = std::sqrt(excess(static_cast<Eigen::Index>(g)) / part.measured.repeats(c)) *
+      noise(c) = std::sqrt(excess(static_cast<Eigen::Index>(g)) / part.measured.repeats(c) +
+                           std::pow(part.tolerance(c), 2)) *
                  random.normal();
   return part.emulator.whiten_scaled(noise);
 }

@@ -53,7 +53,12 @@ void Unmeasured::run()
 Target Unmeasured::target() const
 {
   constexpr unsigned int repeats = 4;
-  return {imagined(experiments, samples, samples.simulator(), repeats), samples, space, 0.};
+  auto measured = imagined(experiments, samples, samples.simulator(), repeats);
+  if (measured.empty())
+    throw UserError(
+        "No data point varies and is given by every run, so there is nothing to compare. Ask "
+        "for other observables.");
+  return {std::move(measured), samples, space, 0.};
 }
 
 } // namespace eunoe::discovery

@@ -1,6 +1,7 @@
 #ifndef eunoe_discovery_inference_target_h
 #define eunoe_discovery_inference_target_h
 
+#include <eunoe/core/problems.h>
 #include <eunoe/discovery/inference/emulator.h>
 #include <eunoe/discovery/measured_data.h>
 #include <eunoe/discovery/statistics/data_noise.h>
@@ -18,6 +19,13 @@ struct MeasuredExperiment
   std::vector<Eigen::Index> columns; ///< of the points in the values of a run
   Eigen::VectorXd value, deviation, repeats;
   Eigen::VectorXd least_deviation; ///< a run's scatter below this is not believed
+};
+
+/// Too few runs of the base model reached their end.
+class TooFewRuns : public UserError
+{
+public:
+  using UserError::UserError;
 };
 
 /// Sorts measured points by experiment, and leaves out those that vary neither in the runs of the
@@ -70,7 +78,9 @@ public:
     ExperimentEmulator emulator;
     InstrumentNoise noise;
     Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
-    Eigen::MatrixXd instrument;      ///< variance of the means by it: coordinates x noise levels
+    Eigen::VectorXd tolerance;       ///< error of the model at each point, in base deviations
+    Eigen::VectorXd tolerated;       ///< variance of the coordinates by it
+    Eigen::MatrixXd instrument;      ///< that of the means by it: coordinates x noise levels
     Eigen::MatrixXd mean_instrument; ///< its mean over the levels, one column
     Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
     double repeats = 1., ratio = 1.; ///< means over the data points
