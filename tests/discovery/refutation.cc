@@ -77,8 +77,15 @@ void of_a_tie()
             std::abs(one.findings.off_catalogue - none_of_these.probability / left) < 1e-12 &&
             one.findings.models.front().effects == b.effects);
 
+  Findings doubt = by_fit();
+  doubt.none_of_these = true;
+  doubt.p_fit = doubtful;
+  check("the doubt about a leader stays with it",
+        of({a, b}, {good, good}, Untested::fall, doubt).findings.none_of_these);
+  check("and goes with it",
+        of({a, b}, {refuted, good}, Untested::fall, doubt).findings.verdict == Verdict::named);
   Findings open = by_fit();
-  open.none_of_these = true;
+  open.models = {a, with({1}, 0.25), with({}, 0.24), c};
   check("it is no name where it may be none of them",
         of({a, b}, {refuted, good}, Untested::fall, open).findings.verdict == Verdict::tie);
   check("nor where the data are far from it, too",

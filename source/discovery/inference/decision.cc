@@ -89,6 +89,7 @@ bool is_needless(const Model &model, const std::vector<Model> &answer)
 void choose(const DecisionRule &rule, Findings &findings)
 {
   findings.answer.clear();
+  findings.none_of_these = false;
   double sum = 0.;
   for (const Model &model : findings.models) {
     if (sum >= rule.credible)

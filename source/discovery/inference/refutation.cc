@@ -46,13 +46,14 @@ void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findi
     return;
   }
   // What the answer did not have is unlikely, so that it may as well be none of the catalogue.
-  findings.none_of_these |= is_all_among(findings.answer, refuted);
+  const bool is_all_refuted = is_all_among(findings.answer, refuted);
   for (Model &model : models)
     model.probability = is_refuted(model) ? 0. : model.probability / left;
   std::stable_sort(models.begin(), models.end(),
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
   findings.off_catalogue /= left;
   choose(rule, findings);
+  findings.none_of_these |= is_all_refuted;
   findings.verdict = models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
 }
 
@@ -104,7 +105,9 @@ std::optional<std::size_t> refute(const TestedModels &tested, const Untested unt
   }
 
   const std::optional<std::size_t> leader = place_among(tested.models, findings.answer.front());
-  if (leader != leader_of_fit)
+  if (leader == leader_of_fit)
+    findings.none_of_these |= findings.p_fit < rule.doubtful;
+  else
     judge(findings);
   if (findings.verdict != Verdict::off_catalogue) {
     findings.none_of_these |= !leader || tested.p[*leader] < rule.doubtful;
