@@ -76,9 +76,6 @@ std::string nearest_name(const std::string &word, const std::vector<std::string>
   return best;
 }
 
-namespace {
-
-/// Whether a text can go into files in JSON, which are UTF-8 throughout.
 bool is_utf8(const std::string &text)
 {
   try {
@@ -88,6 +85,8 @@ bool is_utf8(const std::string &text)
     return false;
   }
 }
+
+namespace {
 
 const std::string not_utf8 = "this is not written in UTF-8.",
                   mend_encoding = "Save the file in that encoding, or keep to ASCII.";

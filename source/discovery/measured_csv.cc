@@ -1,3 +1,4 @@
+#include <eunoe/core/input_file.h>
 #include <eunoe/discovery/measured_csv.h>
 
 #include <boost/algorithm/string.hpp>
@@ -33,7 +34,9 @@ public:
       boost::trim(line);
       if (line.empty())
         continue;
-      if (line.front() == '#')
+      if (!is_utf8(line))
+        complain("is not written in UTF-8.", "Save the file in that encoding, or keep to ASCII.");
+      else if (line.front() == '#')
         read_header(line.substr(1));
       else if (has_heading)
         read_row(line);

@@ -115,6 +115,7 @@ void measurements()
   measured("numbers", heading + row +
                           "box,height,1,nan,1,3,fit\nbox,height,2,1,0,3,fit\n"
                           "box,height,3,1,-1,0,fit\nbox,drift,-1,1e999,1,3,fit\nbox,speed,0,1\n");
+  measured("another encoding", "# place: Universit\xe4t\n" + heading + row);
   measured("twice", heading + row + row);
   measured("uses", heading + row +
                        "box,height,1,1,1,3,held-out\nother_box,height,1,1,1,3,fit\n"

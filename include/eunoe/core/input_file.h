@@ -46,6 +46,9 @@ std::vector<InputEntry> parse_input_and_overrides(const std::string &text, const
                                                   const std::vector<std::string> &overrides,
                                                   Problems &problems, const FileLoader &load);
 
+/// Whether a text can go into files in JSON, which are UTF-8 throughout.
+bool is_utf8(const std::string &text);
+
 /// The candidate that is most like @p word, empty if none is near.
 std::string nearest_name(const std::string &word, const std::vector<std::string> &candidates);
 
