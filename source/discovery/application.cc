@@ -178,7 +178,7 @@ int make_study(StudyInput &study, const bool tells_verdict, MPI_Comm comm, Log &
     Discovery discovery = discover(options, study.data, study.plain_factors(), simulator, log);
     for (const std::string &note : left_out)
       discovery.content["notes"].push_back(note);
-    // Nuisances stay at their null values, as in the model that was validated.
+    // Nuisances stay at their null values: they are of the apparatus, not of the model.
     write_models(study, discovery.model_after, folder);
     write_answer(study, discovery, simulator, folder);
     write_page(study, comm, log);

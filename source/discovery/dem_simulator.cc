@@ -47,8 +47,10 @@ bool DemSimulator::gives_the_same(const std::vector<const RunTable::Row *> &samp
 {
   std::vector<StudyCase> cases;
   for (const RunTable::Row *const row : samples)
-    cases.push_back(maker.make(row->request));
-  simulate_all(cases);
+    if (records.count(row->key) == 0)
+      cases.push_back(maker.make(row->request));
+  if (!cases.empty())
+    simulate_all(cases);
   return std::all_of(samples.begin(), samples.end(), [this](const RunTable::Row *row) {
     return text_of(records.at(row->key).measurements) == text_of(row->record.measurements);
   });
@@ -59,12 +61,18 @@ void DemSimulator::adopt_earlier_runs()
   constexpr std::size_t n_samples = 3;
   std::map<std::string, std::vector<const RunTable::Row *>> others;
   for (const RunTable::Row &row : earlier)
-    if (row.engine != engine_digest() && records.count(row.key) == 0 && row.record.failure.empty())
+    if (row.engine != engine_digest() && row.record.failure.empty())
       others[row.engine].push_back(&row);
   for (auto &[engine, rows] : others) {
-    // Runs with effects first: they use more of the engine.
-    std::stable_sort(rows.begin(), rows.end(), [](const auto *a, const auto *b) {
-      return a->request.amplitudes.size() > b->request.amplitudes.size();
+    const auto is_known = [this](const RunTable::Row *row) { return records.count(row->key) > 0; };
+    const auto n_unknown = rows.size() - std::count_if(rows.begin(), rows.end(), is_known);
+    if (n_unknown == 0)
+      continue;
+    // What this engine has made is not made again, so that a study that goes on finds the same.
+    // Then runs with effects: they use more of the engine.
+    std::stable_sort(rows.begin(), rows.end(), [&](const auto *a, const auto *b) {
+      return std::make_pair(is_known(a), a->request.amplitudes.size()) >
+             std::make_pair(is_known(b), b->request.amplitudes.size());
     });
     std::vector<const RunTable::Row *> samples;
     for (const RunTable::Row *const row : rows)
@@ -74,7 +82,7 @@ void DemSimulator::adopt_earlier_runs()
     if (samples.empty())
       continue;
     const bool same = gives_the_same(samples);
-    log.line(std::to_string(rows.size()) + " runs of an earlier version of the engine are " +
+    log.line(std::to_string(n_unknown) + " runs of an earlier version of the engine are " +
              (same ? "used: " : "not used: ") + std::to_string(samples.size()) +
              " of them, run again, gave " + (same ? "the same bits." : "other results."));
     if (!same)
@@ -99,6 +107,7 @@ bool DemSimulator::concerns(const std::string &experiment,
 std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::string &experiment)
 {
   std::vector<std::pair<RunRequest, RunResult>> result;
+  std::set<std::string> given; // a row of each engine may have it
   for (const RunTable::Row &row : earlier) {
     if (row.request.experiment != experiment || row.number > last_known ||
         records.count(row.key) == 0 || !maker.is_of_study(row.request))
@@ -112,7 +121,7 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
       ++cached;
       add_to_ledger(row.request, row.key, true);
     }
-    if (keys.at(text) == row.key)
+    if (keys.at(text) == row.key && given.insert(text).second)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
   if (const auto found = maker.new_keys(); !found.empty())

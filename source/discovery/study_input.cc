@@ -4,6 +4,7 @@
 #include <eunoe/discovery/study_input.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 
 namespace eunoe::discovery {
@@ -44,8 +45,12 @@ std::map<std::string, std::string> StudyInput::identity() const
       std::string &text = parts["effect " + effect.factor.name];
       const Factor &f = effect.factor;
       for (const double number :
-           {f.null_value, f.scale, f.lower, f.upper, static_cast<double>(f.sign)})
-        text += std::to_string(number) + " ";
+           {f.null_value, f.scale, f.lower, f.upper, static_cast<double>(f.sign)}) {
+        char exactly[32];
+        std::snprintf(exactly, sizeof exactly, "%.17g ", number);
+        text += exactly;
+      }
+      text += effect.process + "\n";
       for (const InputEntry &entry : effect.patch.entries)
         text += describe(entry.path, entry.name) + entry.value + "\n";
     }
