@@ -150,19 +150,14 @@ Json describe_remainder(const Evidence &evidence, const Findings &findings)
                                       std::max(change.norm() * deviation.norm(), 1e-300));
     }
     if (largest > 0.)
-      rows.emplace_back(-largest, Json{{"effect", evidence.space().effect(k).name},
-                                       {"mechanism", evidence.space().effect(k).mechanism},
-                                       {"cosine", largest}});
+      rows.emplace_back(largest, Json{{"effect", evidence.space().effect(k).name},
+                                      {"mechanism", evidence.space().effect(k).mechanism},
+                                      {"cosine", largest}});
   }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto &a, const auto &b) { return a.first < b.first; });
-  Json list = Json::array();
   constexpr std::size_t most = 3;
-  for (std::size_t k = 0; k < std::min(most, rows.size()); ++k)
-    list.push_back(rows[k].second);
   return {{"closest model", name_of(findings.models.front(), evidence.space())},
           {"p of its fit", findings.p_fit},
-          {"resembles", list}};
+          {"resembles", largest_first(std::move(rows), most)}};
 }
 
 Json describe_nuisances(const FactorSpace &space, const Eigen::VectorXd &values)
@@ -198,7 +193,7 @@ std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points
 }
 
 /// Everything that the page says of the data of the fit.
-Json describe_fit(const Round &round, const StudyOptions &options, Amplitudes &nuisances)
+Json describe_fit(const Round &round, const StudyOptions &options)
 {
   const Evidence &evidence = round.evidence;
   const Findings &findings = round.findings;
@@ -221,8 +216,6 @@ Json describe_fit(const Round &round, const StudyOptions &options, Amplitudes &n
   }
   Json content;
   content["nuisances"] = describe_nuisances(evidence.space(), values);
-  for (const auto &row : content["nuisances"])
-    nuisances[row["nuisance"].get<std::string>()] = row["value"].get<double>();
   content["gap"] = describe_gap(evidence, base, after);
   content["envelopes"] = describe_envelopes(evidence, base, after, options.level);
   content["decisive"] = after && second ? decisive_points(evidence, *after, *second)
@@ -353,14 +346,13 @@ Discovery Study::answer()
   samples.set_aside(0);
   const Json validation = held_out.test(round->evidence, findings);
   Discovery discovery;
-  const Json of_fit = describe_fit(*round, options, discovery.nuisances);
+  const Json of_fit = describe_fit(*round, options);
   discovery.content = describe(power, validation, of_fit);
   discovery.verdict = findings.verdict;
   if (findings.verdict == Verdict::named || findings.verdict == Verdict::tie)
     for (const auto &[k, position] : findings.answer.front().best)
       discovery.model_after[space.effect(k).name] =
           space.effect(k).null_value + position * space.effect(k).scale;
-  discovery.n_runs = n_runs();
   log.line("Verdict: " + name_of(findings.verdict));
   return discovery;
 }

@@ -49,9 +49,7 @@ int exit_code(Verdict verdict);
 struct Discovery
 {
   Verdict verdict = Verdict::none;
-  Amplitudes model_after;   ///< amplitudes of the named effects (tie: of the likeliest), else empty
-  Amplitudes nuisances;     ///< best values of the nuisances together with these effects
-  std::uint64_t n_runs = 0; ///< simulations that the answer rests on
+  Amplitudes model_after; ///< amplitudes of the named effects (tie: of the likeliest), else empty
 
   /// The content of discovery.json; doc/discovery_json.md describes it.
   nlohmann::ordered_json content;

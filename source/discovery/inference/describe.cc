@@ -49,6 +49,16 @@ Eigen::VectorXd point_variance(const Target::Part &part, const Target::Predictio
 
 } // namespace
 
+Json largest_first(std::vector<std::pair<double, Json>> rows, const std::size_t most)
+{
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const auto &a, const auto &b) { return a.first > b.first; });
+  Json result = Json::array();
+  for (std::size_t k = 0; k < std::min(most, rows.size()); ++k)
+    result.push_back(std::move(rows[k].second));
+  return result;
+}
+
 std::string name_of(const Model &model, const FactorSpace &space)
 {
   if (model.is_discrepancy)
@@ -304,15 +314,10 @@ Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted
       row["measured"] = part.measured.value(c);
       row["first"] = a(c);
       row["second"] = b(c);
-      rows.emplace_back(-std::abs(favours), row);
+      rows.emplace_back(std::abs(favours), row);
     }
   }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto &a, const auto &b) { return a.first < b.first; });
-  Json result = Json::array();
-  for (std::size_t k = 0; k < std::min(most, rows.size()); ++k)
-    result.push_back(rows[k].second);
-  return result;
+  return largest_first(std::move(rows), most);
 }
 
 } // namespace eunoe::discovery

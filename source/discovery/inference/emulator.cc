@@ -9,15 +9,6 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Standard deviation of each column between runs of the base model.
-Eigen::VectorXd base_deviations(const Eigen::MatrixXd &rows, const Eigen::VectorXd &least)
-{
-  const Eigen::VectorXd deviation =
-      (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
-          .cwiseSqrt();
-  return deviation.cwiseMax(least);
-}
-
 bool less(const Eigen::VectorXd &a, const Eigen::VectorXd &b)
 {
   return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
@@ -31,16 +22,9 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
                                        const Eigen::VectorXd &least_deviation)
     : n_effects(space.n_effects()), n_nuisances(space.n_nuisances())
 {
-  std::vector<const Sample *> of_base;
-  for (const Sample &sample : samples)
-    if (sample.position.isZero(0.))
-      of_base.push_back(&sample);
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(of_base.size()),
-                       static_cast<Eigen::Index>(columns.size()));
-  for (std::size_t r = 0; r < of_base.size(); ++r)
-    rows.row(static_cast<Eigen::Index>(r)) = of_base[r]->values(columns).transpose();
-  mean = rows.colwise().mean().transpose();
-  reduction = Modes(points, base_deviations(rows, least_deviation));
+  const Eigen::MatrixXd of_base = runs_of_base(samples, columns);
+  mean = of_base.colwise().mean().transpose();
+  reduction = Modes(points, discovery::deviations(of_base).cwiseMax(least_deviation));
   const std::vector<Group> groups = make_groups(samples, columns);
   double own_share = estimate_covariance(without_effects(groups));
   // Few runs make a covariance in whose units all others scatter too much.

@@ -1,3 +1,4 @@
+#include <eunoe/discovery/inference/describe.h>
 #include <eunoe/discovery/inference/plan.h>
 #include <eunoe/discovery/inference/unmeasured.h>
 #include <eunoe/discovery/statistics/covariance.h>
@@ -140,18 +141,14 @@ Json rank_measurements(const Evidence &evidence, const std::vector<Model> &model
     double least = 1e300;
     for (std::size_t m = 1; m < expectations.size(); ++m)
       least = std::min(least, separation(what, expectations[0].twins, expectations[m].twins));
-    rows.emplace_back(-bits, Json{{"experiment", what.experiment},
-                                  {"observable", what.observable},
-                                  {"information", bits},
-                                  {"of", entropy},
-                                  {"separation", expectations.size() > 1 ? least : 0.}});
+    rows.emplace_back(bits, Json{{"experiment", what.experiment},
+                                 {"observable", what.observable},
+                                 {"information", bits},
+                                 {"of", entropy},
+                                 {"separation", expectations.size() > 1 ? least : 0.}});
   }
-  std::stable_sort(rows.begin(), rows.end(),
-                   [](const auto &a, const auto &b) { return a.first < b.first; });
-  Json list = Json::array();
-  for (const auto &[bits, row] : rows)
-    list.push_back(row);
-  return list;
+  const std::size_t all = rows.size();
+  return largest_first(std::move(rows), all);
 }
 
 /// An effect before anything is measured: amplitudes by their prior, and nuisances by theirs.

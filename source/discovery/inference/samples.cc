@@ -76,6 +76,20 @@ std::optional<Eigen::VectorXd> FactorSpace::position(const Amplitudes &amplitude
   return found == amplitudes.size() ? std::make_optional(result) : std::nullopt;
 }
 
+Eigen::MatrixXd runs_of_base(const std::vector<Sample> &samples,
+                             const std::vector<Eigen::Index> &columns)
+{
+  std::vector<const Sample *> base;
+  for (const Sample &sample : samples)
+    if (sample.position.isZero(0.))
+      base.push_back(&sample);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(base.size()),
+                       static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t r = 0; r < base.size(); ++r)
+    rows.row(static_cast<Eigen::Index>(r)) = base[r]->values(columns).transpose();
+  return rows;
+}
+
 Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulator &simulator,
                  const std::vector<std::string> &experiments)
     : options(options), space(space), source(simulator), next_seed(100000 * options.seed + 1)

@@ -14,22 +14,14 @@ namespace {
 Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Samples &samples)
 {
   constexpr double least_share = 0.2;
-  std::vector<Eigen::VectorXd> base;
-  for (const Sample &sample : samples.of(measured.name))
-    if (sample.position.isZero(0.))
-      base.push_back(sample.values(measured.columns));
-  constexpr std::size_t fewest = 4;
-  if (base.size() < fewest)
-    throw TooFewRuns("Only " + std::to_string(base.size()) + " runs of the base model of '" +
+  const Eigen::MatrixXd rows = runs_of_base(samples.of(measured.name), measured.columns);
+  constexpr Eigen::Index fewest = 4;
+  if (rows.rows() < fewest)
+    throw TooFewRuns("Only " + std::to_string(rows.rows()) + " runs of the base model of '" +
                      measured.name +
                      "' reached their end, which is too few to compare anything with. See the "
                      "failures in its table of runs, or ask for more runs.");
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(base.size()), base.front().size());
-  for (std::size_t r = 0; r < base.size(); ++r)
-    rows.row(static_cast<Eigen::Index>(r)) = base[r].transpose();
-  const Eigen::VectorXd deviation =
-      (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
-          .cwiseSqrt();
+  const Eigen::VectorXd deviation = deviations(rows);
   Eigen::VectorXd result(deviation.size());
   for (Eigen::Index c = 0; c < deviation.size(); ++c) {
     std::vector<double> same;

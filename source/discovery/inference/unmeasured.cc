@@ -1,6 +1,9 @@
 #include <eunoe/discovery/inference/unmeasured.h>
+#include <eunoe/discovery/statistics/covariance.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eunoe::discovery {
 
@@ -12,25 +15,17 @@ std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experim
   std::vector<MeasuredPoint> points;
   for (const std::string &experiment : experiments) {
     const auto &names = simulator.data_points(experiment);
-    for (std::size_t c = 0; c < names.size(); ++c) {
-      if (without.count(names[c]) > 0)
-        continue;
-      std::vector<double> values;
-      bool complete = true;
-      for (const Sample &sample : samples.of(experiment)) {
-        const double value = sample.values(static_cast<Eigen::Index>(c));
-        complete = complete && std::isfinite(value);
-        if (sample.position.isZero(0.))
-          values.push_back(value);
-      }
-      double mean = 0., square = 0.;
-      for (const double value : values)
-        mean += value / static_cast<double>(values.size());
-      for (const double value : values)
-        square += std::pow(value - mean, 2);
-      const double deviation = std::sqrt(square / std::max<double>(1., values.size() - 1.));
-      if (complete && deviation > 0.)
-        points.push_back({names[c], mean, deviation, repeats});
+    std::vector<Eigen::Index> columns(names.size());
+    std::iota(columns.begin(), columns.end(), 0);
+    const Eigen::MatrixXd base = runs_of_base(samples.of(experiment), columns);
+    const Eigen::VectorXd deviation = deviations(base);
+    for (const Eigen::Index c : columns) {
+      const DataPoint &point = names[static_cast<std::size_t>(c)];
+      const bool complete =
+          std::all_of(samples.of(experiment).begin(), samples.of(experiment).end(),
+                      [c](const Sample &sample) { return std::isfinite(sample.values(c)); });
+      if (without.count(point) == 0 && complete && deviation(c) > 0.)
+        points.push_back({point, base.col(c).mean(), deviation(c), repeats});
     }
   }
   std::vector<std::string> notes;

@@ -10,6 +10,12 @@ Eigen::MatrixXd centred(const Eigen::MatrixXd &rows)
   return rows.rowwise() - rows.colwise().mean();
 }
 
+Eigen::VectorXd deviations(const Eigen::MatrixXd &rows)
+{
+  return (centred(rows).colwise().squaredNorm().transpose() / static_cast<double>(rows.rows() - 1))
+      .cwiseSqrt();
+}
+
 double half_log_determinant(const Eigen::LLT<Eigen::MatrixXd> &llt)
 {
   return llt.matrixLLT().diagonal().array().log().sum();

@@ -13,6 +13,9 @@ using Json = nlohmann::ordered_json;
 
 /// Tables of discovery.json (doc/discovery_json.md).
 
+/// So many rows of a list, those with the largest numbers first.
+Json largest_first(std::vector<std::pair<double, Json>> rows, std::size_t most);
+
 /// Names of a model's effects, joined by " + "; "none of the catalogue" for a discrepancy.
 std::string name_of(const Model &model, const FactorSpace &space);
 

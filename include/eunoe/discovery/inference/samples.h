@@ -47,6 +47,10 @@ struct Sample
   std::uint32_t seed = 1;
 };
 
+/// Some values of the runs of the base model, a row for each run.
+Eigen::MatrixXd runs_of_base(const std::vector<Sample> &samples,
+                             const std::vector<Eigen::Index> &columns);
+
 /// Replicates of a design point that are wanted: runs of several experiments.
 struct DesignPoint
 {

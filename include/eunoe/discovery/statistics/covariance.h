@@ -21,6 +21,9 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, double degrees_o
 /// Rows less their mean.
 Eigen::MatrixXd centred(const Eigen::MatrixXd &rows);
 
+/// Standard deviation of each column.
+Eigen::VectorXd deviations(const Eigen::MatrixXd &rows);
+
 /// Half the logarithm of the determinant of the matrix that was factorised.
 double half_log_determinant(const Eigen::LLT<Eigen::MatrixXd> &llt);
 

@@ -77,10 +77,7 @@ public:
   /// Replaces what other runs say of the base model. Kernel and variances stay.
   void set_base(const BaseInformation &others);
 
-  const std::vector<Point> &points() const { return all; }
   const Kernel &kernel() const { return best; }
-  /// Of the variances, in columns, for each value.
-  const Eigen::MatrixXd &probabilities() const { return shares; }
 
 private:
   /// The points in units of their noise, along axes on which they are independent whatever the

@@ -32,7 +32,6 @@ public:
   /// Largest number of modes of one observable.
   static constexpr Eigen::Index most_modes = 8;
 
-  Eigen::Index n_points() const { return scale.size(); }
   Eigen::Index n_modes() const { return matrix.rows(); }
   const std::vector<Group> &groups() const { return all_groups; }
 
