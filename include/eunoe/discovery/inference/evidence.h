@@ -12,8 +12,9 @@ namespace eunoe::discovery {
 /// missing. Each share is divided equally among the models of its kind.
 struct Prior
 {
-  double one_effect = 0.7;    ///< a model lacks one effect of the catalogue as a rule
-  double two_effects = 0.2;   ///< sometimes two
+  double one_effect = 0.88; ///< a model lacks one effect of the catalogue as a rule
+  /// Seldom two: with more, a pair stands too readily for what is not in the catalogue.
+  double two_effects = 0.02;
   double none_of_these = 0.1; ///< or something that is not in the catalogue
   double just_visible = 1.;   ///< strength of the smallest amplitude: below it nothing is seen
   double least_range = 1e-3;  ///< smallest amplitude that is considered, in scales
