@@ -57,8 +57,8 @@ void declare_options(dealii::ParameterHandler &prm, StudyOptions &options)
                    "Accepted probability that something is said to be missing while nothing is.");
   declare::count(
       prm, "budget of runs", options.budget,
-      "Most simulations that a study asks for; 0: no limit. It stops before when more of "
-      "them no longer change the answer.",
+      "Most simulations that a study asks for, besides those that first show that each experiment "
+      "runs; 0: no limit. It stops before when more of them no longer change the answer.",
       0);
   declare::count(prm, "null runs", options.null_runs,
                  "First runs of the base model of every experiment.", 8);

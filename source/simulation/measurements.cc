@@ -4,16 +4,6 @@
 
 namespace eunoe {
 
-namespace {
-
-template <typename Entry>
-void append(const std::vector<Entry> &more, std::vector<Entry> &all)
-{
-  all.insert(all.end(), more.begin(), more.end());
-}
-
-} // namespace
-
 std::vector<SolidLoad> Simulation::global_solid_loads() const
 {
   return solids.global_loads(communicator());

@@ -109,10 +109,8 @@ void Simulation::write_summary()
                  " million particle-steps/s. Share of time: " + shares);
   if (guard.most_squeezed() > 0)
     get_log().warning(
-        "up to " +
-        format_count(static_cast<double>(guard.most_squeezed()), "particle", "particles") +
-        " at a time overlapped by more than the 'largest overlap', where no contact "
-        "law holds.");
+        "up to " + format_count(static_cast<double>(guard.most_squeezed()), "overlap", "overlaps") +
+        " at a time exceeded the 'largest overlap', where no contact law holds.");
   get_log().line("Results are in " + outputs.folder.path);
 }
 

@@ -35,7 +35,8 @@ public:
   /// Brings position, velocity and spin of the ghosts up to date; collective.
   void update(ParticleArrays &particles);
 
-  /// Gives the ghosts the flags of their originals, one per particle; collective.
+  /// Gives those ghosts that are in pairs the flags of their originals; the vector has one for each
+  /// particle. Collective.
   void update(std::vector<std::uint8_t> &flags);
 
   /// From now on receives sleepers again.

@@ -47,7 +47,7 @@ struct InspectionResult
   bool warns = false;         ///< of particles that are taken out
   std::uint64_t number = 0;   ///< of particles for which that is so
   std::string first;          ///< the one of them with the smallest id, and what is wrong with it
-  std::uint64_t squeezed = 0; ///< number of particles that are too deep in others, where it goes on
+  std::uint64_t squeezed = 0; ///< number of overlaps that are too large, where it goes on
   std::string first_squeezed; ///< likewise, the first time that there are any
   std::vector<std::size_t> lost; ///< rows of this rank's lost particles, which are taken out
 };

@@ -21,8 +21,8 @@ struct Travel
 };
 
 /// The hot state of the particles that a rank computes with: those that it owns, then copies of
-/// those that its neighbours own (ghosts), each part ordered by (contact-grid cell, id). Rebuilt
-/// from the particle store at every contact search. SI units.
+/// those that its neighbours own (ghosts), each part ordered by the (contact-grid cell, id) of the
+/// last search that brought them from the particle store. SI units.
 struct ParticleArrays
 {
   std::size_t n_owned = 0, n_ghosts = 0;

@@ -51,7 +51,7 @@ struct PhysicalProperties : public ParameterSection
   /// Number of the material that the input gives to `wall material` @p k.
   int wall_material(std::size_t k) const { return wall_material() + 1 + static_cast<int>(k); }
 
-  /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of the smallest particle of a type (s).
+  /// Rayleigh time pi R sqrt(rho/G) / (0.1631 nu + 0.8766) of a particle (s).
   static double rayleigh_time(double radius, double density, const Material &material);
 
   /// The types of which particles are inserted. A process counts its particles itself: then all.
