@@ -45,13 +45,13 @@ def _complaint(step: Callable[[], None]) -> str:
     return complaints.GetOutput()
 
 
-def read_vtu(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
+def read_vtu(path: Path, names: Iterable[str] | None) -> dict[str, np.ndarray]:
     """Points and point data of a .vtu file, from all its pieces (one for each rank) together.
 
-    The coordinates (m) come under the name 'points'; of the point data only those named are read,
+    The coordinates (m) come under the name 'points'; of the point data only those named are read (None: all),
     and those that the file lacks are left out.
     """
-    wanted = set(names)
+    wanted = None if names is None else set(names)
     reader = vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     complaint = _complaint(reader.UpdateInformation) if path.is_file() else "no file"
@@ -59,7 +59,7 @@ def read_vtu(path: Path, names: Iterable[str]) -> dict[str, np.ndarray]:
         fields = reader.GetPointDataArraySelection()
         for k in range(fields.GetNumberOfArrays()):
             name = fields.GetArrayName(k)
-            fields.SetArraySetting(name, name in wanted)
+            fields.SetArraySetting(name, wanted is None or name in wanted)
         complaint = _complaint(reader.Update)
     if WITHOUT_POINTS in complaint:
         return {"points": np.empty((0, 3), np.float32)}
