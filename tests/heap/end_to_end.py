@@ -6,6 +6,7 @@ Usage: end_to_end.py path/to/eunoe-particles folder
 Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
+import importlib.util
 import json
 import math
 import shutil
@@ -14,13 +15,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-try:
-    import numpy as np
-    from eunoe.vtk_files import read_pvd, read_vtu
-except ImportError:
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules")):
     sys.exit(77)
+import numpy as np
+
 from eunoe.launch import mpirun, overrides
 from eunoe.tables import read_rows as read
+from eunoe.vtk_files import read_pvd, read_vtu
 
 HERE = Path(__file__).resolve().parent
 

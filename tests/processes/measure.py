@@ -6,19 +6,20 @@ Usage: measure.py path/to/eunoe-particles folder
 Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
+import importlib.util
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
-try:
-    import numpy as np
-    from eunoe.vtk_files import read_vtu
-    from eunoe.discovery.particle_files import read_particles
-except ImportError:
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules")):
     sys.exit(77)
+import numpy as np
+
+from eunoe.discovery.particle_files import read_particles
 from eunoe.launch import overrides
 from eunoe.repository import ROOT
+from eunoe.vtk_files import read_vtu
 
 HERE = Path(__file__).resolve().parent
 HEAP, SPREADING = HERE.parent / "heap" / "tiny.prm", HERE.parent / "spreading" / "tiny.prm"

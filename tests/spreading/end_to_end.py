@@ -6,19 +6,22 @@ Usage: end_to_end.py path/to/eunoe-particles case.prm folder ranks
 Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
+import contextlib
 import csv
+import importlib.util
+import io
 import json
 import math
 import subprocess
 import sys
 from pathlib import Path
 
-try:
-    import numpy as np
-    from eunoe.vtk_files import read_pvd, read_vtu
-except ImportError:
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules")):
     sys.exit(77)
+import numpy as np
+
 from eunoe.launch import mpirun, overrides
+from eunoe.vtk_files import read_pvd, read_vtu
 
 
 LAYER_THICKNESS, DENSITY, DEPTH = 100e-6, 4386., 0.25e-3
@@ -101,10 +104,20 @@ def check_summary(summary: dict, rows: list[dict[str, str]]) -> None:
     assert summary["mass_balance_error"] == 0., "mass is lost unaccounted"
     assert summary["inserted_particles"] == (summary["particles"] + summary["taken_out_particles"]
                                              + summary["outlet_particles"])
-    close("powder in the gap", sum(float(row["mass_to_gap"]) for row in rows),
-          summary["outlet_2_mass"], 0.05)
-    close("powder in the collector", sum(float(row["mass_to_collector"]) for row in rows),
-          summary["outlet_1_mass"], 0.05)
+    for name, outlet in (("gap", 2), ("collector", 1)):
+        mass = summary[f"outlet_{outlet}_mass"]
+        assert mass > 0., f"nothing fell into the {name}"
+        close(f"powder in the {name}", sum(float(row[f"mass_to_{name}"]) for row in rows), mass, 1e-12)
+
+
+def check_report(folder: Path) -> None:
+    """The report of a real run has all its figures and nothing to complain of."""
+    from eunoe.report import of_run
+    with contextlib.redirect_stdout(io.StringIO()):
+        assert of_run.main([str(folder)]) == 0
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert 'class="notice"' not in page, "the report complains"
+    assert page.count("<figure>") >= 5, f"{page.count('<figure>')} figures"
 
 
 def main() -> int:
@@ -114,6 +127,8 @@ def main() -> int:
         rows = list(csv.DictReader(file))
     check_layers(rows, Path(folder))
     check_summary(json.loads((Path(folder) / "summary.json").read_text()), rows)
+    if importlib.util.find_spec("matplotlib"):
+        check_report(Path(folder))
     print("ok")
     return 0
 
