@@ -39,9 +39,10 @@ namespace {
 
 std::ifstream open_for_reading(const std::string &path)
 {
-  if (fs::is_directory(path))
+  std::error_code failure; // which opening the file tells
+  if (fs::is_directory(path, failure))
     refuse(path, "it is a folder");
-  if (fs::is_character_file(path) || fs::is_block_file(path))
+  if (fs::is_character_file(path, failure) || fs::is_block_file(path, failure))
     refuse(path, "it is a device"); // of which some never end
   std::ifstream stream(path, std::ios::binary);
   if (!stream)

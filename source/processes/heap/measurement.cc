@@ -118,12 +118,18 @@ void write_profile(Simulation &simulation, const Silhouettes &views, const std::
 {
   const auto file =
       simulation.output_folder().table("heap_profile.csv", {"x", "mean", "spread", "measured"});
-  const MeasuredProfile reference = measured.empty() ? MeasuredProfile() : read_profile(measured);
+  MeasuredProfile reference;
+  try {
+    if (!measured.empty())
+      reference = read_profile(measured);
+  } catch (const UserError &error) { // it was in order when the run began
+    simulation.get_log().warning(error.what() + std::string(" The heap is not compared with it."));
+  }
   double squares = 0., spreads = 0.;
   unsigned int n_compared = 0;
   const auto profile = views.profile();
   for (const Silhouettes::Bin &bin : profile) {
-    const double expected = measured.empty() ? nothing : reference.at(bin.x);
+    const double expected = reference.x.empty() ? nothing : reference.at(bin.x);
     file->write({bin.x, bin.mean, bin.spread, expected});
     spreads += bin.spread / static_cast<double>(profile.size());
     if (std::isfinite(expected)) {

@@ -6,10 +6,21 @@
 
 namespace eunoe::spreading {
 
+namespace {
+
+/// Width of columns of which every rank can hold all (m).
+double width_of_columns(const PlateProfile::Area &area, const double finest)
+{
+  constexpr double most_columns = 1e7;
+  return std::max(finest, std::sqrt((area.x_end - area.x_begin) * area.depth / most_columns));
+}
+
+} // namespace
+
 PlateProfile::PlateProfile(const Area &area, const unsigned int n_bins, const double finest)
-    : area(area), columns_per_bin(static_cast<unsigned int>(
-                      std::ceil((area.x_end - area.x_begin) / n_bins / finest))),
-      n_z(static_cast<unsigned int>(std::ceil(area.depth / finest))),
+    : area(area), columns_per_bin(static_cast<unsigned int>(std::ceil(
+                      (area.x_end - area.x_begin) / n_bins / width_of_columns(area, finest)))),
+      n_z(static_cast<unsigned int>(std::ceil(area.depth / width_of_columns(area, finest)))),
       width_x((area.x_end - area.x_begin) / (n_bins * columns_per_bin)), width_z(area.depth / n_z),
       heights(static_cast<std::size_t>(n_bins) * columns_per_bin * n_z, area.floor), bins(n_bins)
 {
