@@ -4,9 +4,11 @@
 set -euo pipefail
 
 cd "$(dirname "$0")/.."
-ranks=${EUNOE_RANKS:-$(nproc)}
+# Open MPI counts cores, not their threads.
+cores=$(lscpu -p=SOCKET,CORE | grep -v '^#' | sort -u | wc -l)
+ranks=${EUNOE_RANKS:-$((cores < $(nproc) ? cores : $(nproc)))}
 if [ "$ranks" -gt 4 ]; then
-  ranks=4 # a case of two thousand particles gains nothing from more
+  ranks=4 # a case of three thousand particles gains nothing from more
 fi
 
 contrib/install_dependencies.sh

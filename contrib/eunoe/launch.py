@@ -17,12 +17,24 @@ class Failure(Exception):
     """What went wrong, in a sentence."""
 
 
+def cores() -> int:
+    """Cores of this machine, which Open MPI counts; several threads of one are one."""
+    found = set()
+    for number in os.sched_getaffinity(0):
+        place = Path(f"/sys/devices/system/cpu/cpu{number}/topology")
+        try:
+            found.add(tuple((place / name).read_text(encoding="ascii") for name in ("physical_package_id", "core_id")))
+        except OSError:
+            return os.cpu_count() or 1
+    return len(found)
+
+
 def mpirun(ranks: int, *options: str) -> list[str]:
     """The words before a program that runs on so many ranks; none for one rank. Without options
     each rank has a core of its own as long as there are enough."""
     if ranks <= 1:
         return []
-    spare = ["--oversubscribe"] if not options and ranks > (os.cpu_count() or 1) else []
+    spare = ["--oversubscribe"] if not options and ranks > cores() else []
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     return ["mpirun", *root, *spare, *options, "-np", str(ranks)]
 
