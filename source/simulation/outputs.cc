@@ -62,7 +62,7 @@ bool Outputs::are_pictures_due(const Clock &clock, const bool begins)
 {
   const double half_step = 0.5 * clock.time_step(), now = clock.time();
   const bool by_time = control.output_control == "time";
-  // A run that goes on may have another interval.
+  // A run that goes on may have another interval, which its earlier part is far ahead of or behind.
   if (next_pictures > now + control.output_time + half_step)
     next_pictures = now;
   const bool is_due = by_time ? now >= next_pictures - half_step
@@ -70,7 +70,7 @@ bool Outputs::are_pictures_due(const Clock &clock, const bool begins)
                                     (begins || clock.step() % control.output_frequency == 0);
   if (is_due && by_time)
     next_pictures += control.output_time;
-  if (next_pictures <= now - half_step)
+  if (next_pictures <= now - half_step) // behind
     next_pictures = now + control.output_time;
   const bool is_in_window =
       now >= control.output_window[0] - half_step && now <= control.output_window[1] + half_step;

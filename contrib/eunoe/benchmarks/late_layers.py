@@ -6,8 +6,8 @@ Usage: contrib/tools late-layers folder [--program build/release/eunoe-particles
            [--spread-only] [--set ENTRY=VALUE ...]
 
 Spreading takes long; a call that was interrupted goes on where it stopped, and calls with different programs and
-entries can share the layers of a folder. The last passes are made anew by each call. Prints the speed of the time loop of the last pass, the share of
-particle steps that were slept, and the ratio of the two loops.
+entries can share the layers of a folder. The last passes are made anew by each call. Prints the speed of the
+time loop of the last pass, the share of particle steps that were slept, and the ratio of the two loops.
 """
 
 from __future__ import annotations

@@ -5,7 +5,8 @@ Usage: contrib/tools report output/quickstart [--out FILE] [--figures FORMAT|FOL
        contrib/tools report A B C [--label PS1 --label PS1 --label PS3] [--out FILE] [--figures FORMAT|FOLDER]
 
 Runs of one label, such as those that differ in the seed alone, are pooled: the page shows their means and
-bands. Without --label a folder's name is its label, without an ending like _seed3 (of A/run and B/run: A/run, B/run). --movie adds a movie of a
+bands. Without --label a folder's name is its label, without an ending like _seed3; where several have one name,
+as A/run and B/run, with the folder around it. --movie adds a movie of a
 pass of which the run has pictures. --figures writes all figures as files as well: in a format (pdf, png, svg)
 into the folder `figures` beside the page, or into a folder of your choice, as pdf.
 
