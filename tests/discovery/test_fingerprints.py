@@ -21,7 +21,7 @@ STRENGTH = 8.
 
 def table() -> str:
     random = np.random.default_rng(1)
-    lines = ["# a table", "factor a effect 0 1 0 2 above 0", "cells heap 0 height:0 height:1 density:0"]
+    lines = ["# a table", *(f"factor {name} effect 0 1 0 2 above 0" for name in "abc"), "cells heap 0 height:0 height:1 density:0"]
 
     def add(effect: str, amplitude: float, mean: tuple[float, float, float], n: int) -> None:
         for seed in range(n):
@@ -36,23 +36,33 @@ def table() -> str:
     return "\n".join([*lines, "heap b 2 400 failed"]) + "\n"
 
 
+def thinned(recorded: fingerprints.Recorded, n: int) -> fingerprints.Recorded:
+    """With the first runs of each amplitude of an effect."""
+    runs = {key: values if key[0] == "base" else values[:n] for key, values in recorded.runs["heap"].items()}
+    return fingerprints.Recorded(recorded.points, recorded.effects, recorded.null_values, {"heap": runs})
+
+
 def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "table.txt"
         path.write_text(table(), encoding="utf-8")
         recorded = fingerprints.read(path)
     found = fingerprints.fingerprints(recorded, ["heap"], ["a", "b", "c"], set())
-    strengths = {effect: [round(f.strength, 1) for f in of] for effect, of in found.items()}
+    strengths = {effect: [round(of.strength, 1) for of in sides[0]] for effect, sides in found.items()}
     assert abs(strengths["a"][0] / 4. - 1.) < 0.05 and abs(strengths["a"][1] / 8. - 1.) < 0.03, strengths
-    head, *rows = fingerprints.distances(found, STRENGTH)
-    by_pair = {row[0]: (float(row[3]), float(row[4])) for row in rows}
-    for pair, cosine in (("a, b", 0.5), ("a, c", math.sqrt(0.5))):
-        assert abs(by_pair[pair][0] - cosine) < 0.03, (pair, by_pair)
-        assert abs(by_pair[pair][1] - STRENGTH * math.sqrt(1. - cosine**2)) < 0.2, (pair, by_pair)
-    assert rows[0][1] == "1, 2", rows[0]  # the amplitude that is nearest to the strength
-    # Without the density, c cannot be told from a.
-    blind = fingerprints.distances(fingerprints.fingerprints(recorded, ["heap"], ["a", "c"], {"density"}), STRENGTH)
-    assert float(blind[1][3]) > 0.999, blind
+    _, *rows = fingerprints.distances(found, STRENGTH, False)
+    by_pair = {(row[0][0], row[2][0]): float(row[3]) for row in rows}
+    for pair, cosine in (("ab", 0.5), ("ac", math.sqrt(0.5))):
+        assert abs(by_pair[pair[0], pair[1]] - STRENGTH * math.sqrt(1. - cosine**2)) < 0.2, (pair, by_pair)
+    # The amplitudes are those of the strength, and of the second effect's projection.
+    assert abs(float(rows[0][0].split()[1]) - 1.) < 0.06 and abs(float(rows[0][2].split()[1]) - 1.) < 0.06, rows[0]
+    assert fingerprints.distances(found, STRENGTH, True)[1][2].startswith("c "), "of b and c, c is nearer to a"
+    # Without the density, c cannot be told from a, however few runs there are, whose noise alone
+    # is more than a deviation.
+    few = {effect: [side[-1:] for side in sides] for effect, sides in
+           fingerprints.fingerprints(thinned(recorded, 4), ["heap"], ["a", "c"], {"density"}).items()}
+    _, blind = fingerprints.distances(few, STRENGTH, False)
+    assert float(blind[3]) < 1. < float(blind[4]) < 3., blind
     try:
         fingerprints.fingerprints(recorded, ["heap"], ["d"], set())
     except Failure as failure:
