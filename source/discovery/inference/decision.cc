@@ -38,14 +38,23 @@ double probability_of(const std::vector<Model> &models, const std::size_t effect
   return sum;
 }
 
+namespace {
+
+/// Probabilities by the evidence to the power of one over the temperature. Priors stay what they
+/// are: models of two effects are many.
 void temper(std::vector<Model> &models, const double temperature)
 {
-  double sum = 0.;
-  for (Model &model : models)
-    sum += model.probability = std::pow(model.probability, 1. / temperature);
-  for (Model &model : models)
-    model.probability /= sum;
+  std::vector<double> logs;
+  for (const Model &model : models)
+    logs.push_back(model.log_prior + model.log_evidence / temperature);
+  const double total = log_sum(logs);
+  for (std::size_t m = 0; m < models.size(); ++m)
+    models[m].probability = std::exp(logs[m] - total);
+  std::stable_sort(models.begin(), models.end(),
+                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
 }
+
+} // namespace
 
 Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule)
 {

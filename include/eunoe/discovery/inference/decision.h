@@ -47,9 +47,6 @@ struct Findings
 /// Tests whether anything is missing, weighs the models and calibrates.
 Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule);
 
-/// Raises probabilities to the inverse of the temperature.
-void temper(std::vector<Model> &models, double temperature);
-
 /// Chooses the answer and the verdict from the models' probabilities.
 void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
             Findings &findings);
