@@ -249,7 +249,8 @@ double Evidence::log_at(const std::map<std::size_t, double> &effects,
 }
 
 /// The grid of pairs is coarse. Newton's method finds the likeliest logarithms of both amplitudes,
-/// and the evidence is that of the normal distribution there (Laplace).
+/// and the evidence is a sum along the axes of the normal distribution there (Laplace), as far as
+/// the prior reaches: an effect that is not needed is as likely wherever it cannot be seen.
 void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
 {
   constexpr double step = 0.05, longest = 0.5;
@@ -263,9 +264,8 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
     return log_at({{a, amplitude(a, at(0) + x)}, {b, amplitude(b, at(1) + y)}}, data);
   };
   Eigen::Matrix2d curvature;
-  double value = 0.;
   for (int i = 0; i <= iterations; ++i) {
-    value = f(0., 0.);
+    const double value = f(0., 0.);
     const double left = f(-step, 0.), right = f(step, 0.), down = f(0., -step), up = f(0., step);
     const double cross = (f(step, step) + f(-step, -step) + 2. * value - left - right - down - up) /
                          (2. * step * step);
@@ -278,11 +278,30 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
       at += curvature.inverse() * slope.cwiseMin(1e3).cwiseMax(-1e3);
     at = at.cwiseMin(longest).cwiseMax(-longest);
   }
-  const double evidence = value + log_density(a, model.best.at(a)) +
-                          log_density(b, model.best.at(b)) + std::log(2. * M_PI) -
-                          0.5 * std::log(curvature.determinant());
+  constexpr int to_each_side = 4;
+  constexpr double spacing = 0.9;
+  const Eigen::Matrix2d axes =
+      spacing * Eigen::Matrix2d(Eigen::Matrix2d(curvature.inverse()).llt().matrixL());
+  std::vector<double> logs;
+  for (int i = -to_each_side; i <= to_each_side; ++i)
+    for (int j = -to_each_side; j <= to_each_side; ++j) {
+      const Eigen::Vector2d shift = at + axes * Eigen::Vector2d(i, j);
+      const double u = model.best.at(a) * std::exp(shift(0)),
+                   v = model.best.at(b) * std::exp(shift(1));
+      if (is_possible(a, u) && is_possible(b, v))
+        logs.push_back(log_density(a, u) + log_density(b, v) + log_at({{a, u}, {b, v}}, data));
+    }
   model.best = {{a, amplitude(a, at(0))}, {b, amplitude(b, at(1))}};
-  model.log_evidence = evidence;
+  if (!logs.empty())
+    model.log_evidence = log_sum(logs) + std::log(axes.determinant());
+}
+
+bool Evidence::is_possible(const std::size_t effect, const double amplitude) const
+{
+  const std::size_t first = first_of_side(effect, amplitude);
+  const double size = std::abs(amplitude);
+  return size >= std::abs(grid[effect][first].amplitude) &&
+         size <= std::abs(grid[effect][first + n_places - 1].amplitude);
 }
 
 std::size_t Evidence::first_of_side(const std::size_t effect, const double amplitude) const

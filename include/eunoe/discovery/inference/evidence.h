@@ -93,6 +93,8 @@ private:
   /// Number of the first place on the side of the null value on which an amplitude lies.
   std::size_t first_of_side(std::size_t effect, double amplitude) const;
   double log_density(std::size_t effect, double amplitude) const;
+  /// Whether the prior reaches an amplitude.
+  bool is_possible(std::size_t effect, double amplitude) const;
   double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
