@@ -26,16 +26,16 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   mean = of_base.colwise().mean().transpose();
   reduction = Modes(points, discovery::deviations(of_base).cwiseMax(least_deviation));
   const std::vector<Group> groups = make_groups(samples, columns);
-  double own_share = estimate_covariance(without_effects(groups));
+  own = estimate_covariance(without_effects(groups));
   // Few runs make a covariance in whose units all others scatter too much.
   constexpr int rounds = 2;
   for (int i = 0; i < rounds; ++i) {
     fit_scatter(groups);
-    own_share = estimate_covariance(near_base(groups));
+    own = estimate_covariance(near_base(groups));
   }
   // The directions in which data are weighed most are those in which the covariance happens to be
   // small: new data scatter more along them (Dodelson and Schneider 2013).
-  whitening *= std::sqrt(1. - own_share);
+  whitening *= std::sqrt(1. - own);
   fit_scatter(groups);
   const BaseInformation without_effects = information_of_base(groups);
   for (std::size_t k = 0; k < n_effects; ++k) {

@@ -22,7 +22,7 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
       highest = highest.max(evidence.log_likelihoods(one, values));
     return Eigen::ArrayXd(-highest);
   };
-  Twins source(evidence, seed);
+  Twins source(evidence, seed, Twins::Scatter::as_a_distance);
   Eigen::MatrixXd drawn(data.size(), static_cast<Eigen::Index>(posterior.effects.size()));
   for (std::size_t i = 0; i < posterior.effects.size(); ++i) {
     Target::Prediction truth = evidence.target().predict(posterior.effects[i]);
@@ -83,11 +83,11 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
 Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior,
                        const std::uint32_t seed)
 {
-  Twins source(evidence, seed);
+  Twins source(evidence, seed), by_distance(evidence, seed, Twins::Scatter::as_a_distance);
   const Target &target = evidence.target();
   const Eigen::Index n = target.data().size();
   const auto draws = static_cast<Eigen::Index>(posterior.effects.size());
-  Eigen::MatrixXd means(n, draws), twins(n, draws); // a column for each draw
+  Eigen::MatrixXd means(n, draws), likely(n, draws); // a column for each draw
   Eigen::MatrixXd variances = Eigen::MatrixXd::Zero(n, Target::n_noise_levels);
   for (Eigen::Index i = 0; i < draws; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -100,7 +100,8 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
     variances += target.variances(prediction) / static_cast<double>(draws);
     means.col(i) = prediction.mean;
     prediction.gradient.resize(n, 0);
-    one.twin = twins.col(i) = source.draw(prediction);
+    one.twin = source.draw(prediction);
+    likely.col(i) = by_distance.draw(prediction);
     all.push_back(one);
   }
   centre = means.rowwise().mean();
@@ -113,7 +114,7 @@ Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior
   llt.compute(with(variances.rowwise().mean()));
   for (Eigen::Index l = 0; l < variances.cols(); ++l)
     levels.emplace_back(with(variances.col(l)));
-  const Eigen::ArrayXd surprises = -log_density(twins);
+  const Eigen::ArrayXd surprises = -log_density(likely);
   tail = Tail({surprises.begin(), surprises.end()});
 }
 

@@ -47,6 +47,8 @@ public:
   /// of a new run, and the degrees of freedom of the covariance that is estimated from them.
   const Eigen::MatrixXd &deviations() const { return residuals; }
   double degrees_of_freedom() const { return dof; }
+  /// Share by which a run's own part in that covariance shortens its squared distance.
+  double own_share() const { return own; }
   /// Covariance of the modes of one run of the base model.
   Eigen::MatrixXd mode_covariance() const;
   Eigen::MatrixXd unwhitening() const;
@@ -74,7 +76,7 @@ private:
   std::vector<Group> near_base(const std::vector<Group> &groups) const;
   Scatter::Replicates whitened(const Group &group) const;
   /// @param groups from whose replicates it is estimated
-  /// @return how far a row's own part in the covariance shortens its squared distance, as a share
+  /// @return own_share()
   double estimate_covariance(const std::vector<Group> &groups);
   void fit_scatter(const std::vector<Group> &groups);
   BaseInformation information_of_base(const std::vector<Group> &groups) const;
@@ -84,7 +86,7 @@ private:
   Modes reduction;
   Eigen::VectorXd mean;
   Eigen::MatrixXd whitening, residuals;
-  double dof = 1.;
+  double dof = 1., own = 0.;
   Scatter chaos;
   GaussianProcess::Prediction alone; ///< of the base model
   std::vector<GaussianProcess> processes;

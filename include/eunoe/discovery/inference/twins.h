@@ -14,7 +14,18 @@ namespace eunoe::discovery {
 class Twins
 {
 public:
-  Twins(const Evidence &evidence, std::uint32_t seed) : evidence(evidence), random(seed, 17) {}
+  /// New runs scatter more along the directions by which data are weighed than the covariance says,
+  /// as it happens to be small there, and as much as it says over all directions together.
+  enum class Scatter
+  {
+    as_weighed,    ///< for comparisons of models, which look along those directions
+    as_a_distance, ///< for the distance of data from one model
+  };
+
+  Twins(const Evidence &evidence, std::uint32_t seed, Scatter scatter = Scatter::as_weighed)
+      : evidence(evidence), random(seed, 17), kind(scatter)
+  {
+  }
 
   /// Data of one truth, in the target's coordinates. The error of the prediction is drawn, too.
   Eigen::VectorXd draw(const Target::Prediction &truth);
@@ -26,6 +37,7 @@ private:
 
   const Evidence &evidence;
   RandomStream random;
+  const Scatter kind;
 };
 
 /// Values of a statistic for draws of a truth, and the probability to be at or above another value.
