@@ -75,9 +75,9 @@ std::vector<std::string> Checkpoints::folders_nearby() const
   std::set<std::string> found;
   std::string text;
   if (is_first_rank(comm)) {
-    const fs::path own = fs::path(folder + "/").lexically_normal().parent_path();
-    for (const fs::path &place : {fs::path("."), fs::absolute(own).parent_path()}) {
-      std::error_code failure;
+    std::error_code failure;
+    const fs::path own = (fs::absolute(folder, failure) / "").lexically_normal().parent_path();
+    for (const fs::path &place : {fs::path("."), own.parent_path()}) {
       if (CheckpointStore(place.string(), parameters.name(), 1, MPI_COMM_SELF).has_any())
         found.insert(fs::canonical(place, failure).string());
       for (const auto &entry : fs::directory_iterator(place, failure)) {

@@ -81,7 +81,7 @@ unsigned long long ControlParameters::last_step(const unsigned long long step,
 {
   // No run does more steps than this, and it is the same number as a double.
   constexpr double most = 0x1p63;
-  const double steps = (time_end - time) / time_step;
+  const double steps = std::min((time_end - time) / time_step, 2. * most);
   return end_control == "iteration"
              ? iteration_end
              : step + static_cast<unsigned long long>(
