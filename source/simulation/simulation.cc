@@ -106,8 +106,9 @@ void Simulation::open_output()
   int rank;
   MPI_Comm_rank(communicator(), &rank);
   if (rank == 0)
-    // The summary of an earlier run would make this run look finished.
-    remove_file(outputs.folder.file("summary.json"));
+    // Those of an earlier run would make this run look finished.
+    for (const char *const result : {"summary.json", "measurements.csv"})
+      remove_file(outputs.folder.file(result));
   make_observables();
 }
 
@@ -144,6 +145,9 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
   complete_step();
   if (checkpoints.is_stopped())
     return false;
+  if (process && !process->finished())
+    throw UserError("The run has come to its bound of " + format(time()) +
+                    " s before all that its process does.");
   // So that another phase can begin where this one ends.
   if (checkpoints.is_due_at_end(clock.step()))
     write_checkpoint();

@@ -85,13 +85,15 @@ void SpreadingParameters::decide(Parameters &parameters) const
       box_mesh(section, {0., a.y_bottom, 0.}, {a.x_end, a.y_top, a.depth}, largest,
                parameters.detection.skin(largest) + parameters.contact_model(largest).range());
   decide_boundaries(parameters);
-  // The process decides when all is done; this is no more than an upper bound.
+  // The process decides when all is done; this is no more than an upper bound, far away as earlier
+  // series may have been slower than this one.
+  constexpr double far = 10.;
   parameters.control.end_control = "time";
   const double longest_pass = a.path() / velocity + plate_stroke() / plate_velocity +
                               std::max(actual_stroke(0), actual_stroke(1)) / platform_velocity;
   // Each layer may begin a series of its own, with a bed of its own.
-  parameters.control.time_end =
-      make_schedule(*this, a, 0.).back().end + n_layers * (23. * settling_time + longest_pass);
+  parameters.control.time_end = far * (make_schedule(*this, a, 0.).back().end +
+                                       n_layers * (23. * settling_time + longest_pass));
 }
 
 void SpreadingParameters::decide_boundaries(Parameters &parameters) const
