@@ -40,14 +40,26 @@ namespace {
 void describe_sleep(const Parameters &parameters, const std::vector<DiameterRange> &diameters,
                     Forecast &forecast)
 {
-  const RestCriterion rest(parameters.sparse_contacts, norm(parameters.physics.gravity), 1.);
-  for (const auto &[type, smallest, largest] : diameters)
+  const double gravity = norm(parameters.physics.gravity);
+  const RestCriterion rest(parameters.sparse_contacts, gravity, 1.);
+  for (const auto &[type, smallest, largest] : diameters) {
+    const double radius = 0.5 * smallest, speed = std::sqrt(rest.speed_square(radius));
+    // Around the top of a path a particle is slower than that, and stays within a displacement of
+    // the top, on the way up and down.
+    const double at_top =
+        2. * std::min(speed / gravity, std::sqrt(2. * rest.displacement(radius) / gravity));
+    if (gravity > 0. && rest.steps(radius) < at_top)
+      forecast.problems.warn("subsection 'model parameters' / subsection 'adaptive sparse "
+                             "contacts' / 'rest time':",
+                             "is so short that a particle falls asleep in the air at the top of "
+                             "its path, and stays there.",
+                             "Give more than " + format(at_top) + " s, or 'auto'.");
     forecast.facts.push_back("Sleep: a particle of type " + std::to_string(type) + " of " +
                              format(1e6 * smallest) + " um is at rest when it was slower than " +
-                             format(std::sqrt(rest.speed_square(0.5 * smallest))) +
-                             " m/s and has moved by less than " +
-                             format(rest.displacement(0.5 * smallest)) + " m for " +
-                             format(rest.steps(0.5 * smallest)) + " s");
+                             format(speed) + " m/s and has moved by less than " +
+                             format(rest.displacement(radius)) + " m for " +
+                             format(rest.steps(radius)) + " s");
+  }
 }
 
 /// Diameters of each type that has particles: those of the particles that are given one by one,
