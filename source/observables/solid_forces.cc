@@ -10,11 +10,15 @@ public:
   SolidForces(const RecordSection &section, Simulation &simulation) : frequency(section.frequency)
   {
     const auto &solids = simulation.get_solids();
+    // An object keeps its number if others are not drawn: its table may be continued.
+    std::size_t next = 0;
     for (std::size_t s = 0; s < solids.size(); ++s) {
+      if (solids[s].object || solids[s].output)
+        ++next;
       if (!solids[s].output)
         continue;
       char number[8];
-      std::snprintf(number, sizeof number, "_%02zu", files.size());
+      std::snprintf(number, sizeof number, "_%02zu", next - 1);
       numbers.push_back(s);
       files.push_back(simulation.output_folder().table(
           section.file + number + ".csv", {"time", "f_x", "f_y", "f_z", "T_x", "T_y", "T_z"}));
