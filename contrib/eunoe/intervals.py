@@ -20,7 +20,8 @@ def quantile(freedom: float) -> float:
 
 @dataclass(frozen=True)
 class Interval:
-    """A number and half the width of its interval; the half is NaN if it is not known."""
+    """A number and half the width of its interval; the half is NaN if it is not known: equal values do not tell
+    their scatter."""
 
     value: float
     half: float
@@ -37,7 +38,7 @@ def mean_of(values: Sequence[float]) -> Interval:
     if len(known) < 2:
         return Interval(known[0] if known else math.nan, math.nan)
     half = quantile(len(known) - 1) * statistics.stdev(known) / math.sqrt(len(known))
-    return Interval(statistics.mean(known), half)
+    return Interval(statistics.mean(known), half or math.nan)
 
 
 def difference_of(values: Sequence[float], reference: Sequence[float]) -> Interval:
@@ -47,7 +48,7 @@ def difference_of(values: Sequence[float], reference: Sequence[float]) -> Interv
         return Interval(difference, math.nan)
     parts = [statistics.variance(group) / len(group) for group in (values, reference)]
     if sum(parts) == 0.:
-        return Interval(difference, 0.)
+        return Interval(difference, math.nan)
     freedom = sum(parts) ** 2 / sum(part**2 / (len(group) - 1)
                                     for part, group in zip(parts, (values, reference)))
     return Interval(difference, quantile(freedom) * math.sqrt(sum(parts)))

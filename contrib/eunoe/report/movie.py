@@ -4,6 +4,7 @@ coloured by how far it has moved over the plate since the last weighing."""
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,7 @@ from .run_folder import Layers, ReportError, Run
 FIELDS = ("diameter", "layer", "on_plate", "last_position")
 FARTHEST = 1e-3  # end of the scale of displacements (m)
 FEWEST_FRAMES = 3
+WHOLE = 0.9  # share of the time between two weighings in which the spreader moves
 RESOLUTION = 110  # dots per inch
 FRAME_TIME = 90  # ms
 
@@ -60,6 +62,11 @@ class Pass:
     layer: int
     snapshots: Sequence[Snapshot]
     solids: dict[float, Path]
+    duration: float = math.nan  # from weighing to weighing (s)
+
+    @property
+    def share_shown(self) -> float:
+        return (self.snapshots[-1].time - self.snapshots[0].time) / self.duration
 
     def frames(self, every: int = 1) -> Iterator[Frame]:
         for snapshot in self.snapshots[::every]:
@@ -75,19 +82,22 @@ def passes_of(run: Run, layers: Layers) -> dict[int, Pass]:
     for k in range(1, len(layers)):
         within = [entry for entry in usable if layers.time[k - 1] < entry.time <= layers.time[k]]
         if len(within) >= FEWEST_FRAMES:
-            found[int(layers.layer[k])] = Pass(int(layers.layer[k]), within, solids)
+            duration = layers.time[k] - layers.time[k - 1]
+            found[int(layers.layer[k])] = Pass(int(layers.layer[k]), within, solids, duration)
     return found
 
 
 def pass_of(run: Run, layers: Layers, layer: int | None) -> Pass:
-    """The wanted pass, or the last one that has pictures."""
+    """The wanted pass, or the last one that has pictures of all of it, else the one that has most of it."""
     found = passes_of(run, layers)
     if not found or (layer is not None and layer not in found):
         there = f" It has those of {', '.join(map(str, found))}." if found else ""
         raise ReportError(f"{run.folder} has no pictures of {'a pass' if layer is None else f'pass {layer}'} for a "
                           f"movie: 'output control', 'output time' and 'output time interval' in 'simulation "
                           f"control' make them.{there}")
-    return found[max(found) if layer is None else layer]
+    if layer is not None:
+        return found[layer]
+    return max(found.values(), key=lambda one: (min(one.share_shown, WHOLE), one.layer))
 
 
 def moved_since(frame: Frame, apparatus: Apparatus, layer: int) -> np.ndarray:
@@ -95,7 +105,7 @@ def moved_since(frame: Frame, apparatus: Apparatus, layer: int) -> np.ndarray:
     here, there = frame.particles["points"].astype(float), frame.particles["last_position"].astype(float)
     fallen = frame.plate_height(apparatus) - apparatus.plate_height(layer - 1)
     moved = np.hypot(here[:, 0] - there[:, 0], here[:, 1] - there[:, 1] - fallen)
-    return np.where((frame.particles["layer"] >= 0) & (frame.particles["layer"] < layer), moved, np.nan)
+    return np.where((frame.particles["on_plate"] > 0) & (frame.particles["layer"] < layer), moved, np.nan)
 
 
 def _norm() -> LogNorm:
