@@ -109,8 +109,13 @@ def slope_measures(stages: dict[str, Rows]) -> dict[str, float]:
 
 FULL, TRICKLED = 5., 25.  # time after which the heap has all that it can hold, and at the end (s)
 PLATE = 20e-3  # (m)
+FILLED = 251  # grains that have come then
+PER_SECOND, STEP = 8, 8e-6  # grains that trickle (1/s), and the time step (s)
 TRICKLE = (Stage("fill", {"simulation control/time end": FULL}, shared=True),
-           Stage("trickle", {"simulation control/time end": TRICKLED, "insertion info/insertion frequency": 15625}))
+           Stage("trickle", {"simulation control/time end": TRICKLED,
+                             "insertion info/insertion frequency": round(1. / (PER_SECOND * STEP)),
+                             "lagrangian physical properties/particle type 0/number of particles":
+                                 FILLED + round(PER_SECOND * (TRICKLED - FULL))}))
 
 
 def trickle_measures(stages: dict[str, Rows]) -> dict[str, float]:
