@@ -4,6 +4,7 @@ of 60 degrees, of which one is seen in another observable too.
 Exit code 77, which skips the test, if numpy is missing.
 """
 
+import itertools
 import math
 import sys
 import tempfile
@@ -38,7 +39,8 @@ def table() -> str:
 
 def thinned(recorded: fingerprints.Recorded, n: int) -> fingerprints.Recorded:
     """With the first runs of each amplitude of an effect."""
-    runs = {key: values if key[0] == "base" else values[:n] for key, values in recorded.runs["heap"].items()}
+    runs = {key: values if key[0] == "base" else dict(itertools.islice(values.items(), n))
+            for key, values in recorded.runs["heap"].items()}
     return fingerprints.Recorded(recorded.points, recorded.effects, recorded.null_values, {"heap": runs})
 
 
@@ -50,19 +52,25 @@ def main() -> int:
     found = fingerprints.fingerprints(recorded, ["heap"], ["a", "b", "c"], set())
     strengths = {effect: [round(of.strength, 1) for of in sides[0]] for effect, sides in found.items()}
     assert abs(strengths["a"][0] / 4. - 1.) < 0.05 and abs(strengths["a"][1] / 8. - 1.) < 0.03, strengths
-    _, *rows = fingerprints.distances(found, STRENGTH, False)
+    _, *rows = fingerprints.distances(recorded, ["heap"], ["a", "b", "c"], set(), STRENGTH, False)
     by_pair = {(row[0][0], row[2][0]): float(row[3]) for row in rows}
     for pair, cosine in (("ab", 0.5), ("ac", math.sqrt(0.5))):
-        assert abs(by_pair[pair[0], pair[1]] - STRENGTH * math.sqrt(1. - cosine**2)) < 0.2, (pair, by_pair)
+        assert abs(by_pair[pair[0], pair[1]] - STRENGTH * math.sqrt(1. - cosine**2)) < 0.4, (pair, by_pair)
     # The amplitudes are those of the strength, and of the second effect's projection.
-    assert abs(float(rows[0][0].split()[1]) - 1.) < 0.06 and abs(float(rows[0][2].split()[1]) - 1.) < 0.06, rows[0]
-    assert fingerprints.distances(found, STRENGTH, True)[1][2].startswith("c "), "of b and c, c is nearer to a"
+    assert abs(float(rows[0][0].split()[1]) - 1.) < 0.11 and abs(float(rows[0][2].split()[1]) - 1.) < 0.11, rows[0]
+    closest = fingerprints.distances(recorded, ["heap"], ["a", "b", "c"], set(), STRENGTH, True)
+    assert closest[1][2].startswith("c "), "of b and c, c is nearer to a"
     # Without the density, c cannot be told from a, however few runs there are, whose noise alone
     # is more than a deviation.
-    few = {effect: [side[-1:] for side in sides] for effect, sides in
-           fingerprints.fingerprints(thinned(recorded, 4), ["heap"], ["a", "c"], {"density"}).items()}
-    _, blind = fingerprints.distances(few, STRENGTH, False)
-    assert float(blind[3]) < 1. < float(blind[4]) < 3., blind
+    _, blind = fingerprints.distances(thinned(recorded, 4), ["heap"], ["a", "c"], {"density"}, STRENGTH, False)
+    assert float(blind[3]) < 2. < float(blind[4]) < 4., blind
+    # The column does not change what happens in the heap, and its runs are those of the base model.
+    copies = thinned(recorded, 4)
+    copies.effects.append("d")
+    copies.null_values["d"] = 0.
+    copies.runs["heap"]["d", 1.] = dict(itertools.islice(copies.runs["heap"]["base", 0.].items(), 4))
+    traceless = fingerprints.fingerprints(copies, ["heap"], ["d"], set())["d"][0][0]
+    assert traceless.square == 0. and traceless.variance == 0., traceless
     try:
         fingerprints.fingerprints(recorded, ["heap"], ["d"], set())
     except Failure as failure:

@@ -8,8 +8,9 @@ in deviations of one run of the base model (Mahalanobis), linear between the rec
 a pair has the wanted strength, or is at the end of its range; the distance is what is left between the two, in
 deviations of one run, if the second has its best amplitude. Data that are means of n runs see sqrt(n) times as much.
 What the scatter of the few runs adds to a square is subtracted, so that effects that nothing tells apart have 0, not
-some deviations of noise; "at most" is a one-sided limit of 95 % for the distance. Of all effects, if none are named,
-each is shown with the one that is nearest to it.
+some deviations of noise. The best amplitude is found by one half of the runs and judged by the other, and the other
+way round, as the smallest of many differences is small by chance. "at most" is a one-sided limit of 95 % for the
+distance. Of all effects, if none are named, each is shown with the one that is nearest to it.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import argparse
 import collections
 import itertools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,7 +29,7 @@ from eunoe.launch import Failure, parser
 from eunoe.tables import Table, as_markdown
 
 NORMAL_95 = 1.645
-PLACES_OF_A_PIECE = 20
+PLACES_OF_A_PIECE = 10
 
 
 @dataclass
@@ -36,8 +37,17 @@ class Recorded:
     points: dict[str, list[str]] = field(default_factory=dict)
     effects: list[str] = field(default_factory=list)
     null_values: dict[str, float] = field(default_factory=dict)
-    runs: dict[str, dict[tuple[str, float], list[np.ndarray]]] = field(
-        default_factory=lambda: collections.defaultdict(lambda: collections.defaultdict(list)))
+    # By experiment, effect and amplitude: the values of each run, by its seed.
+    runs: dict[str, dict[tuple[str, float], dict[int, np.ndarray]]] = field(
+        default_factory=lambda: collections.defaultdict(lambda: collections.defaultdict(dict)))
+
+    def has_trace(self, experiment: str, effect: str) -> bool:
+        """Whether an effect changes anything in an experiment: runs with the seed of a run of the base model are
+        the same to the last digit if it does not."""
+        base = self.runs[experiment]["base", 0.]
+        return not all(seed in base and np.array_equal(values, base[seed], equal_nan=True)
+                       for (name, _), runs in self.runs[experiment].items() if name == effect
+                       for seed, values in runs.items())
 
 
 def read(path: Path) -> Recorded:
@@ -53,7 +63,7 @@ def read(path: Path) -> Recorded:
         elif words[0] == "cells":
             recorded.points[words[1]] = words[3:]
         else:
-            recorded.runs[words[0]][words[1], float(words[2])].append(np.array([float(word) for word in words[4:]]))
+            recorded.runs[words[0]][words[1], float(words[2])][int(words[3])] = np.array([float(word) for word in words[4:]])
     return recorded
 
 
@@ -74,36 +84,38 @@ class Fingerprint:
 
     amplitude: float
     change: np.ndarray
-    own_noise: float  # expected square of the change by the scatter of the effect's runs
-    base_noise: float  # and by that of the base model's, for a weight of 1
-    weight: float = 1.  # of the base model's mean
+    own_noise: np.ndarray  # variance of each component by the scatter of the effect's few runs
+    base_noise: np.ndarray  # and by that of the base model's, for a weight of 1
+    weight: np.ndarray  # of the base model's mean
+    runs: float = math.inf  # from how many the scatter is known
 
     @property
-    def noise(self) -> float:
+    def noise(self) -> np.ndarray:
         return self.own_noise + self.weight**2 * self.base_noise
 
     @property
     def square(self) -> float:
-        return float(self.change @ self.change) - self.noise
+        return float((self.change**2 - self.noise).sum())
+
+    @property
+    def variance(self) -> float:
+        """Of the square."""
+        of_noise = 1. + 1. / max(1., self.runs - 1.)
+        squares = np.maximum(0., self.change**2 - self.noise)
+        return float((2. * of_noise * self.noise**2 + 4. * squares * self.noise).sum())
 
     @property
     def strength(self) -> float:
         return math.sqrt(max(0., self.square))
 
-    @property
-    def at_most(self) -> float:
-        """One-sided limit of 95 % for the strength."""
-        square = max(0., self.square)
-        variance = (2. * self.noise**2 + 4. * square * self.noise) / len(self.change)
-        return math.sqrt(square + NORMAL_95 * math.sqrt(variance))
-
     def times(self, share: float) -> Fingerprint:
         return Fingerprint(share * self.amplitude, share * self.change, share**2 * self.own_noise, self.base_noise,
-                           share * self.weight)
+                           share * self.weight, self.runs)
 
     def plus(self, other: Fingerprint) -> Fingerprint:
         return Fingerprint(self.amplitude + other.amplitude, self.change + other.change, self.own_noise + other.own_noise,
-                           self.base_noise, self.weight + other.weight)
+                           np.maximum(self.base_noise, other.base_noise), self.weight + other.weight,
+                           min(self.runs, other.runs))
 
 
 # Fingerprints of one effect on one side of its null value, by growing distance from it.
@@ -118,43 +130,84 @@ def places(side: Side) -> Iterator[Fingerprint]:
             yield before.times(1. - share).plus(after.times(share))
 
 
-def of_strength(side: Side, strength: float) -> Fingerprint:
-    """The first place that is as strong, or the end of the range."""
-    return next((place for place in places(side) if place.strength >= strength), side[-1])
+def of_strength(side: Side, strength: float) -> int:
+    """The number of the first place that is as strong, or of the end of the range."""
+    return next((k for k, place in enumerate(places(side)) if place.strength >= strength), -1)
 
 
-def nearest(to: Fingerprint, side: Side) -> tuple[Fingerprint, float]:
-    """What is left of a fingerprint at the best amplitude of another effect, and that amplitude."""
-    left = ((to.plus(place.times(-1.)), place.amplitude) for place in places(side))
-    return min(left, key=lambda one: one[0].square)
+@dataclass
+class Distance:
+    """Of an effect from another one at its best amplitude."""
+
+    amplitude: float  # of the other
+    square: float
+    variance: float
+
+    @property
+    def value(self) -> float:
+        return math.sqrt(max(0., self.square))
+
+    @property
+    def at_most(self) -> float:
+        """One-sided limit of 95 %."""
+        return math.sqrt(max(0., self.square) + NORMAL_95 * math.sqrt(self.variance))
 
 
-def fingerprints(recorded: Recorded, experiments: list[str], effects: list[str],
-                 without: set[str]) -> dict[str, list[Side]]:
+def nearest(to: Fingerprint, side: Side) -> int:
+    """The place of the other effect at which least is left."""
+    return min(enumerate(places(side)), key=lambda place: to.plus(place[1].times(-1.)).square)[0]
+
+
+def distance(to: Sequence[Fingerprint], others: Sequence[Side]) -> Distance:
+    """@param to, others: by all runs, by one half and by the other half of them"""
+    whole = list(places(others[0]))[nearest(to[0], others[0])]
+    left = [to[judge].plus(list(places(others[judge]))[nearest(to[3 - judge], others[3 - judge])].times(-1.))
+            for judge in (1, 2)]
+    # Each half has twice the noise of all, and both judge the same.
+    return Distance(whole.amplitude, sum(one.square for one in left) / 2., sum(one.variance for one in left) / 4.)
+
+
+def fingerprints(recorded: Recorded, experiments: list[str], effects: list[str], without: set[str],
+                 half: int | None = None) -> dict[str, list[Side]]:
     """Of each effect on each side of its null value, over all data points of the experiments; amplitudes are
-    differences from the null value."""
+    differences from the null value.
+
+    @param half: of the runs at each amplitude, 0 or 1; all by default"""
     sums: dict[tuple[str, float], Fingerprint] = {}
+    nothing = np.empty(0)
     for experiment in experiments:
         runs = recorded.runs[experiment]
-        base = np.array(runs["base", 0.])
-        if len(base) < 3:
+        base = np.array(list(runs["base", 0.].values()))
+        if len(base) < 6:
             raise Failure(f"The table has {len(base)} runs of the base model of '{experiment}'. Record more.")
         keep = np.array([not {name, name.split(":")[0]} & without for name in recorded.points[experiment]])
         keep &= np.isfinite(base).all(axis=0) & (base.std(axis=0) > 0.)
         for (effect, _), rows in runs.items():
             if effect in effects:
-                keep &= np.isfinite(np.array(rows)).all(axis=0)
+                keep &= np.isfinite(np.array(list(rows.values()))).all(axis=0)
         mean, deviation = base[:, keep].mean(axis=0), base[:, keep].std(axis=0, ddof=1)
         whiten = np.linalg.inv(np.linalg.cholesky(shrunk((base[:, keep] - mean) / deviation)))
-        base_noise = len(mean) / len(base)
+
+        def whitened(rows: dict[int, np.ndarray]) -> np.ndarray:
+            return ((np.array(list(rows.values()))[:, keep] - mean) / deviation) @ whiten.T
+        chosen = slice(half, None, 1 if half is None else 2)
+        of_base = whitened(runs["base", 0.])[chosen]
+        base_noise = np.full(len(mean), 1. / len(of_base))
         for (effect, amplitude), rows in runs.items():
-            if effect in effects:
-                values = ((np.array(rows)[:, keep] - mean) / deviation) @ whiten.T
-                scatter = values.var(axis=0, ddof=1).sum() if len(values) > 1 else len(mean)
-                old = sums.get((effect, amplitude), Fingerprint(0., np.empty(0), 0., 0.))
-                sums[effect, amplitude] = Fingerprint(amplitude - recorded.null_values[effect],
-                                                      np.append(old.change, values.mean(axis=0)),
-                                                      old.own_noise + scatter / len(values), old.base_noise + base_noise)
+            if effect not in effects:
+                continue
+            old = sums.get((effect, amplitude), Fingerprint(0., nothing, nothing, nothing, nothing))
+            values = whitened(rows)
+            if len(values) < 2:
+                raise Failure(f"The table has a single run of '{effect}' at {amplitude:g} in '{experiment}'. Record more.")
+            scatter, mine = values.var(axis=0, ddof=1), values[chosen]
+            trace = float(recorded.has_trace(experiment, effect))
+            sums[effect, amplitude] = Fingerprint(
+                amplitude - recorded.null_values[effect],
+                np.append(old.change, trace * (mine.mean(axis=0) - of_base.mean(axis=0))),
+                np.append(old.own_noise, trace * scatter / len(mine)),
+                np.append(old.base_noise, base_noise), np.append(old.weight, np.full(len(mean), trace)),
+                min(old.runs, len(values)))
     found: dict[str, list[Side]] = {effect: [] for effect in effects}
     for effect, sides in found.items():
         recorded_at = sorted((of for (name, _), of in sums.items() if name == effect), key=lambda of: abs(of.amplitude))
@@ -164,19 +217,22 @@ def fingerprints(recorded: Recorded, experiments: list[str], effects: list[str],
     return found
 
 
-def distances(all_of: dict[str, list[Side]], strength: float, only_nearest: bool) -> Table:
+def distances(recorded: Recorded, experiments: list[str], effects: list[str], without: set[str], strength: float,
+              only_nearest: bool) -> Table:
     """Of the effects before and after each other in the list, or of each and the one nearest to it."""
+    by_half = [fingerprints(recorded, experiments, effects, without, half) for half in (None, 0, 1)]
     rows: Table = [["effect", "strength", "nearest" if only_nearest else "and", "distance", "at most"]]
-
-    def row(to: Fingerprint, effect: str, other: str) -> tuple[float, list[str]]:
-        left, amplitude = min((nearest(to, side) for side in all_of[other]), key=lambda one: one[0].square)
-        return left.square, [f"{effect} {to.amplitude:+.3g}", f"{to.strength:.1f}", f"{other} {amplitude:+.3g}",
-                             f"{left.strength:.1f}", f"{left.at_most:.1f}"]
-    for position, (effect, sides) in enumerate(all_of.items()):
-        others = [other for other in all_of if other != effect] if only_nearest else list(all_of)[position + 1:]
-        for side in sides:
-            found = [row(of_strength(side, strength), effect, other) for other in others]
-            rows += [text for _, text in ([min(found)] if only_nearest else found)]
+    for position, effect in enumerate(effects):
+        others = [other for other in effects if other != effect] if only_nearest else effects[position + 1:]
+        for number, side in enumerate(by_half[0][effect]):
+            place = of_strength(side, strength)
+            to = [list(places(found[effect][number]))[place] for found in by_half]
+            text = [f"{effect} {to[0].amplitude:+.3g}", f"{to[0].strength:.1f}"]
+            found = [(other, min((distance(to, [half[other][k] for half in by_half])
+                                  for k in range(len(by_half[0][other]))), key=lambda one: one.square))
+                     for other in others]
+            for other, one in [min(found, key=lambda pair: pair[1].square)] if only_nearest else found:
+                rows.append([*text, f"{other} {one.amplitude:+.3g}", f"{one.value:.1f}", f"{one.at_most:.1f}"])
     return rows
 
 
@@ -194,6 +250,6 @@ def main(words: list[str]) -> int:
     if unknown:
         raise Failure(f"The table has no experiment '{sorted(unknown)[0]}', but {', '.join(recorded.points)}.")
     without = {name for name in options.without.split(",") if name}
-    found = fingerprints(recorded, experiments, options.effects or recorded.effects, without)
-    print(as_markdown(distances(found, options.strength, not options.effects)))
+    print(as_markdown(distances(recorded, experiments, options.effects or recorded.effects, without, options.strength,
+                                not options.effects)))
     return 0
