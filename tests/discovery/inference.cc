@@ -10,6 +10,7 @@
 #include "synthetic.h"
 
 #include <mpi.h>
+#include <numeric>
 
 namespace {
 
@@ -165,6 +166,48 @@ void distances_of_twins(Laboratory &lab)
         std::to_string(shortened / new_ones));
   check("and not as far as they are along the weights", of_rows / new_ones > 1.05,
         std::to_string(of_rows / new_ones));
+}
+
+/// Points that were measured once scatter more than those that were measured nine times.
+void unequal_repeats(Laboratory &lab)
+{
+  constexpr unsigned int often = 9, number = 300;
+  const auto measure = [&](const unsigned int k) {
+    std::vector<MeasuredPoint> points;
+    for (const std::string &experiment : both) {
+      const auto once = lab.simulator.measure(experiment, {}, 1, 0., 5000 + 10 * k);
+      auto nine = lab.simulator.measure(experiment, {}, often, 0., 5000 + 10 * k);
+      for (std::size_t c = 0; c < nine.size(); ++c) {
+        const bool is_seldom = nine[c].point.observable == nine.front().point.observable;
+        points.push_back(nine[c]);
+        points.back().value = is_seldom ? once[c].value : nine[c].value;
+        points.back().repeats = is_seldom ? 1 : often;
+      }
+    }
+    std::vector<std::string> notes;
+    return Target(sort_by_experiment(points, lab.samples, lab.simulator, notes), lab.samples,
+                  lab.space, 0.);
+  };
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(measure(0).data().size());
+  for (unsigned int k = 0; k < number; ++k) {
+    const Target target = measure(k);
+    const Target::Prediction nothing = target.predict({});
+    // Coordinates turn with the measured deviations, so they are compared by their order.
+    Eigen::ArrayXd squares =
+        (target.data() - nothing.mean).array().square() / target.variance(nothing).array() / number;
+    const Eigen::ArrayXd variance = target.variance(nothing).array();
+    std::vector<Eigen::Index> order(static_cast<std::size_t>(sum.size()));
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(), [&](const Eigen::Index a, const Eigen::Index b) {
+      return variance(a) < variance(b);
+    });
+    for (Eigen::Index c = 0; c < sum.size(); ++c)
+      sum(c) += squares(order[static_cast<std::size_t>(c)]);
+  }
+  check("the least certain points are as uncertain as they are said to be",
+        sum.tail(2).mean() > 0.6 && sum.tail(2).mean() < 1.5, std::to_string(sum.tail(2).mean()));
+  check("and the most certain ones", sum.head(4).mean() > 0.6 && sum.head(4).mean() < 1.5,
+        std::to_string(sum.head(4).mean()));
 }
 
 /// A model that another one predicts the data better than is refuted far more often than by its own
@@ -467,6 +510,7 @@ EUNOE_MPI_TEST()
   tolerances(lab);
   levels(lab);
   distances_of_twins(lab);
+  unequal_repeats(lab);
   contests(lab);
   false_trail();
   calibrations(lab);

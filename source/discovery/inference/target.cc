@@ -54,6 +54,15 @@ MeasuredExperiment chosen(const MeasuredExperiment &all, const std::vector<Eigen
   return result;
 }
 
+/// From the scatter of one run to that of the data, in whitened modes: points that were repeated
+/// less often scatter more.
+/// @param of_points standard deviation of the data of each point over that of one run
+Eigen::MatrixXd averaging_of(const ExperimentEmulator &emulator, const Eigen::VectorXd &of_points)
+{
+  return emulator.whiten_scaled(of_points.asDiagonal() *
+                                (emulator.modes().basis().transpose() * emulator.unwhitening()));
+}
+
 } // namespace
 
 std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoint> &points,
@@ -126,9 +135,15 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
     };
     const Eigen::VectorXd tolerance =
         model_tolerance * emulator.base_mean().cwiseQuotient(unit).cwiseAbs();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(
-        covariance(mean_excess.cwiseQuotient(one.repeats) + tolerance.cwiseAbs2()));
+    const Eigen::VectorXd of_means = one.repeats.cwiseInverse();
+    Eigen::MatrixXd averaging = averaging_of(emulator, of_means.cwiseSqrt());
+    Eigen::MatrixXd correlated =
+        covariance(mean_excess.cwiseProduct(of_means) + tolerance.cwiseAbs2());
+    if (of_means.minCoeff() < of_means.maxCoeff())
+      correlated += averaging * averaging.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlated);
     const Eigen::MatrixXd rotation = eigen.eigenvectors().transpose();
+    Eigen::VectorXd mean_scatter = (rotation * averaging).rowwise().squaredNorm();
     const auto variance = [&](const Eigen::VectorXd &of_points) -> Eigen::VectorXd {
       return (rotation * covariance(of_points) * rotation.transpose()).diagonal().cwiseMax(0.);
     };
@@ -141,12 +156,14 @@ Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
     Part part{std::move(one),
               std::move(emulator),
               std::move(noise),
+              std::move(averaging),
               rotation,
               tolerance,
               tolerated,
               std::move(instrument),
               mean_instrument,
               mean_excess.array() + 1.,
+              std::move(mean_scatter),
               1.,
               1.,
               n};
@@ -207,8 +224,9 @@ Eigen::MatrixXd Target::variances(const Prediction &prediction,
     const Part &part = parts[e];
     const Eigen::Index size = part.emulator.size();
     const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
-    const Eigen::VectorXd of_runs = prediction.scatter.segment(part.first, size) / part.repeats +
-                                    prediction.leverage.segment(part.first, size) + part.tolerated;
+    const Eigen::VectorXd of_runs =
+        prediction.scatter.segment(part.first, size).cwiseProduct(part.mean_scatter) +
+        prediction.leverage.segment(part.first, size) + part.tolerated;
     result.middleRows(part.first, size) = (left * (part.*instrument)).colwise() + of_runs;
   }
   return result;

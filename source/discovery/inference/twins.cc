@@ -41,9 +41,10 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
     Eigen::VectorXd scatter = Eigen::VectorXd::Zero(n);
     for (int r = 0; r < repeats; ++r)
       scatter += row().transpose();
-    result.segment(part.first, n) +=
-        truth.scatter.segment(part.first, n).cwiseSqrt().cwiseProduct(part.rotation * scatter) /
-        std::sqrt(part.repeats * repeats);
+    result.segment(part.first, n) += truth.scatter.segment(part.first, n)
+                                         .cwiseSqrt()
+                                         .cwiseProduct(part.rotation * (part.averaging * scatter)) /
+                                     std::sqrt(repeats);
     result.segment(part.first, n) += truth.leverage.segment(part.first, n)
                                          .cwiseSqrt()
                                          .cwiseProduct(part.rotation * row().transpose());

@@ -77,12 +77,14 @@ public:
     MeasuredExperiment measured;
     ExperimentEmulator emulator;
     InstrumentNoise noise;
+    Eigen::MatrixXd averaging;       ///< of whitened modes, by the repeats of the points
     Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
     Eigen::VectorXd tolerance;       ///< error of the model at each point, in base deviations
     Eigen::VectorXd tolerated;       ///< variance of the coordinates by it
     Eigen::MatrixXd instrument;      ///< that of the means by it: coordinates x noise levels
     Eigen::MatrixXd mean_instrument; ///< its mean over the levels, one column
     Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
+    Eigen::VectorXd mean_scatter;    ///< variance of the coordinates of the data over a run's
     double repeats = 1., ratio = 1.; ///< means over the data points
     Eigen::Index first = 0;          ///< coordinate
 
