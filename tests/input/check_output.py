@@ -57,6 +57,7 @@ FEW = ["insertion info/insertion frequency = 1000",
 OUTSIDE = "the solid lies outside the mesh during the whole run"
 
 MODEL = "model parameters/"
+SLEEP = MODEL + "adaptive sparse contacts/"
 CONDITION = "DEM boundary conditions/"
 
 # Name: settings, and the warnings that they must give once each.
@@ -113,10 +114,16 @@ DOUBTFUL = {
     "pictures without end": (["simulation control/output frequency = 1",
                               "simulation control/iteration end = 2000000"],
                              ["pictures would be written."]),
+    "sleep in the air": ([SLEEP + "enable adaptive sparse contacts = true", SLEEP + "rest time = 1e-4"],
+                         ["is so short that a particle falls asleep in the air at the top of its path"]),
+    "sleep on the ground": ([SLEEP + "enable adaptive sparse contacts = true"], []),
+    "a run without end": (["simulation control/end control = time", "simulation control/time end = 1e308",
+                           "simulation control/output frequency = 0"],
+                          ["the run would take 9.22337e+18 steps. Shorten it"]),
     "two at once": ([ENTRY + " = 2e-3", *SOLID, BOX + "1, 1, 1 : 1.01, 1.01, 1.01"],
                     ["exceeds 25 % of the Rayleigh time", OUTSIDE]),
 }
-LONG = {"a solid that comes in", "events upon each other", "pictures without end", "too few events"}
+LONG = {"a run without end", "a solid that comes in", "events upon each other", "pictures without end", "too few events"}
 
 STOP = "model parameters/excessive overlap = stop"
 AUTO = ENTRY + " = auto"

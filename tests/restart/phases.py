@@ -138,6 +138,16 @@ def same_folder(program: Program) -> None:
         raise Failure("the checkpoint from which the phase began is not kept")
 
 
+def old_results(program: Program) -> None:
+    """What another run has measured does not stay beside what a run that measures nothing has done."""
+    old = program.folder / "nothing_measured" / "measurements.csv"
+    old.parent.mkdir()
+    old.write_text("what another run has measured", encoding="utf-8")
+    program.run("case.prm", END + "10", OUTPUT + "nothing_measured", "post-processing/energies/calculation = false")
+    if old.exists():
+        raise Failure("the measurements of another run are left")
+
+
 def own_path(program: Program) -> None:
     """Checkpoints that have a path of their own serve runs with different output folders."""
     marks = ("restart/filename = marks/dem", "restart/checkpoint = true", "restart/frequency = 6000")
@@ -159,6 +169,14 @@ def found_nearby(program: Program) -> None:
     shutil.copy(program.folder / "case.prm", place)
     alone = Program.__new__(Program)
     alone.path, alone.folder = program.path, place
+    # From the folder in which the program is started, too.
+    (place / "here").mkdir()
+    shutil.copy(program.folder / "case.prm", place / "here")
+    alone.folder = place / "here"
+    expect(alone.run("case.prm", *LOAD[1:], END + "6100", CONTINUE, OUTPUT + "."),
+           "load/restart_000000006000.checkpoint")
+    shutil.rmtree(place / "here")
+    alone.folder = place
     said = alone.run("case.prm", *LOAD[1:], END + "6100", CONTINUE, OUTPUT + "more")
     expect(said, "load/restart_000000006000.checkpoint")
     shutil.copytree(place / "load", place / "load2")
@@ -241,7 +259,7 @@ def main() -> int:
     program = Program(sys.argv[1], Path(sys.argv[2]))
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
-    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, own_path, found_nearby, leaving,
+    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving,
                     refused):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
