@@ -3,6 +3,7 @@
 #include <eunoe/core/random.h>
 #include <eunoe/domain/mesh.h>
 #include <eunoe/simulation/insertion.h>
+#include <eunoe/solids/box_tree.h>
 
 #include <algorithm>
 #include <array>
@@ -145,19 +146,18 @@ private:
     return all;
   }
 
-  /// Whether a particle or one of its images is closer to the plane than @p reach (m).
-  bool is_near_plane(const Vec3 &x, const PeriodicBox &box, double reach) const
+  /// A place and its images in the neighbouring periods.
+  static std::vector<Vec3> images(const Vec3 &x, const PeriodicBox &box)
   {
-    const Vec3 normal = plane.normal / norm(plane.normal);
-    const Vec3 away = x - plane.point;
-    for (const double i : {-1., 0., 1.})
-      for (const double j : {-1., 0., 1.})
-        for (const double k : {-1., 0., 1.}) {
-          const Vec3 shift = {i * box.length.x, j * box.length.y, k * box.length.z};
-          if (std::abs(dot(away + shift, normal)) <= reach)
-            return true;
-        }
-    return false;
+    std::vector<Vec3> all = {x};
+    for (unsigned int d = 0; d < 3; ++d)
+      if (box.length[d] > 0.)
+        for (std::size_t n = all.size(), k = 0; k < n; ++k)
+          for (const double side : {-1., 1.}) {
+            all.push_back(all[k]);
+            all.back()[d] += side * box.length[d];
+          }
+    return all;
   }
 
   /// Whether a sphere stands in a cell, or touches the largest particle in its place.
@@ -175,17 +175,24 @@ private:
   {
     const ParticleArrays &p = surroundings.particles;
     const PeriodicBox &box = surroundings.domain.periods();
-    double reach = 0.;
-    for (const Cell &cell : cells)
-      reach = std::max(reach, 2. * norm(cell.half) + largest_diameter());
+    std::vector<std::pair<Box, std::int32_t>> boxes;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      boxes.push_back({{cells[c].centre - cells[c].half, cells[c].centre + cells[c].half},
+                       static_cast<std::int32_t>(c)});
+    const BoxTree tree(boxes);
     std::vector<int> taken(cells.size(), 0);
     for (std::size_t row = 0; row < p.n_owned; ++row) {
-      const Vec3 x = box.wrap(p.position[row].vec());
-      if (surroundings.leaving[row] || !is_near_plane(x, box, reach))
+      if (surroundings.leaving[row])
         continue;
-      for (std::size_t c = 0; c < cells.size(); ++c)
-        if (takes(x, p.radius(row), cells[c], box))
-          taken[c] = 1;
+      const Vec3 x = box.wrap(p.position[row].vec());
+      const double radius = p.radius(row), reach = radius + 0.5 * largest_diameter();
+      for (const Vec3 &image : images(x, box))
+        tree.for_each_meeting(
+            {image - Vec3{reach, reach, reach}, image + Vec3{reach, reach, reach}},
+            [&](const std::int32_t c) {
+              if (takes(x, radius, cells[static_cast<std::size_t>(c)], box))
+                taken[static_cast<std::size_t>(c)] = 1;
+            });
     }
     dealii::Utilities::MPI::max(taken, comm, taken);
     for (std::size_t c = 0; c < cells.size(); ++c)
