@@ -22,7 +22,7 @@ from eunoe.powder import powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import SeededVariant, arguments, compute, publish, spread, summary_of
+from .series import SeededVariant, arguments, compute, mean_and_spread, plus_minus, publish, summary_of
 
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 OBSERVABLES = {"base_angle": ("base angle (degrees)", 1.), "mass_on_disc": ("mass on the disc (mg)", 1e6)}
@@ -60,8 +60,8 @@ def table_of(found: dict[str, list[dict]]) -> Table:
         for observable, (_, unit) in OBSERVABLES.items():
             values, others = ([unit * run[observable] for run in some] for some in (runs, found[REFERENCE]))
             change = difference_of(values, others)
-            cells += [f"{statistics.mean(values):.4g} ± {spread(values):.2g}",
-                      "" if name == REFERENCE else f"{change.value:+.2g} ± {change.half:.2g}"]
+            cells += [mean_and_spread(values),
+                      "" if name == REFERENCE else plus_minus(change.value, change.half, "+.2g")]
         table.append([*cells, f"{statistics.mean(run['seconds'] for run in runs):.1f}"])
     return table
 

@@ -25,7 +25,7 @@ from eunoe.powder import Powder, powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import SeededVariant, arguments, compute, layers_of, publish, spread, spreading_command
+from .series import SeededVariant, arguments, compute, layers_of, mean_and_spread, plus_minus, publish, spreading_command
 
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
@@ -76,10 +76,9 @@ def table_of(found: dict[str, list[dict]]) -> Table:
         cells = [VARIANTS[name].title, str(len(runs))]
         for value in (lambda run: statistics.mean(run["LRD"]), lambda run: run["CRD"][-1]):
             values, others = [value(run) for run in runs], [value(run) for run in reference]
-            cells.append(f"{statistics.mean(values):.4f} ± {spread(values):.4f}")
+            cells.append(mean_and_spread(values, ".4f", ".4f"))
             change = difference_of(values, others)
-            cells.append("" if name == REFERENCE else
-                         f"{change.value:+.4f} ± {change.half:.4f}")
+            cells.append("" if name == REFERENCE else plus_minus(change.value, change.half, "+.4f", ".4f"))
         rows.append([*cells, f"{statistics.mean(run['seconds'] for run in runs):.0f}"])
     return rows
 

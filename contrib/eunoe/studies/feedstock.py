@@ -26,7 +26,7 @@ from eunoe.launch import Failure, overrides
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import arguments, compute, in_errors, publish, spread, summary_of
+from .series import arguments, compute, in_errors, mean_and_spread, publish, summary_of
 
 CASE = CASES / "discovery" / "micro_spreading.prm"
 SPREADING = "powder spreading/"
@@ -123,7 +123,7 @@ def densities(table: Path, summary: dict) -> dict[str, float] | None:
 
 def cell(values: list[float], reference: list[float]) -> str:
     """Mean, standard deviation, and the mean's difference from the reference in standard errors."""
-    text = f"{statistics.mean(values):.3g}" + (f" ± {spread(values):.2g}" if len(values) > 1 else "")
+    text = mean_and_spread(values, ".3g")
     errors = in_errors(values, reference) if reference else float("nan")
     return text if errors != errors else f"{text} ({errors:+.1f})"
 

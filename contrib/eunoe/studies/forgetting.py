@@ -24,7 +24,7 @@ from eunoe.launch import overrides
 from eunoe.repository import CASES
 from eunoe.tables import as_markdown, read_rows, write_csv
 
-from .series import arguments, compute, in_errors, spread, summary_of
+from .series import arguments, compute, in_errors, mean_and_spread, spread, summary_of
 
 # Start of the interval in which the pile is watched (s), and its mean diameter (m).
 WATCHED_FROM, MEAN_DIAMETER = 0.8, 1e-3
@@ -126,7 +126,7 @@ def cells_of(series: Series, key: str, interval: int) -> list[str]:
     for name, _, factor, form in EXPERIMENTS[key].observables:
         values = [run[name] for run in series[key, interval]]
         base = [run[name] for run in series.get((key, 0), [])]
-        text = f"{factor * statistics.mean(values):{form}} ± {factor * spread(values):{form}}"
+        text = mean_and_spread([factor * value for value in values], form, form)
         differs = interval and base and abs(in_errors(values, base)) > 3.
         cells.append(f"**{text}**" if differs else text)
     return cells

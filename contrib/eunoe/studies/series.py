@@ -121,6 +121,15 @@ def spread(values: Sequence[float]) -> float:
     return statistics.stdev(values) if len(values) > 1 else math.nan
 
 
+def plus_minus(value: float, error: float, form: str = ".4g", of_error: str = ".2g") -> str:
+    """A number and its error, which a single run does not tell."""
+    return f"{value:{form}}" + ("" if math.isnan(error) else f" ± {error:{of_error}}")
+
+
+def mean_and_spread(values: Sequence[float], form: str = ".4g", of_spread: str = ".2g") -> str:
+    return plus_minus(statistics.mean(values), spread(values), form, of_spread)
+
+
 def in_errors(values: Sequence[float], reference: Sequence[float]) -> float:
     """Difference of the means over its standard error; NaN if the error is unknown or zero."""
     error = math.hypot(*(spread(v) / math.sqrt(len(v)) for v in (values, reference)))

@@ -22,7 +22,7 @@ from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import arguments, compute, in_errors, layers_of, publish, spread, spreading_command
+from .series import arguments, compute, in_errors, layers_of, mean_and_spread, publish, spreading_command
 
 SLEEP = "model parameters/adaptive sparse contacts"
 
@@ -46,8 +46,9 @@ class Run:
 
 def cells_of(awake: list[float], asleep: list[float]) -> list[str]:
     """Both means with their scatter, and the difference of the means in standard errors."""
-    return [*(f"{statistics.mean(values):.4f} ± {spread(values):.4f}" for values in (awake, asleep)),
-            f"{in_errors(asleep, awake):+.1f}"]
+    errors = in_errors(asleep, awake)
+    return [*(mean_and_spread(values, ".4f", ".4f") for values in (awake, asleep)),
+            "" if math.isnan(errors) else f"{errors:+.1f}"]
 
 
 def of_layer(runs: dict[bool, list[dict]], key: str, layer: int) -> list[list[float]]:

@@ -32,7 +32,7 @@ from eunoe.launch import Failure, logged, overrides
 from eunoe.repository import CASES, ROOT
 from eunoe.tables import Table, read_rows, write_csv
 
-from .series import arguments, publish, spread, summary_of
+from .series import arguments, mean_and_spread, plus_minus, publish, summary_of
 
 Settings = dict[str, object]
 Rows = list[dict[str, float]]
@@ -201,14 +201,14 @@ def table_of(found: dict[tuple[str, str], list[dict[str, float]]], proofs: list[
         awake = found.get((proof, "awake"), [])
         for k, quantity in enumerate(awake[0] if awake else ()):
             reference = [run[quantity] for run in awake]
-            cells = [f"{statistics.mean(reference):.4g} ± {spread(reference):.2g}"]
+            cells = [mean_and_spread(reference)]
             for name in variants:
                 values = [run[quantity] for run in found.get((proof, name), [])]
                 if not values:
                     cells += ["", ""]
                     continue
                 gap = difference_of(values, reference)
-                cells += [f"{statistics.mean(values):.4g} ± {spread(values):.2g}", f"{gap.value:+.2g} ± {gap.half:.2g}"]
+                cells += [mean_and_spread(values), plus_minus(gap.value, gap.half, "+.2g")]
             table.append([f"{proof} ({len(awake)} seeds)" if k == 0 else "", quantity, *cells])
     return table
 
