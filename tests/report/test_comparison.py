@@ -10,6 +10,7 @@ import tempfile
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
     print("skipped: numpy, matplotlib or VTK is missing")
@@ -26,10 +27,11 @@ from eunoe.report.comparison_report import default_labels
 from eunoe.report.comparison_text import densities_table, differences_table, measured_group, rise_sentence
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
-from eunoe.report.movie import Frame, moved_since
+from eunoe.report.movie import Frame, moved_since, pass_of
 from eunoe.report.run_folder import Layers
 from eunoe.report.spread_run import Group, SpreadRun, peak_of
 from eunoe.report.static_zones import zones_of
+from eunoe.vtk_files import Snapshot
 
 APPARATUS = replace(sample_bed.APPARATUS, n_layers=9)
 
@@ -139,6 +141,20 @@ class Numbers(unittest.TestCase):
         self.assertEqual((found.value, round(found.half, 3)), (3., 2.484))
         self.assertFalse(difference_of([1., 3.], [1., 2.]).is_significant)
         self.assertFalse(difference_of([1.], [2., 3.]).is_significant)
+        # Equal values do not tell how they scatter.
+        self.assertTrue(np.isnan(mean_of([3., 3.]).half))
+        self.assertFalse(difference_of([1., 1.], [2., 2.]).is_significant)
+
+    def test_the_pass_that_is_shown(self) -> None:
+        """The last one of which all was filmed; else that of which most was."""
+        def shown(*times: float) -> int:
+            entries = [Snapshot(time, Path("unused")) for time in times]
+            run = SimpleNamespace(pictures=lambda ending="": entries, folder=Path("unused"))
+            numbers = {key: np.arange(4.) for key in Layers.__dataclass_fields__}
+            layers = Layers(**numbers)
+            return pass_of(run, layers, None).layer
+        self.assertEqual(shown(0.05, 0.5, 1., 1.05, 1.5, 2., 2.1, 2.2, 2.3), 2)
+        self.assertEqual(shown(0.5, 0.7, 1., 1.05, 1.1, 1.15), 1)
 
     def test_peak(self) -> None:
         # A single high layer is no peak of three.
@@ -179,7 +195,8 @@ class Movie(unittest.TestCase):
         here = last + [[0., fall, 0.], [3e-5, fall + 4e-5, 0.], [a.x_plate, 1e-4, 0.]]
         triangle = np.array([[a.x_plate, 0., 0.], [a.x_plate_end, 0., 0.], [a.x_plate, 0., a.depth]])
         solids = np.array([triangle + [0., plate, 0.], triangle + [0., a.clearance, 0.]])
-        return Frame(0.2, {"points": here, "last_position": last, "layer": np.array([0., 1., -1.])}, solids)
+        return Frame(0.2, {"points": here, "last_position": last, "layer": np.array([0., 1., -1.]),
+                           "on_plate": np.array([1., 1., 0.])}, solids)
 
     def test_displacement_is_over_the_plate(self) -> None:
         for plate in (-1e-4, -1.4e-4, -2e-4):

@@ -20,7 +20,7 @@ EQUAL = 0.02
 def _said(found: Interval, size: float = 100., unit: str = " %") -> str:
     if math.isnan(found.value):
         return ""
-    return text_of(found, size) + unit + ("" if not math.isnan(found.half) else " (one run)")
+    return text_of(found, size) + unit + ("" if not math.isnan(found.half) else " (no interval)")
 
 
 def agreement(found: Interval) -> str:
