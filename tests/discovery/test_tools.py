@@ -47,6 +47,8 @@ class PageOfAStudy(InFolder):
             with contextlib.redirect_stdout(io.StringIO()):
                 self.assertEqual(of_study.main([str(folder)]), 0)
             page = (folder / "discovery.html").read_text(encoding="utf-8")
+            for text in ("friction of walls", "0.0213", "+0.71"):
+                self.assertIn(text, page)
             self.assertIn(f"<h1>{title}</h1>", page)
             self.assertIn("a &lt;particle&gt; went wrong", page)
             self.assertIn("before: 0", page)

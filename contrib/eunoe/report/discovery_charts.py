@@ -188,9 +188,6 @@ def gap_figure(study: Study) -> Figure:
             if key not in table:
                 continue
             axes.barh(len(labels), table[key], color=colour, height=0.66)
-            interval = table.get(f"{key} interval")
-            if interval:
-                axes.plot(interval, [len(labels)] * 2, color=style.INK, linewidth=1.2)
             labels.append(f"{'data of the fit' if name == 'fit' else 'held-out data'}, {when}")
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()

@@ -114,6 +114,12 @@ def discovery_report(study: Study) -> Page:
                 "Measured values (points, with two standard errors) and the runs of the models (bands of "
                 "two standard deviations of a single run). Flagged cells stand out at the study's level "
                 "by themselves, all cells taken into account.")
+    if study.content.get("nuisances"):
+        page.paragraph("Uncertain numbers of the base model have the values with which the model of the answer, or the base "
+                       "model without one, describes the data best:")
+        page.table(["Nuisance", "amplitude", "standard deviations from its null value"],
+                   [[row["nuisance"], f"{row['value']:.3g}", f"{row['prior deviations']:+.2f}"]
+                    for row in study.content["nuisances"]])
     if "gap after" in study.content["gaps"].get("fit", {}):
         page.heading("How much is gained")
         page.figure(gap_figure(study),
