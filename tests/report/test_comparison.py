@@ -24,7 +24,8 @@ from eunoe.intervals import difference_of, mean_of
 from eunoe.report import of_run
 from eunoe.report.bed_maps import maps_of, read_table, write_table
 from eunoe.report.comparison_report import default_labels
-from eunoe.report.comparison_text import densities_table, differences_table, measured_group, rise_sentence
+from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, middle_sentence,
+                                          rise_sentence, supply_table)
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
@@ -184,6 +185,27 @@ class Numbers(unittest.TestCase):
         table = differences_table(groups)
         self.assertEqual([table[1][2], table[2][2]], ["**+10.0 ± 0.6**", "+0.1 ± 2.8"])
         self.assertEqual(densities_table(groups)[1][:3], ["a", "2", "50.1 ± 1.3"])
+
+
+class Supply(unittest.TestCase):
+    def test_where_the_powder_goes(self) -> None:
+        def of(shift: float) -> SpreadRun:
+            one = run_with([0.5] * 12)
+            number = one.layers.layer
+            return replace(one, layers=replace(one.layers, mass=1e-6 * number**2, to_gap=1e-6 * (number + shift),
+                                               to_collector=np.full(12, 3e-6)))
+        table = supply_table([Group("a", [of(0.), of(1.)])])
+        # Layer 20 has not been spread.
+        self.assertEqual(table[1:], [["a", "1", "1.00", "1.50", "3.00"], ["a", "10", "19.00", "10.50", "3.00"]])
+
+    def test_the_middle_half(self) -> None:
+        layers = np.arange(19)
+        lrd = np.where(layers < 11, 0.58, 0.62) + 0.01 * (-1.)**layers
+        maps_of_run = SimpleNamespace(layers=layers, middle_lrd=lambda: lrd)
+        said = middle_sentence(replace(run_with(list(lrd[1:])), maps=maps_of_run))
+        self.assertIn("58.1 ± 0.8 % in layers 2 to 10 and 62.0 ± 0.9 % in layers 11 to 18", said)
+        self.assertIn("+3.9 ± 1.1 %, which is significant.", said)
+        self.assertEqual(middle_sentence(run_with(list(lrd[1:]))), "")
 
 
 class Movie(unittest.TestCase):

@@ -31,6 +31,8 @@ def measured_group(measured: Measured, label: str = "measured, full size") -> Gr
 
 
 Number = Callable[[SpreadRun], float]
+BEFORE_THE_FALL = (11, 18)  # the measured density rises in these layers and falls after them
+SUPPLIED = (1, 10, 20)
 
 
 def span(layers: tuple[int, int]) -> str:
@@ -94,6 +96,33 @@ def rise_sentence(group: Group) -> str:
                 "significant.")
     verb = "rises" if found.value > 0. else "falls"
     return f"{group.label}: {spans} the mean LRD {verb} by {abs(100. * found.value):.1f} {half}."
+
+
+def middle_sentence(run: SpreadRun) -> str:
+    """Whether the middle half of the plate becomes denser before the measured fall, by one run: its layers are
+    taken as independent. Empty without maps."""
+    before, after = PLATEAU, BEFORE_THE_FALL
+    if run.maps is None or not np.isin([before[0], after[1]], run.maps.layers).all():
+        return ""
+    early, late = ([float(lrd) for layer, lrd in zip(run.maps.layers, run.maps.middle_lrd()) if span[0] <= layer <= span[1]]
+                   for span in (before, after))
+    change = difference_of(late, early)
+    return (f"{run.name}: in the middle half the mean LRD is {text_of(mean_of(early), 100.)} % in layers {before[0]} to "
+            f"{before[1]} and {text_of(mean_of(late), 100.)} % in layers {after[0]} to {after[1]}, if layers are independent: "
+            f"{text_of(change, 100., '+')} %, which is {'' if change.is_significant else 'not '}significant.")
+
+
+def supply_table(groups: Sequence[Group]) -> Table:
+    """Where the powder of some passes went; means over the runs."""
+    table: Table = [["", "layer", "stays on the plate (mg)", "falls into the gaps (mg)", "reaches the collector (mg)"]]
+    for group in groups:
+        for layer in SUPPLIED:
+            rows = [(run.layers, int(np.flatnonzero(run.layers.layer == layer)[0])) for run in group.runs
+                    if layer in run.layers.layer]
+            if rows:
+                ways = [(np.diff(layers.mass, prepend=0.)[k], layers.to_gap[k], layers.to_collector[k]) for layers, k in rows]
+                table.append([group.label, str(layer), *(f"{1e6 * mass:.2f}" for mass in np.mean(ways, axis=0))])
+    return table
 
 
 def layers_of(values: Sequence[int | None]) -> str:

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from eunoe.launch import Failure
-from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rest_table,
-                                          rise_sentence)
+from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, middle_sentence, rest_table,
+                                          rise_sentence, supply_table)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import Group
 from eunoe.tables import Table, as_markdown
@@ -106,7 +106,16 @@ def held_block(findings: Findings) -> str:
 
 
 def soft_block(findings: Findings) -> str:
-    return _all_about(findings.of_variant(SOFT))
+    groups = findings.of_variant(SOFT)
+    sentences = [middle_sentence(run) for group in groups for run in group.runs]
+    return "\n\n".join(filter(None, [_all_about(groups), *sentences]))
+
+
+def supply_block(findings: Findings) -> str:
+    """Of plates whose ends nothing holds, and of those with lips."""
+    variants = [group for variant in (SOFT, HELD) for group in findings.of_variant(variant)]
+    groups = [*findings.plain(), *(Group(f"{group.label}, {group.runs[0].case.title}", group.runs) for group in variants)]
+    return _block(supply_table(groups), _results(groups))
 
 
 def variants_block(findings: Findings) -> str:
@@ -157,7 +166,7 @@ PICTURES = {
                  "variants_3": "LRD and CRD of variants with lips"},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "rest": rest_block, "soft": soft_block, "held": held_block,
+          "sets": sets_block, "rest": rest_block, "soft": soft_block, "supply": supply_block, "held": held_block,
           "variants": variants_block, "needed": needed_block}
 
 
