@@ -1,6 +1,6 @@
 """The table of cases: what is run, in which order, with which settings.
 
-All cases have the paper's proportions, gaps, lips, spreader, strokes and powder, from
+All cases have the paper's proportions, gaps, rims, spreader, strokes and powder, from
 prm/spreading/PS*_L1.prm. What they change to be affordable is in `CHEAP`; doc/reproduction.md gives the
 reasons. A variant changes one thing more.
 """
@@ -26,6 +26,7 @@ SETS = ("PS1", "PS2", "PS3")
 N_LAYERS = 21
 
 CHEAP = {SLEEP: "true", f"{SPREADING}/feedstock platform velocity": "11e-3"}
+SOFTER = 10.  # what Young's modulus is divided by, unless a variant has the paper's
 
 
 @dataclass(frozen=True)
@@ -34,33 +35,33 @@ class Variant:
     @param settings entries of the input and their values
     @param base the variant that it is compared with and whose settings it shares; empty: none
     @param forgets whether contacts forget as often as the published input files balance loads
-    @param softer what Young's modulus is divided by; the pull-off force stays, and the time step keeps its
-        share of the Rayleigh time, which goes with the inverse root of the modulus
+    @param stiff whether Young's modulus is the paper's. Where it is divided by `SOFTER`, the pull-off force
+        stays, and the time step keeps its share of the Rayleigh time, which goes with the inverse root of the modulus
     @param closely whether maps and pictures of its runs are kept, as of those without a variant"""
 
     title: str
     settings: dict[str, Any] = field(default_factory=dict)
     base: str = ""
     forgets: bool = False
-    softer: float = 1.
+    stiff: bool = False
     closely: bool = False
 
 
+NO_RIMS = {f"{SPREADING}/rim width": "0"}
 VARIANTS = {
-    "": Variant("as the paper, at the cheap settings", closely=True),
+    "": Variant("as the published input files, at the cheap settings", closely=True),
+    "stiff": Variant("the paper's Young's modulus", stiff=True),
     "forget": Variant("contacts forget every 10.5 ms", forgets=True),
     "unopened": Variant("velocity Verlet without its opening half step",
                         {f"{MODEL}/integration method": "symplectic_euler"}),
     "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
-    "lips": Variant("lips and gap of the small cases",
-                    {f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}, closely=True),
-    "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=True),
-    "lips_unopened": Variant("velocity Verlet without its opening half step",
-                             {f"{MODEL}/integration method": "symplectic_euler"}, base="lips"),
-    "soft": Variant("a tenth of Young's modulus", softer=10., closely=True),
-    "lips_soft": Variant("a tenth of Young's modulus", base="lips", softer=10.),
     "awake": Variant("without sleep", {SLEEP: "false"}),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
+    "open": Variant("without rims", NO_RIMS, closely=True),
+    "open_stiff": Variant("the paper's Young's modulus", base="open", stiff=True, closely=True),
+    "lips": Variant("lips and gap of the small cases",
+                    {**NO_RIMS, f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
+    "lips_stiff": Variant("the paper's Young's modulus", base="lips", stiff=True, closely=True),
 }
 
 
@@ -124,11 +125,11 @@ class Case:
     def settings(self) -> dict[str, Any]:
         """Entries that differ from the input file's."""
         variant = VARIANTS[self.variant]
-        powder = PAPER.softened(1. / variant.softer, self.percent)
+        powder = PAPER.softened(1. if variant.stiff else 1. / SOFTER, self.percent)
         step = powder[TIME_STEP]
         found = {f"{SPREADING}/length factor": f"{self.length * L1:.10f}",
                  f"{SPREADING}/depth": f"{self.depth:g}e-3", TIME_STEP: step, **CHEAP}
-        if variant.softer != 1.:
+        if not variant.stiff:
             # In a longer step grains move farther, so that searches would come three times as often.
             found.update({**powder, NEIGHBORHOOD: "1.3"})
         if variant.forgets:
@@ -145,27 +146,26 @@ def _in_turn(*series: list[Case]) -> list[Case]:
     return [cases[k] for k in range(max(map(len, series))) for cases in series if k < len(cases)]
 
 
-# In the order in which they are run. On the shortest plate the free ends soon take up all of the bed; where lips
-# hold them, the same plate shows what passes do to a bed, at little cost.
+# In the order in which they are run: the longest plate that a night affords first, then its like, then what the
+# shortcuts do on shorter plates.
 CASES = (
-    *_in_turn(_series("PS1", 0.25, 1), _series("PS3", 0.25, 1)),
-    *_series("PS1", 0.5, 1),
-    *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS3", 0.25, 3, variant="lips")),
-    *_series("PS1", 1., 1, variant="soft"),
-    *_in_turn(_series("PS1", 0.25, 3, variant="lips_soft"), _series("PS1", 0.5, 2, variant="soft")),
     *_series("PS1", 1., 1),
-    *_series("PS1", 0.25, 3, variant="lips_forget"),
-    *_series("PS3", 0.5, 1),
-    *_in_turn(_series("PS1", 0.25, 3), _series("PS3", 0.25, 3))[2:],
-    *_in_turn(_series("PS1", 0.5, 2), _series("PS3", 0.5, 2))[2:],
+    *_in_turn(_series("PS1", 0.5, 2), _series("PS3", 0.5, 2)),
+    *_in_turn(_series("PS1", 0.25, 3), _series("PS3", 0.25, 3)),
+    *_series("PS3", 1., 1),
+    *_series("PS1", 1., 3)[1:],
     *_series("PS2", 0.5, 1),
-    *_series("PS1", 0.25, 3, variant="lips_unopened"),
     *_in_turn(_series("PS1", 0.25, 3, variant="forget"), _series("PS1", 0.25, 3, variant="unopened")),
+    *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="lips_stiff"),
+              _series("PS3", 0.25, 3, variant="lips_stiff")),
+    *_series("PS1", 1., 1, variant="open"),
+    *_in_turn(_series("PS1", 0.25, 2, variant="open_stiff"), _series("PS3", 0.25, 1, variant="open_stiff")),
+    *_series("PS1", 0.5, 1, variant="open_stiff"),
     *_in_turn(_series("PS1", 0.5, 2, depth=0.8), _series("PS1", 0.5, 2, depth=1.6)),
+    *_series("PS1", 0.25, 3, variant="stiff"),
     *_in_turn(_series("PS1", 0.25, 3, variant="slow_feed"), _series("PS1", 0.25, 3, variant="awake"),
               _series("PS1", 0.25, 3, percent=15.)),
     *_series("PS1", 0.25, 3, variant="full"),
-    *_series("PS3", 1., 1),
     *_series("PS1", 2., 1),
 )
 

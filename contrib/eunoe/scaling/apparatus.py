@@ -14,7 +14,7 @@ from .mesh import Mesh
 SLOPE = math.tan(math.radians(35.))
 # From prm/spreading: full lengths, strokes, spreader and powder (m).
 W1, W2, W3, W4 = 69e-3, 56e-3, 73e-3, 46.5e-3
-GAP, LIP, STROKE, FIRST_STROKE, MARGIN = 0.5e-3, 0.1e-3, 0.6e-3, 2.2e-3, 1e-3
+GAP, RIM, LIP, STROKE, FIRST_STROKE, MARGIN = 0.5e-3, 0.1e-3, 0.1e-3, 0.6e-3, 2.2e-3, 1e-3
 LAYER, CLEARANCE, RADIUS, N_LAYERS = 100e-6, 100e-6, 5e-3, 21
 LARGEST = 101.096e-6
 DIAMETERS = np.array([52.622, 57.7666, 63.4141, 69.6138, 76.4196, 83.8907, 92.0923, 101.096]) * 1e-6
@@ -26,9 +26,9 @@ def apparatus(length_factor: float, depth: float) -> dict[str, float]:
     """Positions of the parts (m), by their names in a run's apparatus.json."""
     a = {"x_transfer": length_factor * W1, "depth": depth}
     a["x_gap"] = a["x_transfer"] + length_factor * W2
-    a["x_plate"] = a["x_gap"] + GAP
+    a["x_plate"] = a["x_gap"] + GAP + RIM
     a["x_plate_end"] = a["x_plate"] + length_factor * W3
-    a["x_exit"] = a["x_plate_end"] + GAP
+    a["x_exit"] = a["x_plate_end"] + RIM + GAP
     a["x_end"] = a["x_exit"] + length_factor * W4
     a["bed_depth"] = STROKE + MARGIN
     a["first_bed_depth"] = FIRST_STROKE + MARGIN

@@ -32,9 +32,9 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   depth = p.depth;
   x_transfer = p.length_factor * p.w1;
   x_gap = x_transfer + p.length_factor * p.w2;
-  x_plate = x_gap + p.gap;
+  x_plate = x_gap + p.gap + p.rim;
   x_plate_end = x_plate + p.length_factor * p.w3;
-  x_exit = x_plate_end + p.gap;
+  x_exit = x_plate_end + p.rim + p.gap;
   x_end = x_exit + p.length_factor * p.w4;
 
   const bool round = p.spreader == "half round";
@@ -114,6 +114,13 @@ TriangleMesh Apparatus::spreader_surface() const
   return all;
 }
 
+TriangleMesh Apparatus::rim_piece(const double x, const double z, const double length) const
+{
+  const double foot = y_bottom - margin;
+  return extrude({{x, foot, 0.}, {x, 0., 0.}, {x + p.rim, 0., 0.}, {x + p.rim, foot, 0.}}, z,
+                 length);
+}
+
 Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const int material) const
 {
   const double z = -margin, length = depth + 2. * margin;
@@ -154,6 +161,11 @@ Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const 
   add("exit plate",
       extrude({{x_exit, -p.lip, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
       std::make_shared<AtRest>());
+  if (p.rim > 0.) {
+    TriangleMesh rims = rim_piece(x_plate - p.rim, z, length);
+    rims.append(rim_piece(x_plate_end, z, length));
+    add("rims", rims, std::make_shared<AtRest>());
+  }
   return handles;
 }
 

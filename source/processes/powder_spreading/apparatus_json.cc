@@ -17,6 +17,7 @@ std::string Apparatus::as_json(const double density) const
   json["y_top"] = y_top;
   json["depth"] = depth;
   json["lip"] = p.lip;
+  json["rim"] = p.rim;
   json["spreader"] = p.spreader;
   json["x_start"] = x_start;
   json["front"] = front;

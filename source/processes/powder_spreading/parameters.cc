@@ -23,6 +23,9 @@ void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
   not_negative(
       prm, "lip height", p.lip,
       "Height of the edges of the plates at the gap, below which powder falls freely (m).");
+  not_negative(prm, "rim width", p.rim,
+               "Width of the wall between the measuring plate and each gap, as deep as the plate "
+               "goes, which holds the bed at its ends (m); 0: none, the gap borders the plate.");
 }
 
 void declare_spreader(dealii::ParameterHandler &prm, SpreadingParameters &p)

@@ -21,6 +21,7 @@ const std::vector<std::string> entries_of_apparatus = {"feedstock platform lengt
                                                        "depth",
                                                        "gap",
                                                        "lip height",
+                                                       "rim width",
                                                        "layer thickness delta_l",
                                                        "layer thickness error",
                                                        "side walls"};

@@ -21,6 +21,8 @@ constexpr double bed_fraction = 0.55;
 ///
 ///     |  platform  | transfer plate | gap | measuring plate | gap | exit plate | collector
 ///     0            x_transfer       x_gap x_plate           ...                x_end
+///
+/// Where rims are, they stand between the measuring plate and its gaps.
 class Apparatus
 {
 public:
@@ -96,6 +98,8 @@ private:
   /// The level spreader from a place in z on.
   TriangleMesh spreader_piece(double z, double length) const;
   TriangleMesh spreader_surface() const;
+  /// The walls and the top of a rim whose wall on the left is at x.
+  TriangleMesh rim_piece(double x, double z, double length) const;
 
   const SpreadingParameters p;
   double margin; ///< by which surfaces reach out of the periodic slice

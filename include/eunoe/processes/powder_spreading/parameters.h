@@ -19,6 +19,7 @@ struct SpreadingParameters : public ProcessSection
   double depth = 0.002;
   double gap = 0.0005;
   double lip = 0.0001;
+  double rim = 0.;
 
   std::string spreader = "half round";
   double spreader_radius = 0.005;
