@@ -43,23 +43,27 @@ class Cases(unittest.TestCase):
         case = Case("PS1", 0.25, 1)
         self.assertTrue(case.is_plain)
         self.assertEqual(case.settings["powder spreading/length factor"], "0.0357142857")
-        self.assertEqual(case.settings["simulation control/time step"], "5.632e-07")
+        self.assertEqual(case.settings["simulation control/time step"], "1.78099e-06")
         forgets = Case("PS1", 0.25, 1, variant="forget")
-        self.assertEqual(forgets.settings["model parameters/contact history/forget interval"], 18643)
+        self.assertEqual(forgets.settings["model parameters/contact history/forget interval"], 5895)
         self.assertIn("forget", forgets.title)
         self.assertEqual((case.base, forgets.base), ("PS1_L0.25", "PS1_L0.25"))
-        held = Case("PS1", 0.25, 1, variant="lips_forget")
-        self.assertEqual((held.base, held.settings["powder spreading/gap"]), ("PS1_L0.25_lips", "0.1e-3"))
-        self.assertIn("model parameters/contact history/forget interval", held.settings)
+        lips = Case("PS1", 0.25, 1, variant="lips")
+        self.assertEqual((lips.base, lips.settings["powder spreading/gap"]), ("PS1_L0.25", "0.1e-3"))
+        self.assertEqual(lips.settings["powder spreading/rim width"], "0")
+        self.assertNotIn("powder spreading/rim width", case.settings)
 
-    def test_softer_grains_have_longer_steps(self) -> None:
-        soft, held = Case("PS1", 1., 1, variant="soft"), Case("PS1", 0.25, 1, variant="lips_soft")
-        wall = "lagrangian physical properties/young modulus wall"
-        for case, base in ((soft, "PS1_L1"), (held, "PS1_L0.25_lips")):
-            self.assertEqual((case.base, case.settings[wall]), (base, "2.625e+06"))
-            self.assertEqual(case.settings["simulation control/time step"], "1.78099e-06")
-        self.assertTrue(soft.is_seen_closely)
-        self.assertFalse(held.is_seen_closely)
+    def test_stiff_grains_have_shorter_steps(self) -> None:
+        soft, stiff = Case("PS1", 0.5, 1, variant="open"), Case("PS1", 0.5, 1, variant="open_stiff")
+        wall, step = "lagrangian physical properties/young modulus wall", "simulation control/time step"
+        self.assertEqual((soft.base, soft.settings[wall], soft.settings[step]), ("PS1_L0.5", "2.625e+06", "1.78099e-06"))
+        self.assertEqual((stiff.base, stiff.settings[step]), ("PS1_L0.5_open", "5.632e-07"))
+        self.assertNotIn(wall, stiff.settings)
+        self.assertEqual(stiff.settings["powder spreading/rim width"], "0")
+        self.assertEqual((stiff.title, stiff.full_title),
+                         ("the paper's Young's modulus", "without rims, the paper's Young's modulus"))
+        self.assertTrue(soft.is_seen_closely and stiff.is_seen_closely)
+        self.assertFalse(Case("PS1", 0.25, 1, variant="lips").is_seen_closely)
 
     def test_names_of_lengths(self) -> None:
         self.assertEqual([length_name(length) for length in (0.25, 0.5, 1., 2.)], ["L1/4", "L1/2", "L1", "L2"])
@@ -112,7 +116,8 @@ class Campaign(unittest.TestCase):
         return sum(log.read_text().count("starts") for log in self.states.glob("*.log"))
 
     def test_runs_page_and_pictures(self) -> None:
-        only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1", "PS1_L0.25_lips_seed1")
+        only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1", "PS1_L0.25_lips_stiff_seed1",
+                "PS1_L1_open_seed1")
         self.assertEqual(self.run_it(*only, "--jobs", "2")[::2], (0, ""))
         self.check_data()
         self.check_page()
@@ -120,7 +125,7 @@ class Campaign(unittest.TestCase):
         # Nothing is run twice, and the same results give the same page.
         before = self.page.read_text()
         self.assertEqual(self.run_it(*only)[0], 0)
-        self.assertEqual((self.starts(), self.page.read_text()), (8, before))
+        self.assertEqual((self.starts(), self.page.read_text()), (9, before))
         # The small results are enough for the page.
         self.page.write_text(MARKED)
         self.assertEqual(self.run_it("--page-only")[0], 0)
@@ -128,11 +133,11 @@ class Campaign(unittest.TestCase):
 
     def check_data(self) -> None:
         data = self.folder / "data"
-        self.assertEqual(len(list(data.iterdir())), 8)
+        self.assertEqual(len(list(data.iterdir())), 9)
         names = sorted(file.name for file in (data / "PS1_L0.25_seed1").iterdir())
         self.assertEqual(names, ["apparatus.json", "bed.csv", "layers.csv", "run.json"])
         self.assertFalse((data / "PS1_L0.25_forget_seed1" / "bed.csv").exists())
-        self.assertTrue((data / "PS1_L0.25_lips_seed1" / "bed.csv").exists())
+        self.assertTrue((data / "PS1_L0.25_lips_stiff_seed1" / "bed.csv").exists())
         record = json.loads((data / "PS1_L0.25_seed1" / "run.json").read_text())
         self.assertEqual((record["git_revision"], record["finished"], record["layers"]), ("abc1234567", True, 21))
         self.assertNotEqual(record["processor"], "unknown")
@@ -158,7 +163,8 @@ class Campaign(unittest.TestCase):
         record = read_record(folder)
         self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
                                           ("density", "held", "held_layers", "held_maps_PS1", "held_mechanism", "layers",
-                                           "maps_PS1", "maps_PS3", "mechanism", "middle", "profiles", "variants_1")])
+                                           "maps_PS1", "maps_PS3", "mechanism", "middle", "open", "open_layers", "open_maps_PS1",
+                                           "open_mechanism", "open_middle", "profiles", "variants_1")])
         for name, entry in record.items():
             self.assertEqual((entry.rule, entry.revision, entry.digest),
                              ("reproduction", "abc1234", digest(folder / name)))

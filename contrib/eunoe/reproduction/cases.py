@@ -92,13 +92,19 @@ class Case:
 
     @property
     def title(self) -> str:
-        """What differs from the cases without a variant, in words."""
+        """What differs from the group that it is compared with, in words."""
         parts = [f"depth of {self.depth:g} mm"] if self.depth != 0.4 else []
         if self.percent != 30.:
             parts.append(f"step of {self.percent:g} % of the Rayleigh time")
         if self.variant:
             parts.append(VARIANTS[self.variant].title)
         return ", ".join(parts)
+
+    @property
+    def full_title(self) -> str:
+        """What differs from the cases without a variant, in words."""
+        base = VARIANTS[self.variant].base
+        return ", ".join([*([VARIANTS[base].title] if base else []), *([self.title] if self.title else [])])
 
     @property
     def base(self) -> str:

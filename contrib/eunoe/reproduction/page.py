@@ -15,7 +15,7 @@ from eunoe.tables import Table, as_markdown
 from .cases import SETS
 from .pictures import picture_name
 from .places import PAGE
-from .results import HELD, SOFT, Findings, Result, origin_of
+from .results import HELD, OPEN, Findings, Result, origin_of, plain_label
 from .verdict import verdict_table
 
 NOTHING = "No run of these has finished yet."
@@ -102,19 +102,29 @@ def _all_about(groups: list[Group]) -> str:
 
 
 def held_block(findings: Findings) -> str:
-    return _all_about(findings.of_variant(HELD))
+    return _all_about(findings.of_variants(HELD))
 
 
-def soft_block(findings: Findings) -> str:
-    groups = findings.of_variant(SOFT)
-    sentences = [middle_sentence(run) for group in groups for run in group.runs]
-    return "\n\n".join(filter(None, [_all_about(groups), *sentences]))
+def open_block(findings: Findings) -> str:
+    groups = findings.of_variants(OPEN)
+    return "\n\n".join([_all_about(groups), *_middle_sentences(groups[-1:])])
+
+
+def _middle_sentences(groups: list[Group]) -> list[str]:
+    return [text for run in _results(groups) if (text := middle_sentence(run))]
+
+
+def middle_block(findings: Findings) -> str:
+    """What the middle half of the longest plates does, run by run."""
+    longest = [group for properties in SETS for group in findings.lengths(properties)[-1:]]
+    return "\n\n".join(_middle_sentences(longest)) or NOTHING
 
 
 def supply_block(findings: Findings) -> str:
-    """Of plates whose ends nothing holds, and of those with lips."""
-    variants = [group for variant in (SOFT, HELD) for group in findings.of_variant(variant)]
-    groups = [*findings.plain(), *(Group(f"{group.label}, {group.runs[0].case.title}", group.runs) for group in variants)]
+    """Of plates with rims, of those whose ends nothing holds, and of those with lips."""
+    groups = [*findings.plain(),
+              *(Group(", ".join([plain_label(case), case.full_title]), group.runs)
+                for group in findings.of_variants({*OPEN, *HELD}) for case in [group.runs[0].case])]
     return _block(supply_table(groups), _results(groups))
 
 
@@ -156,17 +166,17 @@ PICTURES = {
              "held_maps_PS1": "Displacement and density by place and layer, PS1, ends held",
              "held_maps_PS3": "Displacement and density by place and layer, PS3, ends held",
              "held_layers": "The bed at four weighings, ends held", "held_pass": "A pass in four pictures, ends held"},
-    "soft": {"soft": "LRD and CRD with softer grains, beside the measured ones",
-             "soft_middle": "LRD of the middle half of the plate, softer grains",
-             "soft_mechanism": "Displacement, rest, removal and zones by layer, softer grains",
-             "soft_maps_PS1": "Displacement and density by place and layer, PS1, softer grains",
-             "soft_layers": "The bed at four weighings, softer grains",
-             "soft_pass": "A pass in four pictures, softer grains"},
+    "open": {"open": "LRD and CRD where nothing holds the ends, beside the measured ones",
+             "open_middle": "LRD of the middle half of the plate, open ends",
+             "open_mechanism": "Displacement, rest, removal and zones by layer, open ends",
+             "open_maps_PS1": "Displacement and density by place and layer, PS1, open ends",
+             "open_maps_PS3": "Displacement and density by place and layer, PS3, open ends",
+             "open_layers": "The bed at four weighings, open ends", "open_pass": "A pass in four pictures, open ends"},
     "variants": {"variants_1": "LRD and CRD of the variants", "variants_2": "LRD and CRD of further variants",
-                 "variants_3": "LRD and CRD of variants with lips"},
+                 "variants_3": "LRD and CRD of further variants"},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "rest": rest_block, "soft": soft_block, "supply": supply_block, "held": held_block,
+          "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block, "open": open_block, "held": held_block,
           "variants": variants_block, "needed": needed_block}
 
 

@@ -19,7 +19,7 @@ from eunoe.report.run_folder import ReportError, Run, read_run
 from eunoe.report.spread_run import Group, SpreadRun
 from eunoe.vtk_files import read_vtu
 
-from .results import HELD, SOFT, Findings, Result
+from .results import HELD, OPEN, Findings, Result
 from .runs import Campaign
 
 RULE = "reproduction"
@@ -59,15 +59,15 @@ def _of_results(findings: Findings) -> Todo:
     add("profiles", profiles_figure, plain)
     for properties in ("PS1", "PS3"):
         add_map(f"maps_{properties}", _longest(findings, properties))
-    for name, variant in (("held", HELD), ("soft", SOFT)):
-        groups = findings.of_variant(variant)
+    for name, variants in (("held", HELD), ("open", OPEN)):
+        groups = findings.of_variants(variants)
         add(name, densities_figure, groups, measured)
         add(f"{name}_mechanism", mechanism_figure, groups)
         for group in groups:
             add_map(f"{name}_maps_{group.runs[0].case.properties}", group)
-    add("soft_middle", middle_figure, findings.of_variant(SOFT), measured)
-    for number, (base, variants) in enumerate(findings.variants(), start=1):
-        add(f"variants_{number}", densities_figure, [base, *variants], None)
+    add("open_middle", middle_figure, findings.of_variants(OPEN), measured)
+    for number, (base, groups) in enumerate(findings.variants(), start=1):
+        add(f"variants_{number}", densities_figure, [base, *groups], None)
     return found
 
 
@@ -104,8 +104,8 @@ def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
     todo = _of_results(findings)
     if campaign:
         todo.update(_of_states(campaign, findings.lengths("PS1")))
-        todo.update(_of_states(campaign, findings.of_variant(HELD)[:1], "held_"))
-        todo.update(_of_states(campaign, findings.of_variant(SOFT), "soft_"))
+        todo.update(_of_states(campaign, findings.of_variants(HELD)[:1], "held_"))
+        todo.update(_of_states(campaign, findings.of_variants(OPEN), "open_"))
     for name, (make, results) in todo.items():
         make().savefig(folder / name, dpi=RESOLUTION)
         record[name] = Entry(RULE, ", ".join(sorted({result.revision for result in results})), digest(folder / name))
@@ -115,8 +115,8 @@ def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
 def draw_movies(campaign: Campaign, findings: Findings) -> list[Path]:
     """Movies of a pass, as far as the runs have pictures of one. They stay beside the states, as they are large."""
     made = []
-    for name, groups in (("pass", findings.lengths("PS1")), ("held_pass", findings.of_variant(HELD)[:1]),
-                         ("soft_pass", findings.of_variant(SOFT))):
+    for name, groups in (("pass", findings.lengths("PS1")), ("held_pass", findings.of_variants(HELD)[:1]),
+                         ("open_pass", findings.of_variants(OPEN))):
         state = _state(campaign, groups)
         if state is None:
             continue

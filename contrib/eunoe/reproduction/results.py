@@ -13,11 +13,11 @@ from eunoe.report.bed_maps import read_table
 from eunoe.report.run_folder import read_layers
 from eunoe.report.spread_run import Group, SpreadRun
 
-from .cases import CASES, Case
+from .cases import CASES, VARIANTS, Case
 from .collect import BED, RECORD
 from .places import DATA
 
-HELD, SOFT = "lips", "soft"  # the variants whose ends are held, and that make long plates affordable
+OPEN, HELD = ("open", "open_stiff"), ("lips_stiff",)  # the variants whose ends nothing holds, and those with lips
 
 
 @dataclass(frozen=True)
@@ -71,11 +71,14 @@ class Findings:
         """The groups of a property set without a variant, shorter plates first."""
         return [group for group in self.plain() if group.runs[0].case.properties == properties]
 
-    def of_variant(self, variant: str) -> list[Group]:
-        """The groups of a variant, shorter plates first."""
-        found = [results for results in self.results.values() if results[0].case.variant == variant]
+    def of_variants(self, variants: Iterable[str]) -> list[Group]:
+        """The groups of some variants, shorter plates first; their labels say what differs among these variants."""
+        names = set(variants)
+        found = [results for results in self.results.values() if results[0].case.variant in names]
         found.sort(key=lambda results: results[0].case.length)
-        return [Group(plain_label(results[0].case), results) for results in found]
+        return [Group(", ".join([plain_label(results[0].case),
+                                 *([results[0].case.title] if VARIANTS[results[0].case.variant].base in names else [])]),
+                      results) for results in found]
 
     def variants(self) -> list[tuple[Group, list[Group]]]:
         """Groups with variants, with the group that they are to be compared with, as far as that is there."""
