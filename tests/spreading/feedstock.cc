@@ -12,29 +12,30 @@ namespace {
 
 constexpr double largest = 80e-6, column = 2. * largest, reservoir = 1.2e-3;
 
-const char *const long_reservoir = "  set feedstock platform length W1 = 1.2e-3\n"
+const std::string long_reservoir = "  set feedstock platform length W1 = 1.2e-3\n"
                                    "  set first feedstock stroke = 0.25e-3\n";
 
 /// The particles just after those above the level of the bed were removed.
-std::vector<std::vector<double>> with_levelled_bed()
+std::vector<std::vector<double>> with_levelled_bed(const double level)
 {
-  Case bed(small_spreading("results", long_reservoir));
+  Case bed(small_spreading("results",
+                           long_reservoir + ("  set feedstock level = " + std::to_string(level))));
   return particles_when(*bed, [](const Simulation &simulation) {
     return simulation.get_ledger().taken_out.number > 0;
   });
 }
 
-void examine_surface()
+void examine_surface(const double level)
 {
   std::vector<double> surface(static_cast<std::size_t>(reservoir / column), -1.);
-  for (const std::vector<double> &grain : with_levelled_bed()) {
+  for (const std::vector<double> &grain : with_levelled_bed(level)) {
     const auto k = static_cast<std::size_t>(grain[c_x] / column);
     if (k < surface.size())
       surface[k] = std::max(surface[k], grain[c_y] + grain[c_radius]);
   }
   const auto [lowest, highest] = std::minmax_element(surface.begin(), surface.end());
-  check("none above the level", *highest <= 0., std::to_string(*highest));
-  check("the level is reached all over", *lowest > -largest, std::to_string(*lowest));
+  check("none above the level", *highest <= level, std::to_string(*highest));
+  check("the level is reached all over", *lowest > level - largest, std::to_string(*lowest));
 }
 
 void examine_when_full()
@@ -57,5 +58,6 @@ void examine_when_full()
 EUNOE_MPI_TEST()
 {
   examine_when_full();
-  examine_surface();
+  examine_surface(0.);
+  examine_surface(largest);
 }

@@ -47,6 +47,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
       p.feedstock == "full" ? p.first_stroke + (p.n_layers - 1) * p.stroke : p.first_stroke;
   bed_depth = p.bed_depth > 0. ? p.bed_depth : p.stroke + p.bed_margin;
   first_bed_depth = depth_for(strokes);
+  bed_level = p.bed_level;
 
   const double largest_stroke =
       std::max(1., 1. + p.stroke_error) * std::max(p.first_stroke, p.stroke);
@@ -57,7 +58,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
              4. * largest_diameter;
   // Loose particles for the bed need five times its height.
   y_top = std::max(p.mean_clearance() + spreader_height + p.spreader_tilt + p.vibration_amplitude,
-                   4.2 * bed_depth) +
+                   4.2 * (bed_depth + bed_level)) +
           2. * largest_diameter;
 
   platform = std::make_shared<StrokeMotion>(Vec3{0., -bed_depth, 0.});

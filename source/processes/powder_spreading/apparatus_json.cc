@@ -35,6 +35,7 @@ std::string Apparatus::as_json(const double density) const
   json["replenished"] = p.feedstock == "replenished";
   json["bed_depth"] = bed_depth;
   json["first_bed_depth"] = first_bed_depth;
+  json["bed_level"] = bed_level;
   json["density"] = density;
   return json.dump(2) + "\n";
 }

@@ -64,7 +64,8 @@ std::vector<std::size_t> above_level(const ParticleArrays &p, const Apparatus &a
 {
   std::vector<std::size_t> found;
   for (std::size_t row = 0; row < p.n_owned; ++row)
-    if (apparatus.is_in_reservoir(p.position[row].vec()) && p.position[row].y + p.radius(row) > 0.)
+    if (apparatus.is_in_reservoir(p.position[row].vec()) &&
+        p.position[row].y + p.radius(row) > apparatus.bed_level)
       found.push_back(row);
   return found;
 }
@@ -88,7 +89,7 @@ void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const dou
 
   n_global = found.size();
   MPI_Allreduce(MPI_IN_PLACE, &n_global, 1, MPI_UINT64_T, MPI_SUM, simulation.communicator());
-  depth = -platform_height;
+  depth = apparatus.bed_level - platform_height;
   particles.clear();
   rows = ContactRows(simulation.contact_model().history_size());
   for (const std::size_t row : found) {
@@ -131,7 +132,8 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
   const auto opposite_wall = [=](std::uint32_t solid) {
     return solid == lower ? upper : solid == upper ? lower : solid;
   };
-  const auto n_copies = static_cast<unsigned int>(std::ceil(-platform_height / depth - 1e-9));
+  const double height = apparatus.bed_level - platform_height;
+  const auto n_copies = static_cast<unsigned int>(std::ceil(height / depth - 1e-9));
   for (unsigned int copy = 0; copy < n_copies; ++copy) {
     const std::uint64_t draw = (static_cast<std::uint64_t>(event) << 32) + copy;
     const bool mirrored = uniform(seed, Draw::feed_copy, draw, 1) < 0.5;
@@ -143,7 +145,7 @@ Delivery FeedBed::stack(Simulation &simulation, const Apparatus &apparatus,
     for (std::size_t k = 0; k < particles.size(); ++k) {
       NewParticle particle = particles[k];
       particle.position.y += platform_height + copy * depth;
-      if (particle.position.y + particle.radius > 0.)
+      if (particle.position.y + particle.radius > apparatus.bed_level)
         continue;
       particle.id += first;
       if (mirrored) {

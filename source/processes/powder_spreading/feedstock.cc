@@ -38,7 +38,8 @@ void PowderSpreading::insert_loose_bed(Simulation &simulation)
   grid.order = {0, 2, 1};
   // More than the bed takes, as what stands above the level is taken away; what is still missing
   // after settling is added then.
-  const double missing = n_fillings == 0 ? apparatus.bed_depth : 0.2 * apparatus.bed_depth;
+  const double height = apparatus.bed_depth + apparatus.bed_level;
+  const double missing = n_fillings == 0 ? height : 0.2 * height;
   const auto n = std::min<std::size_t>(
       grid.capacity(),
       static_cast<std::size_t>(loose_excess * apparatus.particles_in_bed(type, missing)) + 1);

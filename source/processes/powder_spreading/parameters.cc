@@ -84,6 +84,9 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
                "Depth of the bed that is settled (m); 0: the stroke and the margin.");
   not_negative(prm, "feedstock margin", p.bed_margin,
                "Powder left below the level of the transfer plate after the stroke (m).");
+  not_negative(prm, "feedstock level", p.bed_level,
+               "Height of the bed's surface over the transfer plate before a stroke (m): a pass "
+               "leaves it at the spreader's clearance. What stands above it is taken away.");
   not_negative(prm, "feedstock insertion speed", p.insertion_speed,
                "Downward velocity of the particles inserted for the bed (m/s).");
   not_negative(prm, "settled speed", p.settled_speed,

@@ -130,9 +130,9 @@ RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
   const Apparatus a(*this, parameters.physics.largest_diameter());
   const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
   const double layer = bed_fraction * a.plate_area() * layer_thickness / volume;
-  const double first = a.particles_in_bed(type, a.first_bed_depth);
+  const double first = a.particles_in_bed(type, a.first_bed_depth + bed_level);
   const double later = feedstock == "full" ? 0.5 * (first + a.particles_in_bed(type, bed_margin))
-                                           : a.particles_in_bed(type, a.bed_depth);
+                                           : a.particles_in_bed(type, a.bed_depth + bed_level);
   const double transit = a.particles_in_bed(type, actual_stroke(1));
   const auto schedule = make_schedule(*this, a, 0.25 * settling_time);
   RunEstimate estimate;

@@ -40,6 +40,8 @@ public:
   double spreader_height;
   /// Depth of the settled bed, of the one for the first pass, and the platform's height under each.
   double bed_depth, first_bed_depth;
+  /// Height of the bed's surface before a stroke, over the transfer plate.
+  double bed_level;
   ///@}
 
   /// Depth of the bed that a reservoir needs for strokes of so much together (m).
@@ -58,8 +60,8 @@ public:
     const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
     return bed_fraction * x_transfer * depth * bed_depth / volume;
   }
-  /// Whether the reservoir is full when so many particles reach over the level of the transfer
-  /// plate: as many as a layer of the largest has. Fewer may stand or fly over a lower surface.
+  /// Whether the reservoir is full when so many particles reach over the level of the bed: as
+  /// many as a layer of the largest has. Fewer may stand or fly over a lower surface.
   bool is_full(const ParticleType &type, unsigned long long n_above) const
   {
     return static_cast<double>(n_above) >= particles_in_bed(type, type.sizes.make()->largest());

@@ -36,7 +36,7 @@ private:
   ContactRows rows{0};
 };
 
-/// Particles that stand above the level of the transfer plate in the reservoir: their rows.
+/// Particles that stand above the level of the bed in the reservoir: their rows.
 std::vector<std::size_t> above_level(const ParticleArrays &particles, const Apparatus &apparatus);
 
 /// All particles in the reservoir: their rows.

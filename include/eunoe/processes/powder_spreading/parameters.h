@@ -40,6 +40,7 @@ struct SpreadingParameters : public ProcessSection
   unsigned int particle_type = 0; ///< of the feedstock
   double bed_depth = 0.;
   double bed_margin = 0.4e-3;
+  double bed_level = 0.;
   double insertion_speed = 0.1;
   double settled_speed = 2e-3;
   double settling_time = 0.2;
