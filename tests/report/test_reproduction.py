@@ -61,7 +61,7 @@ class Cases(unittest.TestCase):
         self.assertNotIn(wall, stiff.settings)
         self.assertEqual(stiff.settings["powder spreading/rim width"], "0")
         self.assertEqual((stiff.title, stiff.full_title),
-                         ("the paper's Young's modulus", "without rims, the paper's Young's modulus"))
+                         ("the paper's Young's modulus", "without rims, fed less, the paper's Young's modulus"))
         self.assertTrue(soft.is_seen_closely and stiff.is_seen_closely)
         self.assertFalse(Case("PS1", 0.25, 1, variant="lips").is_seen_closely)
 
