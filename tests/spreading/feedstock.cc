@@ -38,6 +38,48 @@ void examine_surface(const double level)
   check("the level is reached all over", *lowest > level - largest, std::to_string(*lowest));
 }
 
+/// Deepest overlap of two grains, or of one with the edge of the transfer plate, over a radius.
+double deepest_overlap(const ParticleArrays &p)
+{
+  double deepest = 0.;
+  for (std::size_t k = 0; k < p.n_owned; ++k) {
+    const auto &a = p.position[k];
+    const double r = p.radius(k);
+    if (a.x < reservoir && a.y < 0.)
+      deepest = std::max(deepest, (a.x + r - reservoir) / r);
+    for (std::size_t l = 0; l < k; ++l) {
+      const auto &b = p.position[l];
+      double dz = std::abs(a.z - b.z);
+      dz = std::min(dz, slice_depth - dz);
+      const double distance = norm(Vec3{a.x - b.x, a.y - b.y, dz});
+      deepest = std::max(deepest, (r + p.radius(l) - distance) / std::min(r, p.radius(l)));
+    }
+  }
+  return deepest;
+}
+
+/// Whenever the reservoir is filled anew, with powder on the transfer plate beside it.
+void examine_copies()
+{
+  Case run(small_spreading("results", long_reservoir +
+                                          "  set number of layers = 4\n"
+                                          "  set feedstock level = " +
+                                          std::to_string(clearance)));
+  unsigned long long taken_out = 0;
+  unsigned int n_looks = 0;
+  double deepest = 0.;
+  run.run([&](Simulation &simulation) {
+    const auto number = simulation.get_ledger().taken_out.number;
+    if (number == taken_out)
+      return;
+    taken_out = number;
+    ++n_looks;
+    deepest = std::max(deepest, deepest_overlap(simulation.complete_step()));
+  });
+  check("beds were put in", n_looks >= 4, std::to_string(n_looks));
+  check("they overlap with nothing", deepest < 0.1, std::to_string(deepest));
+}
+
 void examine_when_full()
 {
   spreading::SpreadingParameters p;
@@ -60,4 +102,5 @@ EUNOE_MPI_TEST()
   examine_when_full();
   examine_surface(0.);
   examine_surface(largest);
+  examine_copies();
 }

@@ -30,6 +30,10 @@ void examine_parameters()
         of_run.mesh.grid_arguments != parameters.mesh.grid_arguments);
   check("and the boundaries",
         of_run.boundaries.conditions.size() == 3 && parameters.boundaries.conditions.empty());
+  Problems of_level;
+  Parameters::read(small_spreading("results", "  set feedstock level = 120e-6"), "test.prm", {},
+                   of_level);
+  check("a bed above the spreader's clearance is refused", !of_level.empty());
   const auto first = first_particles(parameters), second = first_particles(parameters);
   check("a simulation leaves its input as it was",
         parameters.mesh.grid_arguments == Parameters().mesh.grid_arguments &&

@@ -79,11 +79,30 @@ std::vector<std::size_t> in_reservoir(const ParticleArrays &p, const Apparatus &
   return found;
 }
 
+std::vector<std::size_t> in_the_way(const ParticleArrays &p, const Apparatus &apparatus)
+{
+  if (apparatus.bed_level == 0.)
+    return in_reservoir(p, apparatus);
+  std::vector<std::size_t> found;
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (p.position[row].x - p.radius(row) < apparatus.x_transfer)
+      found.push_back(row);
+  return found;
+}
+
 void FeedBed::take(Simulation &simulation, const Apparatus &apparatus, const double platform_height)
 {
   const ParticleArrays &p = simulation.complete_step();
   const ContactRows all_rows = simulation.get_system().contact_rows();
-  const std::vector<std::size_t> found = in_reservoir(p, apparatus);
+  std::vector<std::size_t> found = in_reservoir(p, apparatus);
+  // What lies on the edge of the transfer plate would stand in its wall in a lower copy.
+  found.erase(std::remove_if(found.begin(), found.end(),
+                             [&](const std::size_t row) {
+                               const double r = p.radius(row);
+                               return p.position[row].y + r > 0. &&
+                                      p.position[row].x + r > apparatus.x_transfer;
+                             }),
+              found.end());
   const auto numbers = numbers_in_bed(p, found, all_rows, simulation.communicator());
   const auto number_of = [&](ParticleId id) { return numbers.at(id); };
 

@@ -56,7 +56,7 @@ void PowderSpreading::fill_reservoir(Simulation &simulation, const double platfo
 {
   simulation.insert_and_remove(bed.stack(simulation, apparatus, platform_height, p.seed,
                                          series.first_layer + static_cast<unsigned int>(next_feed)),
-                               in_reservoir(simulation.complete_step(), apparatus));
+                               in_the_way(simulation.complete_step(), apparatus));
 }
 
 bool PowderSpreading::has_settled(Simulation &simulation)

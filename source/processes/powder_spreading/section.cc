@@ -67,6 +67,10 @@ void SpreadingParameters::check_lengths(const Parameters &parameters,
                     " m that particles can reach (largest diameter, skin and range of cohesion), "
                     "so that two particles could touch on both sides of the periodic slice.",
                 "Give a larger depth, 2e-3 in the paper, or a smaller 'neighborhood threshold'.");
+  check.require(bed_level <= clearance, {section}, "feedstock level",
+                "is " + format(bed_level) + " m, above the spreader's clearance of " +
+                    format(clearance) + " m, so that a stroke would feed more than its height.",
+                "Give no more than 'spreader clearance delta_s'.");
   // Each of its two contacts gives way by a hundredth of the diameter.
   constexpr double squeezed = 0.98;
   const double lowest = mean_clearance() - 0.5 * spreader_tilt - vibration_amplitude;
@@ -131,8 +135,9 @@ RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
   const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
   const double layer = bed_fraction * a.plate_area() * layer_thickness / volume;
   const double first = a.particles_in_bed(type, a.first_bed_depth + bed_level);
-  const double later = feedstock == "full" ? 0.5 * (first + a.particles_in_bed(type, bed_margin))
-                                           : a.particles_in_bed(type, a.bed_depth + bed_level);
+  const double later = feedstock == "full"
+                           ? 0.5 * (first + a.particles_in_bed(type, bed_margin + bed_level))
+                           : a.particles_in_bed(type, a.bed_depth + bed_level);
   const double transit = a.particles_in_bed(type, actual_stroke(1));
   const auto schedule = make_schedule(*this, a, 0.25 * settling_time);
   RunEstimate estimate;
