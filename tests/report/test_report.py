@@ -10,6 +10,7 @@ import re
 import sys
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
@@ -21,9 +22,10 @@ import numpy as np
 import sample_run
 from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
+from eunoe.report.case_section import slopes_sentence
 from eunoe.report.heap_results import read_map
 from eunoe.report.layer_results import counting_noise, moved_over_plate
-from eunoe.report.measured import read_measured
+from eunoe.report.measured import FullSize, read_measured
 from eunoe.report.quantities import number
 from eunoe.report.run_folder import ReportError, read_layers
 from eunoe.vtk_files import VtkError, read_pvd, read_vtu
@@ -134,6 +136,13 @@ class Geometry(unittest.TestCase):
         np.testing.assert_allclose(a.full_layer_mass, 4000. * 1.5e-3 * 4e-4 * 1e-4)
         self.assertAlmostEqual(a.spreader_tip(), 4.0e-3)
         self.assertAlmostEqual(a.spreader_outline(a.spreader_tip())[:, 1].min(), 1e-4)
+
+    def test_rims_stand_between_gap_and_plate(self) -> None:
+        held = replace(self.apparatus, rim=2e-5)
+        self.assertAlmostEqual(held.gap, 8e-5)
+        full = FullSize()
+        self.assertIn("slopes into the gaps", slopes_sentence(self.apparatus, full, 20))
+        self.assertEqual(slopes_sentence(held, full, 20), "")
 
     def test_next_spreader_is_under_way_where_passes_overlap(self) -> None:
         a = self.apparatus

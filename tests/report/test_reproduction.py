@@ -59,7 +59,9 @@ class Cases(unittest.TestCase):
         self.assertEqual((soft.base, soft.settings[wall], soft.settings[step]), ("PS1_L0.5", "2.625e+06", "1.78099e-06"))
         self.assertEqual((stiff.base, stiff.settings[step]), ("PS1_L0.5_open", "5.632e-07"))
         self.assertNotIn(wall, stiff.settings)
-        self.assertEqual(stiff.settings["powder spreading/rim width"], "0")
+        for entry in ("rim width", "feedstock level"):
+            self.assertEqual((stiff.settings[f"powder spreading/{entry}"], soft.settings[f"powder spreading/{entry}"]),
+                             ("0", "0"))
         self.assertEqual((stiff.title, stiff.full_title),
                          ("the paper's Young's modulus", "without rims, fed less, the paper's Young's modulus"))
         self.assertTrue(soft.is_seen_closely and stiff.is_seen_closely)

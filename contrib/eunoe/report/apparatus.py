@@ -52,6 +52,7 @@ class Apparatus:
     first_bed_depth: float
     density: float
     plate_stroke: float | None = None  # None: the layer thickness
+    rim: float = 0.  # width of the walls between the measuring plate and its gaps
 
     @classmethod
     def read(cls, file: Path) -> Apparatus:
@@ -76,7 +77,7 @@ class Apparatus:
 
     @property
     def gap(self) -> float:
-        return self.x_plate - self.x_gap
+        return self.x_plate - self.rim - self.x_gap
 
     @property
     def plate_length(self) -> float:

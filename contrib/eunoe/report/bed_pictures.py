@@ -45,6 +45,8 @@ def _draw_plates(axes: Axes, apparatus: Apparatus, plate_height: float,
     for x0, x1, y in ((a.x_transfer, a.x_gap, 0.), (a.x_plate, a.x_plate_end, plate_height),
                       (a.x_exit, a.x_end, 0.)):
         axes.add_patch(Rectangle((MM * x0, MM * (y - a.lip)), MM * (x1 - x0), MM * a.lip, **look))
+    for x in (a.x_plate - a.rim, a.x_plate_end) if a.rim > 0. else ():
+        axes.add_patch(Rectangle((MM * x, MM * a.y_bottom), MM * a.rim, -MM * a.y_bottom, **look))
     for tip in tips or [a.spreader_tip()]:
         axes.add_patch(Polygon(MM * a.spreader_outline(tip), **look))
 

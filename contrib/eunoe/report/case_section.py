@@ -44,19 +44,19 @@ def _case_rows(layers: Layers, apparatus: Apparatus, full: FullSize,
     return rows
 
 
-def _slopes(apparatus: Apparatus, full: FullSize, layer: int) -> str:
+def slopes_sentence(apparatus: Apparatus, full: FullSize, layer: int) -> str:
     """What the slopes at the powder's free ends mean for a plate of this length."""
     height = layer * apparatus.layer_thickness
     free = height - apparatus.lip
-    if free <= 0.:
+    if free <= 0. or apparatus.rim > 0.:
         return ""
     slopes = 2. * free / tan(radians(full.angle_of_repose))
     return (f"Below the lips ({length(apparatus.lip)} high) nothing holds the powder at the two "
             "ends of the plate, and it slopes into the gaps. At the powder's measured angle of "
             f"repose ({full.angle_of_repose:g}°), the two slopes of a bed {length(height)} deep "
             f"are {length(slopes)} long together: {percent(slopes / apparatus.plate_length, 0)} of "
-            f"this plate, {percent(slopes / full.plate_length, 0)} of the full-size one. The "
-            "shorter the plate, the more the density of the later layers is that of its ends. ")
+            "this plate. The shorter the plate, the more the density of the later layers is that of its "
+            "ends. In the apparatus of the measurements walls hold them ('rim width'). ")
 
 
 def _bridging(apparatus: Apparatus, largest_diameter: float) -> str:
@@ -95,7 +95,7 @@ def add_case_section(page: Page, layers: Layers, apparatus: Apparatus, measured:
             + (f"{number(ratio, 2)} times as long as the simulated one. " if ratio > 1.05 else
                "no longer than the simulated one. "))
     text += _differences(apparatus, full)
-    text += _slopes(apparatus, full, layers.last)
+    text += slopes_sentence(apparatus, full, layers.last)
     text += _bridging(apparatus, largest_diameter)
     text += ("The measured densification begins at about layer 10 and peaks at layer 18. In the "
              "simulations of Gaboriault et al. (2025) the peak is lower and comes earlier on a "

@@ -2,7 +2,7 @@
 
 All cases have the paper's proportions, gaps, rims, spreader, strokes and powder, from
 prm/spreading/PS*_L1.prm. What they change to be affordable is in `CHEAP`; doc/reproduction.md gives the
-reasons. A variant changes one thing more.
+reasons. A variant changes one thing more, or goes back to the apparatus before an error in it was found.
 """
 
 from __future__ import annotations

@@ -44,7 +44,7 @@ def _of_results(findings: Findings) -> Todo:
     found: Todo = {}
 
     def add(name: str, draw: Callable[..., Figure], groups: list[Group], *more: Measured | None) -> None:
-        groups = groups[:MOST_GROUPS]
+        groups = groups[-MOST_GROUPS:]  # the longest plates come last
         if groups:
             found[picture_name(name)] = (lambda: draw(groups, *more), [run for group in groups for run in group.runs])
 
@@ -66,8 +66,10 @@ def _of_results(findings: Findings) -> Todo:
         for group in groups:
             add_map(f"{name}_maps_{group.runs[0].case.properties}", group)
     add("open_middle", middle_figure, findings.of_variants(OPEN), measured)
-    for number, (base, groups) in enumerate(findings.variants(), start=1):
-        add(f"variants_{number}", densities_figure, [base, *groups], None)
+    shown = [[base, *groups[first:first + MOST_GROUPS - 1]] for base, groups in findings.variants()
+             for first in range(0, len(groups), MOST_GROUPS - 1)]
+    for number, groups in enumerate(shown, start=1):
+        add(f"variants_{number}", densities_figure, groups, None)
     return found
 
 
