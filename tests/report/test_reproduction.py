@@ -186,6 +186,18 @@ class Campaign(unittest.TestCase):
         self.assertEqual((code, self.starts()), (0, 0))
         self.assertIn("PS1_L0.25_seed1 runs already", output)
 
+    def test_a_run_with_other_settings_is_refused(self) -> None:
+        only = ("--only", "PS1_L0.25_seed1")
+        self.assertEqual(self.run_it(*only)[0], 0)
+        note = self.states / "PS1_L0.25_seed1" / "case.json"
+        settings = json.loads(note.read_text())
+        for text in (json.dumps({**settings, "powder spreading/rim width": "0"}), None):
+            note.unlink() if text is None else note.write_text(text)
+            code, _, errors = self.run_it(*only)
+            self.assertEqual(code, 1)
+            self.assertIn("Move it away.", errors)
+        self.assertEqual(self.starts(), 1)
+
     def test_runs_are_asked_to_stop(self) -> None:
         (self.states / "wait").touch()
         process = subprocess.Popen([sys.executable, "-B", str(ROOT / "contrib" / "tools"), "reproduction",

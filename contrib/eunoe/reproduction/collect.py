@@ -15,7 +15,7 @@ from eunoe.studies.series import summary_of
 
 from .cases import Case
 from .places import DATA
-from .runs import Campaign, processor_of
+from .runs import Campaign, processor_of, settings_of
 
 TABLES = ("layers.csv", "measurements.csv", "apparatus.json")
 BED, RECORD = "bed.csv", "run.json"
@@ -29,7 +29,7 @@ def record_of(case: Case, folder: Path, layers: int) -> dict[str, Any]:
     """What was run, by what, and what it took. A run that goes on has no revision and no timings yet."""
     summary = summary_of(folder) or {}
     return {"case": case.name, "finished": bool(summary), "layers": layers, "processor": processor_of(folder),
-            "settings": {name: str(value) for name, value in case.settings.items()},
+            "settings": settings_of(case),
             **{key: summary[key] for key in KEPT if key in summary}}
 
 
@@ -44,6 +44,7 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
     folder = campaign.of(case)
     if not campaign.is_finished(case):
         return None
+    campaign.check(case)
     target = data / case.name
     target.mkdir(parents=True, exist_ok=True)
     for name in TABLES:

@@ -12,8 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
-from eunoe.folders import alone_with
-from eunoe.launch import mpirun, overrides
+from eunoe.folders import alone_with, occupy
+from eunoe.launch import Failure, mpirun, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
 from .cases import Case
@@ -23,7 +23,13 @@ from .cost import cost_of
 FILMED = (0.62, 0.7)
 FILM_INTERVAL = 4e-3  # s
 STOP = signal.SIGUSR1  # mpirun hands it on; after SIGTERM it would not wait for the checkpoint
+NOTE = "case.json"  # the settings of a run, beside its output
 STOPPED = 3  # exit code of a run that was asked to stop and has left a checkpoint
+
+
+def settings_of(case: Case) -> dict[str, str]:
+    """What differs from the case's input file."""
+    return {name: str(value) for name, value in case.settings.items()}
 
 
 class Campaign:
@@ -67,7 +73,7 @@ class Campaign:
                 return None
             if self.stopping.is_set() or self.is_finished(case):
                 return None
-            self.note_machine(case)
+            self.note(case)
             with open(self.folder / f"{case.name}.log", "a", encoding="utf-8") as log:
                 child = subprocess.Popen([*self.command(case), *self.filmed(case)], stdout=log, stderr=log,
                                          pass_fds=[lock])
@@ -79,13 +85,25 @@ class Campaign:
         print(f"{case.name} ended with exit code {code}", flush=True)
         return code
 
-    def note_machine(self, case: Case) -> None:
-        """Keeps on which processors a case has run; the program does not say."""
-        self.of(case).mkdir(parents=True, exist_ok=True)
+    def note(self, case: Case) -> None:
+        """Keeps with which settings and on which processors a case runs; the program does not say. A folder of the
+        same name with other settings, as the cases were once, is refused."""
+        self.check(case)
+        occupy(self.of(case), settings_of(case), NOTE)
         file = self.of(case) / "processors.json"
         known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
         if processor() not in known:
             file.write_text(json.dumps([*known, processor()]), encoding="utf-8")
+
+    def check(self, case: Case) -> None:
+        """Refuses a folder with a run of other settings."""
+        folder = self.of(case)
+        file = folder / NOTE
+        if not file.exists() and (folder / "layers.csv").exists():
+            raise Failure(f"{folder} has a run, but no {NOTE} that says of which settings. Move it away.")
+        if file.exists() and json.loads(file.read_text(encoding="utf-8")) != settings_of(case):
+            raise Failure(f"{folder} has a run with other settings than the case of this name: see its {NOTE}. Move it "
+                          "away.")
 
     def stop(self, *_) -> None:
         """Asks all runs to leave a checkpoint and end; no further one starts."""
@@ -98,6 +116,8 @@ class Campaign:
         before = {number: signal.signal(number, self.stop)
                   for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)}
         turn = threading.Lock()
+        for case in cases:
+            self.check(case)
 
         def make(case: Case) -> bool:
             code = self.make(case)

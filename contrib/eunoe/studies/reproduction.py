@@ -109,7 +109,7 @@ def main(words: list[str]) -> int:
         return 0
     if options.command:
         for case in cases:
-            campaign.note_machine(case)
+            campaign.note(case)
             print(shlex.join([*campaign.command(case), *campaign.filmed(case)]))
         return 0
     good = go_on(options, campaign, cases)
