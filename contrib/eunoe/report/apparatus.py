@@ -52,6 +52,7 @@ class Apparatus:
     first_bed_depth: float
     density: float
     plate_stroke: float | None = None  # None: the layer thickness
+    side_walls: bool = False  # at the ends of the depth, which is periodic without them
     rim: float = 0.  # width of the walls between the measuring plate and its gaps
 
     @classmethod

@@ -16,6 +16,7 @@ std::string Apparatus::as_json(const double density) const
   json["y_bottom"] = y_bottom;
   json["y_top"] = y_top;
   json["depth"] = depth;
+  json["side_walls"] = p.side_walls;
   json["lip"] = p.lip;
   json["rim"] = p.rim;
   json["spreader"] = p.spreader;
