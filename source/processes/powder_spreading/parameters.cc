@@ -80,8 +80,10 @@ void declare_feedstock(dealii::ParameterHandler &prm, SpreadingParameters &p)
   declare::count(prm, "feedstock particle type", p.particle_type,
                  "Type of the particles of the feedstock. Others may lie on the plate from an "
                  "earlier series of layers.");
-  not_negative(prm, "feedstock bed depth", p.bed_depth,
-               "Depth of the bed that is settled (m); 0: the stroke and the margin.");
+  not_negative(
+      prm, "feedstock bed depth", p.bed_depth,
+      "Depth below the transfer plate of the bed that is settled (m); 0: the stroke and the "
+      "margin.");
   not_negative(prm, "feedstock margin", p.bed_margin,
                "Powder left below the level of the transfer plate after the stroke (m).");
   not_negative(prm, "feedstock level", p.bed_level,
