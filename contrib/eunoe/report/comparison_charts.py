@@ -39,12 +39,17 @@ def draw_group(axes: Axes, number: int, layer: np.ndarray, rows: np.ndarray, lab
 
 
 def _legend_below(figure: Figure, axes: Axes, columns: int = 4) -> None:
-    """The legend of a panel under all panels of a figure whose layout is constrained."""
+    """The legend of a panel under all panels of a figure whose layout is constrained, in so many columns if the
+    labels are short enough for that."""
     handles, labels = axes.get_legend_handles_labels()
-    rows = -(-len(labels) // columns)
+    for number in range(columns, 0, -1):
+        legend = figure.legend(handles, labels, loc="lower center", ncol=number, columnspacing=1.1, handlelength=1.5)
+        if number == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()
+    rows = -(-len(labels) // number)
     room = (0.08 + 0.17 * rows) / figure.get_figheight()
     figure.get_layout_engine().set(rect=(0., room, 1., 1. - room))
-    figure.legend(handles, labels, loc="lower center", ncol=columns, columnspacing=1.1, handlelength=1.5)
 
 
 def densities_figure(groups: Sequence[Group], measured: Measured | None) -> Figure:
