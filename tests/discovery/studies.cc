@@ -253,6 +253,25 @@ void runs_of_an_earlier_study()
   check("which it counts", again.content["runs"]["known"] == runs);
 }
 
+/// Amplitudes at which all runs fail cost a few runs, of each study together with those before it.
+void refused_amplitudes()
+{
+  Nature picky = nature(81);
+  picky.failures = 0.;
+  picky.refused_from = 2. * SyntheticSimulator(picky).factors().front().scale;
+  SyntheticSimulator simulator(picky);
+  simulator.remember();
+  const Amplitudes truth = {{"b", simulator.amplitude_of("b", 4., both)}};
+  std::uint64_t failed = 0;
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const Discovery d = study(simulator, simulator.measure(both, {}, truth, 4, 0.2, seed));
+    const auto all = d.content["runs"]["failed"].get<std::uint64_t>();
+    check("amplitudes that fail are left alone", all - failed <= (seed == 1 ? 24 : 4),
+          std::to_string(all - failed));
+    failed = all;
+  }
+}
+
 /// A table that is filled before anything is measured answers each measurement with few runs.
 void filled_table()
 {
@@ -337,6 +356,7 @@ EUNOE_MPI_TEST()
   too_weak_to_see();
   withdrawn();
   runs_of_an_earlier_study();
+  refused_amplitudes();
   filled_table();
   budget();
   plans();

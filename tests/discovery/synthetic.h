@@ -27,6 +27,7 @@ struct Nature
   double strength_of_scale = 5.; ///< strength at an amplitude of one scale
   double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
   double failures = 0.02;        ///< share of runs that fail
+  double refused_from = 1e9;     ///< positive amplitude of the first effect from which all fail
   double skewness = 0.15;        ///< of the scatter
   double changed_chaos = 0.15;   ///< how much an effect at one scale makes scatter grow
   double swing = 0.5;            ///< common to all observables, in units of their own scatter
@@ -219,6 +220,9 @@ private:
 
   bool fails(const RunRequest &request) const override
   {
+    const auto first = request.amplitudes.find("a");
+    if (first != request.amplitudes.end() && first->second >= nature.refused_from)
+      return true;
     std::string text = request.experiment;
     for (const auto &[name, amplitude] : request.amplitudes)
       text += name + std::to_string(amplitude);

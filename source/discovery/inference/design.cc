@@ -105,7 +105,8 @@ void Design::run_effects(const std::function<Target()> &estimate)
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const Ladder &ladder : looks)
-      if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments))
+      if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments) &&
+          !samples.fails_near(ladder.effect, ladder.amplitude))
         points.push_back(point(ladder.effect, ladder.amplitude));
     samples.run(points, experiments);
     const Target target = estimate();
@@ -164,6 +165,10 @@ std::uint64_t Design::size_of_round(const std::uint64_t n_runs) const
 bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 {
   constexpr double share_of_base = 0.1;
+  list.erase(std::remove_if(
+                 list.begin(), list.end(),
+                 [&](const Wish &wish) { return samples.fails_near(wish.effect, wish.amplitude); }),
+             list.end());
   double others = 0.;
   for (const Wish &wish : list)
     others += wish.weight;

@@ -109,12 +109,14 @@ Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulato
 void Samples::add(const RunRequest &request, const RunResult &result)
 {
   ++counts[{request.experiment, request.amplitudes}];
+  const Eigen::VectorXd position = *space.position(request.amplitudes);
   if (!result || result->size() != source.data_points(request.experiment).size()) {
     ++failed;
+    failures[request.experiment].push_back(position);
     return;
   }
   samples.at(request.experiment)
-      .push_back({*space.position(request.amplitudes),
+      .push_back({position,
                   Eigen::Map<const Eigen::VectorXd>(result->data(),
                                                     static_cast<Eigen::Index>(result->size())),
                   request.seed});
@@ -132,19 +134,43 @@ unsigned int Samples::n_missing(const DesignPoint &point,
   return point.replicates - there;
 }
 
+bool Samples::is_near(const Eigen::VectorXd &position, const std::size_t effect,
+                      const double amplitude) const
+{
+  constexpr double near = 0.2;
+  return effects_of(space, position) == std::vector<std::string>{space.effect(effect).name} &&
+         std::abs(position(static_cast<Eigen::Index>(effect)) / amplitude - 1.) < near;
+}
+
+std::size_t Samples::n_near(const std::string &experiment, const std::size_t effect,
+                            const double amplitude) const
+{
+  const std::vector<Sample> &all = samples.at(experiment);
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](const Sample &sample) {
+    return is_near(sample.position, effect, amplitude);
+  }));
+}
+
 bool Samples::has_near(const std::size_t effect, const double amplitude, const unsigned int runs,
                        const std::vector<std::string> &experiments) const
 {
-  constexpr double near = 0.2;
-  const std::string &name = space.effect(effect).name;
   return std::all_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    const auto n = std::count_if(
-        samples.at(experiment).begin(), samples.at(experiment).end(), [&](const Sample &sample) {
-          return effects_of(space, sample.position) == std::vector<std::string>{name} &&
-                 std::abs(sample.position(static_cast<Eigen::Index>(effect)) / amplitude - 1.) <
-                     near;
-        });
-    return !source.concerns(experiment, {name}) || n >= static_cast<std::ptrdiff_t>(runs);
+    return !source.concerns(experiment, {space.effect(effect).name}) ||
+           n_near(experiment, effect, amplitude) >= runs;
+  });
+}
+
+bool Samples::fails_near(const std::size_t effect, const double amplitude) const
+{
+  // One may have failed by chance.
+  constexpr std::ptrdiff_t too_many = 2;
+  return std::any_of(failures.begin(), failures.end(), [&](const auto &of_experiment) {
+    const auto &[experiment, positions] = of_experiment;
+    return std::count_if(positions.begin(), positions.end(),
+                         [&](const Eigen::VectorXd &position) {
+                           return is_near(position, effect, amplitude);
+                         }) >= too_many &&
+           n_near(experiment, effect, amplitude) == 0;
   });
 }
 

@@ -83,6 +83,10 @@ public:
   bool has_near(std::size_t effect, double amplitude, unsigned int runs,
                 const std::vector<std::string> &experiments) const;
 
+  /// Whether runs with nearly this amplitude fail in an experiment, such as where its input is
+  /// refused, so that more of them would fail as well.
+  bool fails_near(std::size_t effect, double amplitude) const;
+
   std::uint64_t n_asked() const { return asked; }
   std::uint64_t n_failed() const { return failed; }
   std::uint64_t n_known() const { return known; }
@@ -93,11 +97,16 @@ public:
 
 private:
   void add(const RunRequest &request, const RunResult &result);
+  /// Whether a position has nearly this amplitude and no other effect, and how many runs that
+  /// reached their end have.
+  bool is_near(const Eigen::VectorXd &position, std::size_t effect, double amplitude) const;
+  std::size_t n_near(const std::string &experiment, std::size_t effect, double amplitude) const;
 
   const StudyOptions &options;
   const FactorSpace &space;
   Simulator &source;
   std::map<std::string, std::vector<Sample>> samples;
+  std::map<std::string, std::vector<Eigen::VectorXd>> failures; ///< positions of failed runs
   std::map<std::pair<std::string, Amplitudes>, unsigned int> counts;
   std::uint32_t next_seed;
   std::uint64_t asked = 0, failed = 0, known = 0, reserved = 0;
