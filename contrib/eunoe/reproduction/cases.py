@@ -62,6 +62,7 @@ VARIANTS = {
     "open_stiff": Variant("the paper's Young's modulus", base="open", stiff=True, closely=True),
     "lips": Variant("lips and gap of the small cases, fed less",
                     {**BEFORE, f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
+    "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=True),
     "lips_stiff": Variant("the paper's Young's modulus", base="lips", stiff=True, closely=True),
 }
 
@@ -157,6 +158,7 @@ def _in_turn(*series: list[Case]) -> list[Case]:
 # shortcuts do on shorter plates.
 CASES = (
     *_series("PS1", 1., 1),
+    *_series("PS1", 0.25, 3, variant="lips_forget"),  # beside runs that there are
     *_in_turn(_series("PS1", 0.5, 2), _series("PS3", 0.5, 2)),
     *_in_turn(_series("PS1", 0.25, 3), _series("PS3", 0.25, 3)),
     *_series("PS3", 1., 1),
