@@ -104,6 +104,7 @@ Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulato
       next_seed = std::max(next_seed, request.seed + 1);
     }
   }
+  failed = 0;
 }
 
 void Samples::add(const RunRequest &request, const RunResult &result)

@@ -88,6 +88,7 @@ public:
   bool fails_near(std::size_t effect, double amplitude) const;
 
   std::uint64_t n_asked() const { return asked; }
+  /// Of those that it has asked for.
   std::uint64_t n_failed() const { return failed; }
   std::uint64_t n_known() const { return known; }
   std::uint64_t remaining() const;
