@@ -56,7 +56,8 @@ class Cases(unittest.TestCase):
     def test_stiff_grains_have_shorter_steps(self) -> None:
         soft, stiff = Case("PS1", 0.5, 1, variant="open"), Case("PS1", 0.5, 1, variant="open_stiff")
         wall, step = "lagrangian physical properties/young modulus wall", "simulation control/time step"
-        self.assertEqual((soft.base, soft.settings[wall], soft.settings[step]), ("PS1_L0.5", "2.625e+06", "1.78099e-06"))
+        self.assertEqual((soft.base, soft.settings[wall], soft.settings[step]),
+                         ("PS1_L0.5", "2.625e+06", "1.78099e-06"))
         self.assertEqual((stiff.base, stiff.settings[step]), ("PS1_L0.5_open", "5.632e-07"))
         self.assertNotIn(wall, stiff.settings)
         for entry in ("rim width", "feedstock level"):
@@ -165,8 +166,8 @@ class Campaign(unittest.TestCase):
         record = read_record(folder)
         self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
                                           ("density", "held", "held_layers", "held_maps_PS1", "held_mechanism", "layers",
-                                           "maps_PS1", "maps_PS3", "mechanism", "middle", "open", "open_layers", "open_maps_PS1",
-                                           "open_mechanism", "open_middle", "profiles", "variants_1")])
+                                           "maps_PS1", "maps_PS3", "mechanism", "middle", "open", "open_layers",
+                                           "open_maps_PS1", "open_mechanism", "open_middle", "profiles", "variants_1")])
         for name, entry in record.items():
             self.assertEqual((entry.rule, entry.revision, entry.digest),
                              ("reproduction", "abc1234", digest(folder / name)))

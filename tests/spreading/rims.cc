@@ -62,7 +62,7 @@ struct Seen
   double deepest_beside = 0.; ///< overlap with the outer walls, over the radius
 };
 
-/// Layers on a plate between gaps as wide as half of it.
+/// Layers on a plate between wide gaps.
 Seen spread(const double width)
 {
   Case run(small_spreading("results", R"(

@@ -19,7 +19,8 @@ def _case_rows(layers: Layers, apparatus: Apparatus, full: FullSize,
                measured: Measured) -> list[tuple[str, str, str]]:
     a = apparatus
     rows = [("Measuring plate, length", length(a.plate_length), length(full.plate_length)),
-            ("Measuring plate, depth", f"{length(a.depth)} ({'between walls' if a.side_walls else 'periodic'})", length(full.plate_depth)),
+            ("Measuring plate, depth", f"{length(a.depth)} ({'between walls' if a.side_walls else 'periodic'})",
+             length(full.plate_depth)),
             ("Feedstock platform", length(a.platform_length), length(full.platform_length)),
             ("Transfer plate", length(a.transfer_length), length(full.transfer_length)),
             ("Exit plate", length(a.exit_length), length(full.exit_length)),

@@ -47,7 +47,7 @@ class Variant:
     closely: bool = False
 
 
-# Until a1e5cd3 and 065a860 cases had no rims, and a bed level with the transfer plate, so that a stroke of 0.6 mm fed 0.5.
+# Until a1e5cd3 and 065a860 cases had no rims, and a bed level with the transfer plate: a stroke of 0.6 mm fed 0.5.
 BEFORE = {f"{SPREADING}/rim width": "0", f"{SPREADING}/feedstock level": "0"}
 VARIANTS = {
     "": Variant("as the published input files, at the cheap settings", closely=True),

@@ -175,8 +175,8 @@ PICTURES = {
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block, "open": open_block, "held": held_block,
-          "variants": variants_block, "needed": needed_block}
+          "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block, "open": open_block,
+          "held": held_block, "variants": variants_block, "needed": needed_block}
 
 
 def _pictures(name: str, folder: Path) -> str:

@@ -76,9 +76,9 @@ class Findings:
         names = set(variants)
         found = [results for results in self.results.values() if results[0].case.variant in names]
         found.sort(key=lambda results: results[0].case.length)
-        return [Group(", ".join([plain_label(results[0].case),
-                                 *([results[0].case.title] if VARIANTS[results[0].case.variant].base in names else [])]),
-                      results) for results in found]
+        cases = [results[0].case for results in found]
+        return [Group(", ".join([plain_label(case), *([case.title] if VARIANTS[case.variant].base in names else [])]),
+                      results) for case, results in zip(cases, found)]
 
     def variants(self) -> list[tuple[Group, list[Group]]]:
         """Groups with variants, with the group that they are to be compared with, as far as that is there."""

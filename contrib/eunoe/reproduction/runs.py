@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
-from eunoe.folders import alone_with, occupy
+from eunoe.folders import alone_with
 from eunoe.launch import Failure, mpirun, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
@@ -89,7 +89,8 @@ class Campaign:
         """Keeps with which settings and on which processors a case runs; the program does not say. A folder of the
         same name with other settings, as the cases were once, is refused."""
         self.check(case)
-        occupy(self.of(case), settings_of(case), NOTE)
+        self.of(case).mkdir(parents=True, exist_ok=True)
+        (self.of(case) / NOTE).write_text(json.dumps(settings_of(case), indent=1) + "\n", encoding="utf-8")
         file = self.of(case) / "processors.json"
         known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
         if processor() not in known:
@@ -113,11 +114,11 @@ class Campaign:
 
     def work(self, cases: list[Case], jobs: int, after_each: Callable[[Case], None]) -> bool:
         """Makes the cases that have not finished, so many at a time; false if one failed."""
+        for case in cases:
+            self.check(case)
         before = {number: signal.signal(number, self.stop)
                   for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)}
         turn = threading.Lock()
-        for case in cases:
-            self.check(case)
 
         def make(case: Case) -> bool:
             code = self.make(case)
