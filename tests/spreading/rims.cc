@@ -1,5 +1,5 @@
-// Rims between the measuring plate and its gaps: where they stand, and that they hold the bed,
-// which without them slopes into the gaps.
+// Rims between the measuring plate and its gaps: where they stand, that the gaps have walls on both
+// sides then, and that they hold the bed, which without them slopes into the gaps.
 
 #include <eunoe/processes/powder_spreading/apparatus.h>
 
@@ -17,6 +17,22 @@ namespace {
 
 constexpr double gap = 0.4e-3, rim = 0.05e-3, tolerance = 1e-12;
 
+/// Height of the lowest edge of a solid at an x (m).
+double foot_at(const Solid &solid, const double x)
+{
+  double lowest = 1.;
+  for (const Vec3 &corner : solid.shape->triangles())
+    if (std::abs(corner.x - x) < tolerance)
+      lowest = std::min(lowest, corner.y);
+  return lowest;
+}
+
+const Solid &solid_of(const std::vector<Solid> &solids, const std::string &name)
+{
+  return *std::find_if(solids.begin(), solids.end(),
+                       [&](const Solid &solid) { return solid.name == name; });
+}
+
 void examine_places()
 {
   SpreadingParameters p;
@@ -29,9 +45,12 @@ void examine_places()
           return solid.name == "rims";
         }));
   check_close("plate beside the gap", open.x_plate, open.x_gap + gap, tolerance);
+  check_close("edge of the transfer plate", foot_at(solid_of(solids, "transfer plate"), open.x_gap),
+              -p.lip, tolerance);
 
   p.rim = rim;
   const Apparatus held(p, 100e-6);
+  solids.clear();
   held.add_solids(solids, 1);
   const Solid &rims = solids.back();
   check("rims", rims.name == "rims");
@@ -51,6 +70,10 @@ void examine_places()
   check_close("width", x[1] - x[0], rim, tolerance);
   check_close("level with the other plates", highest, 0., tolerance);
   check("deeper than the plate goes", lowest < -p.n_layers * p.layer_thickness);
+  check_close("as deep beside the transfer plate",
+              foot_at(solid_of(solids, "transfer plate"), held.x_gap), lowest, tolerance);
+  check_close("as deep beside the exit plate", foot_at(solid_of(solids, "exit plate"), held.x_exit),
+              lowest, tolerance);
   check_close("length of the plate", held.x_plate_end - held.x_plate,
               open.x_plate_end - open.x_plate, tolerance);
 }

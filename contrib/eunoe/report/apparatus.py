@@ -52,6 +52,7 @@ class Apparatus:
     first_bed_depth: float
     density: float
     plate_stroke: float | None = None  # None: the layer thickness
+    first_thickness: float = 0.  # depth of the plate below the transfer plate in the first pass
     side_walls: bool = False  # at the ends of the depth, which is periodic without them
     rim: float = 0.  # width of the walls between the measuring plate and its gaps
 
@@ -95,7 +96,8 @@ class Apparatus:
 
     def plate_height(self, layer: int) -> float:
         """Height of the measuring plate when this layer is weighed."""
-        return -layer * (self.plate_stroke or self.layer_thickness)
+        stroke = self.plate_stroke or self.layer_thickness
+        return -layer * stroke - self.first_thickness * stroke / self.layer_thickness
 
     def spreader_tip(self) -> float:
         """x of a spreader's lowest line when the layer that it has made is weighed."""

@@ -47,7 +47,7 @@ def _case_rows(layers: Layers, apparatus: Apparatus, full: FullSize,
 
 def slopes_sentence(apparatus: Apparatus, full: FullSize, layer: int) -> str:
     """What the slopes at the powder's free ends mean for a plate of this length."""
-    height = layer * apparatus.layer_thickness
+    height = -apparatus.plate_height(layer)
     free = height - apparatus.lip
     if free <= 0. or apparatus.rim > 0.:
         return ""

@@ -20,7 +20,7 @@ L1 = 1. / 7.  # of the full size
 SPREADING, MODEL = "powder spreading", "model parameters"
 SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
 FORGET = f"{MODEL}/contact history/forget interval"
-BALANCE_INTERVAL = 10.5e-3  # s between two load balances of the published input files
+BALANCE_INTERVAL = 7.0e-3  # s between two load balances of the published input files
 NEIGHBORHOOD = f"{MODEL}/contact detection/neighborhood threshold"
 SETS = ("PS1", "PS2", "PS3")
 N_LAYERS = 21
@@ -34,7 +34,7 @@ class Variant:
     """@param title in words, beside the cases that it is compared with
     @param settings entries of the input and their values
     @param base the variant that it is compared with and whose settings it shares; empty: none
-    @param forgets whether contacts forget as often as the published input files balance loads
+    @param forgets seconds after which contacts forget all; 0: never
     @param stiff whether Young's modulus is the paper's. Where it is divided by `SOFTER`, the pull-off force
         stays, and the time step keeps its share of the Rayleigh time, which goes with the inverse root of the modulus
     @param closely whether maps and pictures of its runs are kept, as of those without a variant"""
@@ -42,17 +42,21 @@ class Variant:
     title: str
     settings: dict[str, Any] = field(default_factory=dict)
     base: str = ""
-    forgets: bool = False
+    forgets: float = 0.
     stiff: bool = False
     closely: bool = False
 
 
+RADIUS = f"{SPREADING}/spreader radius R_s"
 # Until a1e5cd3 and 065a860 cases had no rims, and a bed level with the transfer plate: a stroke of 0.6 mm fed 0.5.
-BEFORE = {f"{SPREADING}/rim width": "0", f"{SPREADING}/feedstock level": "0"}
+# They had the radius of the paper's text, and spread layer 0 on a plate at the level of the transfer plate.
+BEFORE = {f"{SPREADING}/rim width": "0", f"{SPREADING}/feedstock level": "0",
+          f"{SPREADING}/first layer thickness": "0", RADIUS: "5e-3"}
 VARIANTS = {
     "": Variant("as the published input files, at the cheap settings", closely=True),
     "stiff": Variant("the paper's Young's modulus", stiff=True),
-    "forget": Variant("contacts forget every 10.5 ms", forgets=True),
+    "forget": Variant("contacts forget every 7 ms", forgets=BALANCE_INTERVAL),
+    "radius5": Variant("a spreader of 5 mm of radius, as in the paper's text", {RADIUS: "5e-3"}),
     "unopened": Variant("velocity Verlet without its opening half step",
                         {f"{MODEL}/integration method": "symplectic_euler"}),
     "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
@@ -62,7 +66,7 @@ VARIANTS = {
     "open_stiff": Variant("the paper's Young's modulus", base="open", stiff=True, closely=True),
     "lips": Variant("lips and gap of the small cases, fed less",
                     {**BEFORE, f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
-    "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=True),
+    "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=10.5e-3),
     "lips_stiff": Variant("the paper's Young's modulus", base="lips", stiff=True, closely=True),
 }
 
@@ -141,7 +145,7 @@ class Case:
             # In a longer step grains move farther, so that searches would come three times as often.
             found.update({**powder, NEIGHBORHOOD: "1.3"})
         if variant.forgets:
-            found[FORGET] = math.floor(BALANCE_INTERVAL / float(step))
+            found[FORGET] = math.floor(variant.forgets / float(step))
         return {**found, **VARIANTS[variant.base].settings, **variant.settings}
 
 
@@ -164,6 +168,7 @@ CASES = (
     *_series("PS3", 1., 1),
     *_series("PS1", 1., 3)[1:],
     *_series("PS2", 0.5, 1),
+    *_series("PS1", 0.25, 3, variant="radius5"),
     *_in_turn(_series("PS1", 0.25, 3, variant="forget"), _series("PS1", 0.25, 3, variant="unopened")),
     *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="lips_stiff"),
               _series("PS3", 0.25, 3, variant="lips_stiff")),

@@ -15,8 +15,9 @@ SLOPE = math.tan(math.radians(35.))
 # From prm/spreading: full lengths, strokes, spreader and powder (m).
 W1, W2, W3, W4 = 69e-3, 56e-3, 73e-3, 46.5e-3
 GAP, RIM, LIP, STROKE, FIRST_STROKE, MARGIN = 0.5e-3, 0.1e-3, 0.1e-3, 0.6e-3, 2.2e-3, 1e-3
-LAYER, CLEARANCE, RADIUS, N_LAYERS = 100e-6, 100e-6, 5e-3, 21
+LAYER, CLEARANCE, RADIUS, N_LAYERS = 100e-6, 100e-6, 2.5e-3, 21
 LEVEL = CLEARANCE  # of the feedstock bed
+FIRST_LAYER = LAYER  # depth of the plate in the first pass
 LARGEST = 101.096e-6
 DIAMETERS = np.array([52.622, 57.7666, 63.4141, 69.6138, 76.4196, 83.8907, 92.0923, 101.096]) * 1e-6
 SHARES = np.array([0.146168, 0.168842, 0.168577, 0.152019, 0.129519, 0.105404, 0.078927, 0.050544])
@@ -35,7 +36,7 @@ def apparatus(length_factor: float, depth: float) -> dict[str, float]:
     a["first_bed_depth"] = FIRST_STROKE + MARGIN
     pile = math.sqrt(2. * FIRST_STROKE * a["x_transfer"] * SLOPE)
     height = max(1.2 * RADIUS, FIRST_STROKE + pile)
-    a["y_bottom"] = -max(a["first_bed_depth"], N_LAYERS * LAYER + LIP) - 4. * LARGEST
+    a["y_bottom"] = -max(a["first_bed_depth"], FIRST_LAYER + N_LAYERS * LAYER + LIP) - 4. * LARGEST
     a["y_top"] = max(CLEARANCE + height, 4.2 * (a["bed_depth"] + LEVEL)) + 2. * LARGEST
     return a
 
@@ -67,7 +68,7 @@ def powder(a: dict[str, float], layers: int) -> np.ndarray:
     middle = 0.5 * (a["x_transfer"] + a["x_gap"])
     boxes = [((0., -a["bed_depth"] + STROKE), (a["x_transfer"], LEVEL)),
              ((a["x_transfer"], 0.), (middle, CLEARANCE)),
-             ((a["x_plate"], -layers * LAYER), (a["x_plate_end"], 0.)),
+             ((a["x_plate"], -FIRST_LAYER - layers * LAYER), (a["x_plate_end"], 0.)),
              ((a["x_exit"], 0.), (a["x_end"], CLEARANCE))]
     parts = [lattice((*low, 0.), (*high, depth), density, random) for low, high in boxes if
              high[1] > low[1]]

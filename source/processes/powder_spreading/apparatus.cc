@@ -54,7 +54,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   const double pile_height = std::sqrt(2. * largest_stroke * x_transfer * slope);
   spreader_height = p.spreader_height > 0. ? p.spreader_height
                                            : std::max(1.2 * front, largest_stroke + pile_height);
-  y_bottom = -std::max(first_bed_depth, p.n_layers * p.plate_stroke() + p.plate_recoil + p.lip) -
+  y_bottom = -std::max(first_bed_depth, -p.plate_level(p.n_layers) + p.plate_recoil + p.lip) -
              4. * largest_diameter;
   // Loose particles for the bed need five times its height.
   y_top = std::max(p.mean_clearance() + spreader_height + p.spreader_tilt + p.vibration_amplitude,
@@ -62,7 +62,7 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
           2. * largest_diameter;
 
   platform = std::make_shared<StrokeMotion>(Vec3{0., -bed_depth, 0.});
-  plate = std::make_shared<StrokeMotion>(Vec3());
+  plate = std::make_shared<StrokeMotion>(Vec3{0., p.plate_level(0), 0.});
   if (p.plate_recoil > 0.)
     yielding_plate = std::make_shared<YieldingMotion>(plate, Vec3{0., -p.plate_recoil, 0.});
   for (auto &spreader : spreaders)
@@ -125,6 +125,7 @@ TriangleMesh Apparatus::rim_piece(const double x, const double z, const double l
 Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const int material) const
 {
   const double z = -margin, length = depth + 2. * margin;
+  const double foot = y_bottom - margin, edge = p.rim > 0. ? foot : -p.lip;
   const auto add = [&](const std::string &name, const TriangleMesh &mesh,
                        std::shared_ptr<const Motion> motion) {
     Solid solid;
@@ -146,11 +147,8 @@ Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const 
   handles.platform = add("feedstock platform",
                          extrude({{-margin, 0., 0.}, {x_transfer, 0., 0.}}, z, length), platform);
   add("transfer plate",
-      extrude({{x_transfer, y_bottom - margin, 0.},
-               {x_transfer, 0., 0.},
-               {x_gap, 0., 0.},
-               {x_gap, -p.lip, 0.}},
-              z, length),
+      extrude({{x_transfer, foot, 0.}, {x_transfer, 0., 0.}, {x_gap, 0., 0.}, {x_gap, edge, 0.}}, z,
+              length),
       std::make_shared<AtRest>());
   handles.plate = add("measuring plate",
                       extrude({{x_plate, -p.lip, 0.},
@@ -160,7 +158,7 @@ Apparatus::SolidHandles Apparatus::add_solids(std::vector<Solid> &solids, const 
                               z, length),
                       yielding_plate ? std::shared_ptr<const Motion>(yielding_plate) : plate);
   add("exit plate",
-      extrude({{x_exit, -p.lip, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
+      extrude({{x_exit, edge, 0.}, {x_exit, 0., 0.}, {x_end + margin, 0., 0.}}, z, length),
       std::make_shared<AtRest>());
   if (p.rim > 0.) {
     TriangleMesh rims = rim_piece(x_plate - p.rim, z, length);

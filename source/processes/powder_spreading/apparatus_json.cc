@@ -27,6 +27,7 @@ std::string Apparatus::as_json(const double density) const
   json["clearance"] = p.mean_clearance();
   json["n_layers"] = p.n_layers;
   json["layer_thickness"] = p.layer_thickness;
+  json["first_thickness"] = p.first_thickness;
   json["plate_stroke"] = p.plate_stroke();
   json["velocity"] = p.velocity;
   json["first_stroke"] = p.actual_stroke(0);

@@ -22,7 +22,8 @@ void declare_apparatus(dealii::ParameterHandler &prm, SpreadingParameters &p)
   not_negative(prm, "gap", p.gap, "Width of the gap on both sides of the measuring plate (m).");
   not_negative(
       prm, "lip height", p.lip,
-      "Height of the edges of the plates at the gap, below which powder falls freely (m).");
+      "Height of the edges of the plates at the gap, below which powder falls freely (m). Beside "
+      "rims the edges are as deep as these.");
   not_negative(prm, "rim width", p.rim,
                "Width of the wall between the measuring plate and each gap, as deep as the plate "
                "goes, which holds the bed at its ends (m); 0: none, the gap borders the plate.");
@@ -51,6 +52,8 @@ void declare_passes(dealii::ParameterHandler &prm, SpreadingParameters &p)
                    "Number of passes; the layers are numbered from 0.");
   not_negative(prm, "layer thickness delta_l", p.layer_thickness,
                "Stroke of the measuring plate after every pass (m).");
+  not_negative(prm, "first layer thickness", p.first_thickness,
+               "Depth of the measuring plate below the transfer plate in the first pass (m).");
   not_negative(prm, "spreading velocity v_s", p.velocity, "Velocity of the spreader (m/s).");
   not_negative(prm, "feedstock stroke delta_f", p.stroke,
                "Stroke of the feedstock platform before every pass (m).");

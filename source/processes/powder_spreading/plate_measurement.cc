@@ -9,6 +9,13 @@ namespace eunoe::spreading {
 
 namespace {
 
+/// Number of layers, of the thickness of one, that the bed on the plate is high.
+unsigned int layers_of_bed(const SpreadingParameters &p)
+{
+  const double first = p.layer_thickness > 0. ? p.first_thickness / p.layer_thickness : 0.;
+  return p.n_layers + static_cast<unsigned int>(std::lround(first));
+}
+
 /// Columns of the surface's heights, in parts of the smallest diameter.
 constexpr double column_width = 0.25;
 
@@ -68,7 +75,7 @@ PlateMeasurement::PlateMeasurement(const SpreadingParameters &parameters,
                                                 apparatus.depth, is_periodic, plate_height},
                                                n_bins, column_width * smallest_diameter(physics)),
       density(Footprint::strip(apparatus.x_plate, apparatus.x_plate_end, apparatus.depth),
-              plate_height, parameters.layer_thickness, parameters.n_layers)
+              plate_height, parameters.layer_thickness, layers_of_bed(parameters))
 {
 }
 
@@ -112,17 +119,14 @@ std::vector<Measurement> SpreadingParameters::measure(
                     " files of particles, and the case has " + std::to_string(n_layers) +
                     " layers. Give the file after the last layer, or one for each layer.");
   const Apparatus apparatus(*this, parameters.physics.largest_diameter());
-  const auto plate_height = [&](std::size_t layer) {
-    return -static_cast<double>(layer) * plate_stroke();
-  };
   std::vector<OnPlate> layers;
   for (std::size_t k = 0; k < moments.size(); ++k)
-    layers.emplace_back(moments[k], apparatus, plate_height(n_layers - moments.size() + k));
+    layers.emplace_back(moments[k], apparatus, plate_level(n_layers - moments.size() + k));
   if (layers.back().present.number == 0)
     throw UserError(
         "None of the " + std::to_string(moments.back().size()) +
         " particles lies over the measuring plate, from x = " + format(apparatus.x_plate) + " to " +
-        format(apparatus.x_plate_end) + " m and above y = " + format(plate_height(n_layers - 1)) +
+        format(apparatus.x_plate_end) + " m and above y = " + format(plate_level(n_layers - 1)) +
         " m. Give their places in this frame, in metres.");
   std::vector<Measurement> measured;
   if (moments.size() == n_layers)
@@ -130,7 +134,7 @@ std::vector<Measurement> SpreadingParameters::measure(
   else
     layers.back().append_to(measured, n_layers - 1);
   PlateMeasurement plate(*this, apparatus, parameters.physics, !side_walls,
-                         plate_height(n_layers - 1));
+                         plate_level(n_layers - 1));
   for (const GivenParticle &particle : moments.back())
     plate.add(particle.centre, particle.radius, particle.mass);
   plate.append_to(measured);

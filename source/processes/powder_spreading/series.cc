@@ -23,6 +23,7 @@ const std::vector<std::string> entries_of_apparatus = {"feedstock platform lengt
                                                        "lip height",
                                                        "rim width",
                                                        "layer thickness delta_l",
+                                                       "first layer thickness",
                                                        "layer thickness error",
                                                        "side walls"};
 

@@ -30,6 +30,7 @@ struct SpreadingParameters : public ProcessSection
 
   unsigned int n_layers = 21;
   double layer_thickness = 100e-6;
+  double first_thickness = 0.; ///< of layer 0, below the transfer plate
   double velocity = 0.1;
   double stroke = 0.6e-3, first_stroke = 2.2e-3;
   double plate_velocity = 2e-3, platform_velocity = 2e-3;
@@ -78,6 +79,12 @@ struct SpreadingParameters : public ProcessSection
   double mean_clearance() const { return clearance + clearance_offset; }
   /// Stroke of the measuring plate.
   double plate_stroke() const { return layer_thickness * (1. + plate_stroke_error); }
+  /// Height of the measuring plate in the pass of a layer (m).
+  double plate_level(double layer) const
+  {
+    const double fallen = first_thickness * (1. + plate_stroke_error) + layer * plate_stroke();
+    return 0. - fallen; // and not -0
+  }
   /// Stroke of the feedstock platform before a layer.
   double actual_stroke(unsigned int layer) const
   {
