@@ -85,10 +85,11 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   const EntryPath balancing = {"model parameters", "load balancing"};
   const InputEntry *const balance = input.find(balancing, "load balance method");
   if (balance != nullptr && balance->value != "none")
-    notes.emplace_back("Lethe: contacts lose their history at every load balancing; here they keep "
-                       "it.");
-  if (input.count("size distribution type", "custom") > 0)
-    notes.emplace_back("Lethe: custom distributions given by volume were sampled wrongly.");
+    notes.emplace_back("Lethe: contacts of particles lose their history at every load balancing; "
+                       "here they keep it.");
+  if (input.count("custom distribution interpolation", "true") > 0)
+    notes.emplace_back("Lethe: interpolated custom distributions given by volume were sampled "
+                       "wrongly until July 2026.");
   if (input.count("type", "periodic") > 1)
     notes.emplace_back("Lethe: with two periodic directions, some contacts count twice on several "
                        "ranks.");

@@ -259,7 +259,9 @@ EUNOE_MPI_TEST()
       " set list x = 0, 1\n set list y = 0, 0\n set list z = 0, 0\n"
       " set list velocity x = 0.5, 0.5\nend\nsubsection restart\n set restart = true\nend\n"
       "subsection model parameters\n set integration method = explicit_euler\n"
-      " subsection load balancing\n  set load balance method = dynamic\n end\nend\n");
+      " subsection load balancing\n  set load balance method = dynamic\n end\nend\n"
+      "subsection lagrangian physical properties\n subsection particle type 0\n"
+      "  set custom distribution interpolation = true\n end\nend\n");
   print_problems("set dimension = 3\nsubsection simulation control\n set output frequency = 10\n"
                  "end\nsubsection insertion info\n set insertion frequency = 7\nend\n"
                  "subsection mesh\n set expand particle-wall contact search = true\nend\n");

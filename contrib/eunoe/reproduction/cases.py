@@ -61,6 +61,8 @@ VARIANTS = {
                         {f"{MODEL}/integration method": "symplectic_euler"}),
     "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
     "awake": Variant("without sleep", {SLEEP: "false"}),
+    # Sleepers keep what they remember, and zones at rest sleep. As often in a layer as on the paper's L4:
+    "awake_forget": Variant("without sleep, contacts forget every 1.6 ms", {SLEEP: "false"}, forgets=1.6e-3),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
     "open": Variant("without rims, fed less", BEFORE, closely=True),
     "open_stiff": Variant("the paper's Young's modulus", base="open", stiff=True, closely=True),
@@ -168,7 +170,7 @@ CASES = (
     *_series("PS3", 1., 1),
     *_series("PS1", 1., 3)[1:],
     *_series("PS2", 0.5, 1),
-    *_series("PS1", 0.25, 3, variant="radius5"),
+    *_in_turn(_series("PS1", 0.25, 3, variant="awake_forget"), _series("PS1", 0.25, 3, variant="radius5")),
     *_in_turn(_series("PS1", 0.25, 3, variant="forget"), _series("PS1", 0.25, 3, variant="unopened")),
     *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="lips_stiff"),
               _series("PS3", 0.25, 3, variant="lips_stiff")),
