@@ -87,6 +87,10 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   if (balance != nullptr && balance->value != "none")
     notes.emplace_back("Lethe: contacts of particles lose their history at every load balancing; "
                        "here they keep it.");
+  if (input.has(model, "particle particle contact force method", "DMT"))
+    notes.emplace_back("Lethe: particles that attract each other across a gap by DMT also feel the "
+                       "force and the torque of the last other contact that was computed; here "
+                       "they feel their attraction alone.");
   if (input.count("custom distribution interpolation", "true") > 0)
     notes.emplace_back("Lethe: interpolated custom distributions given by volume were sampled "
                        "wrongly until July 2026.");

@@ -259,6 +259,8 @@ EUNOE_MPI_TEST()
       " set list x = 0, 1\n set list y = 0, 0\n set list z = 0, 0\n"
       " set list velocity x = 0.5, 0.5\nend\nsubsection restart\n set restart = true\nend\n"
       "subsection model parameters\n set integration method = explicit_euler\n"
+      " set particle particle contact force method = DMT\n"
+      " set particle wall contact force method = DMT\n"
       " subsection load balancing\n  set load balance method = dynamic\n end\nend\n"
       "subsection lagrangian physical properties\n subsection particle type 0\n"
       "  set custom distribution interpolation = true\n end\nend\n");

@@ -42,9 +42,10 @@ def _draw_plates(axes: Axes, apparatus: Apparatus, plate_height: float,
     a = apparatus
     look = {"facecolor": style.SOLID_FACE, "edgecolor": style.SOLID_EDGE, "linewidth": 0.6,
             "zorder": 0.5}
-    for x0, x1, y in ((a.x_transfer, a.x_gap, 0.), (a.x_plate, a.x_plate_end, plate_height),
-                      (a.x_exit, a.x_end, 0.)):
-        axes.add_patch(Rectangle((MM * x0, MM * (y - a.lip)), MM * (x1 - x0), MM * a.lip, **look))
+    edge = -a.y_bottom if a.rim > 0. else a.lip  # beside rims the gaps have walls on both sides
+    for x0, x1, y, deep in ((a.x_transfer, a.x_gap, 0., edge), (a.x_plate, a.x_plate_end, plate_height, a.lip),
+                            (a.x_exit, a.x_end, 0., edge)):
+        axes.add_patch(Rectangle((MM * x0, MM * (y - deep)), MM * (x1 - x0), MM * deep, **look))
     for x in (a.x_plate - a.rim, a.x_plate_end) if a.rim > 0. else ():
         axes.add_patch(Rectangle((MM * x, MM * a.y_bottom), MM * a.rim, -MM * a.y_bottom, **look))
     for tip in tips or [a.spreader_tip()]:
