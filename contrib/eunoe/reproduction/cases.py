@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 from eunoe.launch import Failure
-from eunoe.powder import PAPER, TIME_STEP
+from eunoe.powder import PAPER, PARTICLES, TIME_STEP, WALL
 from eunoe.repository import CASES as INPUT_FILES
 
 L1 = 1. / 7.  # of the full size
@@ -61,6 +61,9 @@ VARIANTS = {
                         {f"{MODEL}/integration method": "symplectic_euler"}),
     "full": Variant("one deep reservoir", {f"{SPREADING}/feedstock": "full"}),
     "awake": Variant("without sleep", {SLEEP: "false"}),
+    "damping": Variant("rolling viscous damping of 0.1, which the input files leave to Lethe",
+                       {f"{PARTICLES}/rolling viscous damping particles": "0.1",
+                        f"{WALL}/rolling viscous damping wall": "0.1"}),
     # Sleepers keep what they remember, and zones at rest sleep. As often in a layer as on the paper's L4:
     "awake_forget": Variant("without sleep, contacts forget every 1.6 ms", {SLEEP: "false"}, forgets=1.6e-3),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
@@ -170,7 +173,8 @@ CASES = (
     *_series("PS3", 1., 1),
     *_series("PS1", 1., 3)[1:],
     *_series("PS2", 0.5, 1),
-    *_in_turn(_series("PS1", 0.25, 3, variant="awake_forget"), _series("PS1", 0.25, 3, variant="radius5")),
+    *_in_turn(_series("PS1", 0.25, 3, variant="awake_forget"), _series("PS1", 0.25, 3, variant="radius5"),
+              _series("PS1", 0.25, 3, variant="damping")),
     *_in_turn(_series("PS1", 0.25, 3, variant="forget"), _series("PS1", 0.25, 3, variant="unopened")),
     *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="lips_stiff"),
               _series("PS3", 0.25, 3, variant="lips_stiff")),
