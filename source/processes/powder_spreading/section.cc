@@ -133,7 +133,8 @@ RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
   const ParticleType &type = parameters.physics.types[particle_type];
   const Apparatus a(*this, parameters.physics.largest_diameter());
   const double volume = M_PI / 6. * type.sizes.make()->mean_cube();
-  const double layer = bed_fraction * a.plate_area() * layer_thickness / volume;
+  const double per_height = bed_fraction * a.plate_area() / volume;
+  const double layer = per_height * layer_thickness, below = per_height * first_thickness;
   const double first = a.particles_in_bed(type, a.first_bed_depth + bed_level);
   const double later = feedstock == "full"
                            ? 0.5 * (first + a.particles_in_bed(type, bed_margin + bed_level))
@@ -142,8 +143,8 @@ RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
   const auto schedule = make_schedule(*this, a, 0.25 * settling_time);
   RunEstimate estimate;
   estimate.steps = schedule.back().weighing / parameters.control.time_step;
-  estimate.particles = later + transit + 0.5 * n_layers * layer;
-  estimate.most_particles = std::max(first + transit, later + transit + n_layers * layer);
+  estimate.particles = later + transit + below + 0.5 * n_layers * layer;
+  estimate.most_particles = std::max(first + transit, later + transit + below + n_layers * layer);
   return estimate;
 }
 
