@@ -26,7 +26,7 @@ class Costs:
     of a particle takes if it is not in a cache, of which a rank has `cache` bytes.
     """
 
-    speeds: tuple[tuple[float, float], ...] = ((2e4, 17.4e6), (2e5, 8.6e6))
+    speeds: tuple[tuple[float, float], ...] = ((2e4, 28.2e6), (2e5, 18.4e6), (1e6, 15.1e6))
     ghost: float = 0.22
     paired: float = 0.6
     search: float = 8.

@@ -3,7 +3,7 @@
 Usage: contrib/tools predict-scaling output/my_run/spreading_00042.vtu [--ranks 64,128,...]
        contrib/tools predict-scaling --length-factor 0.5714 --depth 2e-3 --layers 20
            [--steps 75e6] [--latency 1.5e-6] [--bandwidth 12e9] [--copy 4e9]
-           [--ranks-per-node 64] [--memory 200e9] [--traffic 1e3] [--cache 4e6] [--speeds 2e4:17.4e6,2e5:8.6e6] [--ghost 0.22] [--paired 0.6] [--search 8]
+           [--ranks-per-node 64] [--memory 200e9] [--traffic 1e3] [--cache 4e6] [--speeds 2e4:28.2e6,2e5:18.4e6,1e6:15.1e6] [--ghost 0.22] [--paired 0.6] [--search 8]
            [--interval 160]
            [--cell-weight 20] [--particle-weight 2000] [--reach 1e-4] [--skin 0.13] [--compare] [--json FILE]
 
@@ -76,7 +76,7 @@ def costs_of(options: argparse.Namespace) -> Costs:
             raise ValueError
     except ValueError:
         raise Failure(f"--speeds {options.speeds}: give particles:speed pairs, as in "
-                      "2e4:17.4e6,2e5:8.6e6.") from None
+                      "2e4:28.2e6,2e5:18.4e6,1e6:15.1e6.") from None
     return replace(Costs(), speeds=speeds, ghost=options.ghost, paired=options.paired,
                    search=options.search, interval=options.interval, latency=options.latency,
                    bandwidth=options.bandwidth, copy=options.copy, ranks_per_node=options.ranks_per_node,
