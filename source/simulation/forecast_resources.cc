@@ -64,7 +64,8 @@ void judge_disk(const Parameters &parameters, const RunEstimate &estimate,
                 const unsigned int n_extra, MPI_Comm comm, Forecast &forecast)
 {
   const ControlParameters &control = parameters.control;
-  const double n = number_of_pictures(control, estimate.steps);
+  const double n_regular = number_of_pictures(control, estimate.steps);
+  const double n = n_regular + estimate.pictures;
   const double pictures =
       n * estimate.particles * (picture_bytes_per_particle + n_extra * picture_bytes_per_field);
   const RestartParameters &restart = parameters.restart;
@@ -90,12 +91,12 @@ void judge_disk(const Parameters &parameters, const RunEstimate &estimate,
                            "the disk lacks about " + format_bytes(lack) +
                                " for pictures and checkpoints.",
                            "Free some room, write fewer pictures, or choose another disk.");
-  if (n > many_pictures)
+  if (n_regular > many_pictures)
     forecast.problems.warn(
         "subsection 'simulation control' / entry '" +
             std::string(control.output_control == "time" ? "output time" : "output frequency") +
             "':",
-        format_whole(n) + " pictures would be written.",
+        format_whole(n_regular) + " pictures would be written.",
         "Raise it; a few hundred are enough for a film.");
 }
 

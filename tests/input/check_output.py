@@ -178,7 +178,7 @@ FACTS = {
                                 "  steps:      1200001 of 2e-06 s", "  core-hours: about 4.2e-05 ("]),
 }
 
-# Name, file, settings, a warning, and the number of all warnings. The widest case needs 2.6 TB.
+# Name, file, settings, a warning or fact, and the number of all warnings. The widest case needs 2.6 TB.
 PROCESSES = [
     ("clearance", "prm/spreading/quickstart.prm", ["powder spreading/spreader clearance delta_s = 60e-6"],
      "leaves 6e-05 m below the spreader, less than the largest grain of 0.000101096 m", 1),
@@ -186,8 +186,11 @@ PROCESSES = [
      "leaves 7e-05 m below the spreader", 1),
     ("coarse step", "prm/spreading/quickstart.prm", [ENTRY + " = 1e-5"],
      "exceeds 25 % of the Rayleigh time of particle type 0", 2),
-    ("too wide for the machine", "prm/spreading/PS1_L4.prm", ["powder spreading/depth = 1.2"],
+    ("too wide for the machine", "prm/spreading/PS1_L4.prm",
+     ["powder spreading/depth = 1.2", "powder spreading/layer pictures = false"],
      "Memory: the run needs about", 1),
+    ("pictures of six layers", "prm/spreading/quickstart.prm", ["powder spreading/number of layers = 6"],
+     "Disk: 6 pictures of about", 0),
 ]
 failures = 0
 

@@ -23,6 +23,7 @@ struct RunEstimate
   double particles = 0.; ///< at a time, mean over the run
   double most_particles = 0.;
   double steps = 0.;
+  double pictures = 0.; ///< of all particles that a process writes besides the regular ones
 
   double particle_steps() const { return particles * steps; }
   /// Particle-steps per second and core, as measured on settled beds with the full model: of 20,000

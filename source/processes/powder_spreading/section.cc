@@ -143,6 +143,7 @@ RunEstimate SpreadingParameters::estimate(const Parameters &parameters) const
   const auto schedule = make_schedule(*this, a, 0.25 * settling_time);
   RunEstimate estimate;
   estimate.steps = schedule.back().weighing / parameters.control.time_step;
+  estimate.pictures = layer_pictures ? n_layers : 0.;
   estimate.particles = later + transit + below + 0.5 * n_layers * layer;
   estimate.most_particles = std::max(first + transit, later + transit + below + n_layers * layer);
   return estimate;
