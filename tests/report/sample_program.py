@@ -1,7 +1,7 @@
 """Stands for eunoe-particles in tests of the campaign: writes the output of a finished run in no time.
 
-If the folder above the output folder has a file `die`, it dies in the middle of the first run and removes that
-file; if it has a file `wait`, it waits until it is asked to stop.
+If the folder above the output folder has a file `die`, it dies in the middle of the first run, after as many layers
+as the file says or five, and removes that file; if it has a file `wait`, it waits until it is asked to stop.
 """
 
 from __future__ import annotations
@@ -23,6 +23,9 @@ The case is in order.
 
 
 def main(words: list[str]) -> int:
+    if words == ["--version"]:
+        print("Eunoe 0.1.0 (revision 9876543210, deal.II 9.4.1)")
+        return 0
     settings = dict(map(str.strip, word.split("=", 1)) for word in words if "=" in word)
     folder, seed = Path(settings["simulation control/output path"]), int(words[words.index("--seed") + 1])
     if "--check" in words:
@@ -38,8 +41,9 @@ def main(words: list[str]) -> int:
             time.sleep(0.01)
         return 3
     if (folder.parent / "die").exists():
+        layers = int((folder.parent / "die").read_text() or 5)
         (folder.parent / "die").unlink()
-        sample_bed.write_run(folder, peak, seed, layers=5)
+        sample_bed.write_run(folder, peak, seed, layers=layers)
         return 9
     sample_bed.write_run(folder, peak, seed)
     return 0

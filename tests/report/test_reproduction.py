@@ -9,6 +9,7 @@ import io
 import json
 import math
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -176,9 +177,26 @@ class Campaign(unittest.TestCase):
         (self.states / "die").touch()
         self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 1)
         self.assertIn("No run of these has finished yet.", self.page.read_text())
+        self.assertRegex(self.page.read_text(), r"\| `PS1_L0\.25_seed1` \| 5 of 21 \| +\| +\| +\| +\|")
         self.assertIn("5 of 21 layers", self.run_it("--plan", "--only", "PS1_L0.25_seed1")[1])
         self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 0)
         self.assertEqual(self.starts(), 2)
+
+    def test_what_a_run_has_shown_outlives_its_states(self) -> None:
+        only = ("--only", "PS1_L0.25_seed1")
+        record = self.folder / "data" / "PS1_L0.25_seed1" / "run.json"
+        for layers, kept in ((5, 5), (12, 12), (4, 12)):
+            shutil.rmtree(self.states)
+            self.states.mkdir()
+            (self.states / "die").write_text(str(layers))
+            self.assertEqual(self.run_it(*only)[0], 1)
+            found = json.loads(record.read_text())
+            self.assertEqual((found["finished"], found["layers"], found["git_revision"]), (False, kept, "9876543210"))
+        self.assertRegex(self.page.read_text(), r"`PS1_L0\.25_seed1` \| 12 of 21 \| 60\.1 \| 61\.3 \| ")
+        self.assertIn("at revision 9876543", self.page.read_text())
+        self.assertEqual(self.run_it(*only)[0], 0)
+        self.assertTrue(json.loads(record.read_text())["finished"])
+        self.assertIn("None.", self.page.read_text())
 
     def test_a_run_of_another_process_is_left_alone(self) -> None:
         with open(self.states / "PS1_L0.25_seed1.lock", "w", encoding="utf-8") as lock:

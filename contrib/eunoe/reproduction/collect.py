@@ -15,9 +15,10 @@ from eunoe.studies.series import summary_of
 
 from .cases import Case
 from .places import DATA
-from .runs import Campaign, processor_of, settings_of
+from .runs import LAYERS, Campaign, layers_weighed, processor_of, revision_of, settings_of
 
-TABLES = ("layers.csv", "measurements.csv", "apparatus.json")
+LEAST_LAYERS = 3  # of a run that goes on; fewer say nothing
+TABLES = (LAYERS, "measurements.csv", "apparatus.json")
 BED, RECORD = "bed.csv", "run.json"
 # Of summary.json.
 KEPT = ("version", "git_revision", "ranks", "first_step", "steps", "time_step", "simulated_time", "particle_steps",
@@ -26,10 +27,10 @@ KEPT = ("version", "git_revision", "ranks", "first_step", "steps", "time_step", 
 
 
 def record_of(case: Case, folder: Path, layers: int) -> dict[str, Any]:
-    """What was run, by what, and what it took. A run that goes on has no revision and no timings yet."""
+    """What was run, by what, and what it took. A run that goes on has no timings yet."""
     summary = summary_of(folder) or {}
     return {"case": case.name, "finished": bool(summary), "layers": layers, "processor": processor_of(folder),
-            "settings": settings_of(case),
+            "settings": settings_of(case), "git_revision": revision_of(folder),
             **{key: summary[key] for key in KEPT if key in summary}}
 
 
@@ -39,13 +40,22 @@ def _maps(run: Run, apparatus: Apparatus, file: Path) -> None:
         write_table(file, read_maps(pictures, apparatus))
 
 
+def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
+    """Whether a run has more to say than what is kept of a run of this name. Its states may have been lost since
+    then, and it may have begun anew."""
+    if is_finished or not (target / RECORD).exists():
+        return is_finished or layers >= LEAST_LAYERS
+    kept = json.loads((target / RECORD).read_text(encoding="utf-8"))
+    return kept["settings"] != settings_of(case) or (not kept["finished"] and layers > kept["layers"])
+
+
 def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
-    """Writes the small results of a finished run, and returns their folder; None if it has not finished."""
+    """Writes the small results of a run, finished or not, and returns their folder; None if there is nothing new."""
     folder = campaign.of(case)
-    if not campaign.is_finished(case):
+    target = data / case.name
+    if not _is_new(case, campaign.is_finished(case), layers_weighed(folder), target):
         return None
     campaign.check(case)
-    target = data / case.name
     target.mkdir(parents=True, exist_ok=True)
     for name in TABLES:
         if (folder / name).exists():

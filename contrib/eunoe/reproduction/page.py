@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
+from math import isnan
 from pathlib import Path
 
 from eunoe.launch import Failure
 from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, middle_sentence, rest_table,
-                                          rise_sentence, supply_table)
+                                          rise_sentence, span, supply_table)
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import Group
+from eunoe.report.spread_run import LATER, PLATEAU, Group
 from eunoe.tables import Table, as_markdown
 
-from .cases import SETS
+from .cases import N_LAYERS, SETS
 from .pictures import picture_name
 from .places import PAGE
 from .results import HELD, OPEN, Findings, Result, origin_of, plain_label
@@ -60,6 +61,19 @@ def runs_block(findings: Findings) -> str:
     if not findings:
         return NOTHING
     return _block(table, findings.all)
+
+
+def under_way_block(findings: Findings) -> str:
+    """The runs that have not finished, as far as they have come."""
+    after = f"layers {LATER[0]} to the last"
+    table = [["run", "layers weighed", span(PLATEAU), f"LRD of {after} (%)",
+              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)"]]
+    for run in findings.under_way:
+        later = (LATER[0], max(run.layers.last, LATER[0]))
+        means = [run.mean_lrd(PLATEAU), run.mean_lrd(later), run.middle_lrd(PLATEAU), run.middle_lrd(later)]
+        table.append([f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}",
+                      *("" if isnan(mean) else f"{100. * mean:.1f}" for mean in means)])
+    return _block(table, findings.under_way) if findings.under_way else "None."
 
 
 def densities_block(findings: Findings) -> str:
@@ -174,7 +188,7 @@ PICTURES = {
              "open_layers": "The bed at four weighings, open ends", "open_pass": "A pass in four pictures, open ends"},
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
-BLOCKS = {"verdict": verdict_block, "runs": runs_block, "densities": densities_block, "lengths": lengths_block,
+BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "densities": densities_block, "lengths": lengths_block,
           "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block, "open": open_block,
           "held": held_block, "variants": variants_block, "needed": needed_block}
 

@@ -7,7 +7,7 @@ from eunoe.tables import Table
 
 from .cases import N_LAYERS, Case
 from .cost import Cost, cost_of
-from .runs import Campaign
+from .runs import LAYERS, Campaign, layers_weighed
 
 
 def measured_speed(campaign: Campaign, cases: list[Case]) -> float | None:
@@ -22,9 +22,9 @@ def state_of(campaign: Campaign, case: Case) -> tuple[str, float]:
     summary = summary_of(campaign.of(case))
     if summary:
         return "finished", 0.
-    table = campaign.of(case) / "layers.csv"
-    layers = len(table.read_text(encoding="utf-8").splitlines()) - 1 if table.exists() else 0
-    return (f"{layers} of {N_LAYERS} layers" if table.exists() else "missing"), 1. - layers / N_LAYERS
+    folder = campaign.of(case)
+    layers = layers_weighed(folder)
+    return (f"{layers} of {N_LAYERS} layers" if (folder / LAYERS).exists() else "missing"), 1. - layers / N_LAYERS
 
 
 def plan_of(campaign: Campaign, cases: list[Case], speed: float | None) -> tuple[Table, str]:

@@ -22,7 +22,7 @@ OPEN, HELD = ("open", "open_stiff"), ("lips_stiff",)  # the variants whose ends 
 
 @dataclass(frozen=True)
 class Result(SpreadRun):
-    """A finished run."""
+    """A run that has finished, or goes on."""
 
     case: Case
     record: dict[str, Any]
@@ -40,14 +40,20 @@ class Result(SpreadRun):
 
 
 class Findings:
-    """All finished runs whose small results are there, by groups in the order of the campaign."""
+    """All finished runs whose small results are there, by groups in the order of the campaign, and those that go on."""
 
     def __init__(self, data: Path = DATA, cases: Iterable[Case] = CASES) -> None:
         self.cases = tuple(cases)
         self.results: dict[str, list[Result]] = {}
+        self.under_way: list[Result] = []
         for case in self.cases:
-            if (data / case.name / RECORD).exists():
-                self.results.setdefault(case.group, []).append(Result.read(case, data / case.name))
+            if not (data / case.name / RECORD).exists():
+                continue
+            result = Result.read(case, data / case.name)
+            if result.record["finished"]:
+                self.results.setdefault(case.group, []).append(result)
+            else:
+                self.under_way.append(result)
 
     def __bool__(self) -> bool:
         return bool(self.results)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import subprocess
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from functools import cached_property
 from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
 from eunoe.folders import alone_with
-from eunoe.launch import Failure, mpirun, overrides
+from eunoe.launch import Failure, mpirun, output_of, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
 from .cases import Case
@@ -24,6 +26,8 @@ FILMED = (0.62, 0.7)
 FILM_INTERVAL = 4e-3  # s
 STOP = signal.SIGUSR1  # mpirun hands it on; after SIGTERM it would not wait for the checkpoint
 NOTE = "case.json"  # the settings of a run, beside its output
+LAYERS = "layers.csv"
+PROCESSORS, REVISIONS = "processors.json", "revisions.json"  # on and of which it was made
 STOPPED = 3  # exit code of a run that was asked to stop and has left a checkpoint
 
 
@@ -39,6 +43,11 @@ class Campaign:
         self.program, self.folder, self.ranks = program, folder, ranks
         self.stopping = threading.Event()
         self.children: dict[str, subprocess.Popen] = {}
+
+    @cached_property
+    def revision(self) -> str:
+        found = re.search(r"revision (\w+)", output_of([self.program, "--version"], Path.cwd()))
+        return found[1] if found else "unknown"
 
     def of(self, case: Case) -> Path:
         """The output folder of a case."""
@@ -86,21 +95,21 @@ class Campaign:
         return code
 
     def note(self, case: Case) -> None:
-        """Keeps with which settings and on which processors a case runs; the program does not say. A folder of the
-        same name with other settings, as the cases were once, is refused."""
+        """Keeps with which settings, on which processors and by which programs a case runs; a program says so in the
+        end, if at all. A folder of the same name with other settings, as the cases were once, is refused."""
         self.check(case)
         self.of(case).mkdir(parents=True, exist_ok=True)
         (self.of(case) / NOTE).write_text(json.dumps(settings_of(case), indent=1) + "\n", encoding="utf-8")
-        file = self.of(case) / "processors.json"
-        known = json.loads(file.read_text(encoding="utf-8")) if file.exists() else []
-        if processor() not in known:
-            file.write_text(json.dumps([*known, processor()]), encoding="utf-8")
+        for name, new in ((PROCESSORS, processor()), (REVISIONS, self.revision)):
+            known = _listed(self.of(case) / name)
+            if new not in known:
+                (self.of(case) / name).write_text(json.dumps([*known, new]), encoding="utf-8")
 
     def check(self, case: Case) -> None:
         """Refuses a folder with a run of other settings."""
         folder = self.of(case)
         file = folder / NOTE
-        if not file.exists() and (folder / "layers.csv").exists():
+        if not file.exists() and (folder / LAYERS).exists():
             raise Failure(f"{folder} has a run, but no {NOTE} that says of which settings. Move it away.")
         if file.exists() and json.loads(file.read_text(encoding="utf-8")) != settings_of(case):
             raise Failure(f"{folder} has a run with other settings than the case of this name: see its {NOTE}. Move it "
@@ -135,7 +144,21 @@ class Campaign:
                 signal.signal(number, handler)
 
 
+def layers_weighed(folder: Path) -> int:
+    """Number of layers that a run has weighed so far, also if it was stopped."""
+    table = folder / LAYERS
+    return max(0, len(table.read_text(encoding="utf-8").splitlines()) - 1) if table.exists() else 0
+
+
+def _listed(file: Path) -> list[str]:
+    return json.loads(file.read_text(encoding="utf-8")) if os.path.exists(file) else []
+
+
 def processor_of(folder: Path) -> str:
     """On which processors a run was made; unknown if it was not started by the campaign."""
-    file = folder / "processors.json"
-    return ", ".join(json.loads(file.read_text(encoding="utf-8"))) if os.path.exists(file) else "unknown"
+    return ", ".join(_listed(folder / PROCESSORS)) or "unknown"
+
+
+def revision_of(folder: Path) -> str:
+    """By which programs a run has been made so far; unknown if it was not started by the campaign."""
+    return ", ".join(_listed(folder / REVISIONS)) or "unknown"

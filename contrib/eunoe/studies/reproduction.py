@@ -12,7 +12,7 @@ is not made again; one that was stopped or killed continues from its checkpoint.
 ask all runs to leave a checkpoint and end; the exit code is then 3. Several of these commands may work in one folder: a case that
 another one runs is left out. --only takes names of cases, or of groups of seeds. --command
 prints the command that a batch job on this machine starts with its own launcher. --collect runs nothing: it
-takes over what has finished, and rebuilds page and pictures; --page-only does so from the small results alone.
+takes over what there is, of runs that go on, too, and rebuilds page and pictures; --page-only does so from the small results alone.
 """
 
 from __future__ import annotations
@@ -89,6 +89,8 @@ def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) ->
     for case in cases:
         take(case)
     good = options.collect or campaign.work(cases, options.jobs, take)
+    for case in cases:  # also those that were stopped
+        take(case)
     rebuild(options, campaign)
     return good
 
