@@ -11,7 +11,7 @@ from eunoe.report.spread_run import PLATEAU, Group, SpreadRun
 from eunoe.tables import Table
 
 from .cases import SETS
-from .results import HELD, Findings
+from .results import Findings
 
 UNKNOWN = "not known yet"
 # Densities nearer to each other than that are called equal; the effect in question is three times as large.
@@ -82,13 +82,9 @@ def _differences(findings: Findings) -> Table:
                 found = difference_of(longer.of_runs(number), shorter.of_runs(number))
                 rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, '')}",
                              _sign(Interval(found.value * size / 100., found.half * size / 100.), "+")])
-    pairs = [(findings.of("PS1", length), findings.of("PS3", length))
-             for length in sorted({result.case.length for result in findings.all})]
-    if not any(first and third for first, third in pairs):
-        held = {group.runs[0].case.properties: group for group in _longest(findings)}
-        pairs = [(held.get("PS1"), held.get("PS3"))]
-    for first, third in pairs:
-        if first and third and first.runs[0].case.length == third.runs[0].case.length:
+    for length in sorted({result.case.length for result in findings.all}):
+        first, third = findings.of("PS1", length), findings.of("PS3", length)
+        if first and third:
             found = difference_of(third.of_runs(lambda run: run.peak[0]), first.of_runs(lambda run: run.peak[0]))
             rows.append(["the peak of PS3 is lower than that of PS1", "simulated: yes",
                          f"{third.label}, less {first.label}: {_said(found)}", _sign(found, "-")])
@@ -113,11 +109,8 @@ def _rest(groups: list[Group]) -> Table:
 
 
 def _longest(findings: Findings) -> list[Group]:
-    """The longest plate of each property set; as long as none with rims has been run, that with lips."""
-    held = {group.runs[0].case.properties: Group(f"{group.label}, lips", group.runs)
-            for group in findings.of_variants(HELD)}
-    longest = {properties: groups[-1] for properties in SETS if (groups := findings.lengths(properties))}
-    return [group for properties in SETS if (group := longest.get(properties, held.get(properties)))]
+    """The longest plate of each property set."""
+    return [groups[-1] for properties in SETS if (groups := findings.lengths(properties))]
 
 
 def verdict_table(findings: Findings) -> Table:
