@@ -46,7 +46,11 @@ class Campaign:
 
     @cached_property
     def revision(self) -> str:
-        found = re.search(r"revision (\w+)", output_of([self.program, "--version"], Path.cwd()))
+        """Of the program; unknown where it does not start without the launcher of a batch job."""
+        try:
+            found = re.search(r"revision (\w+)", output_of([self.program, "--version"], Path.cwd()))
+        except Failure:
+            found = None
         return found[1] if found else "unknown"
 
     def of(self, case: Case) -> Path:
