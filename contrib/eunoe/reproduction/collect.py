@@ -43,8 +43,10 @@ def _maps(run: Run, apparatus: Apparatus, file: Path) -> None:
 def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
     """Whether a run has more to say than what is kept of a run of this name. Its states may have been lost since
     then, and it may have begun anew."""
-    if is_finished or not (target / RECORD).exists():
-        return is_finished or layers >= LEAST_LAYERS
+    if is_finished or layers < LEAST_LAYERS:
+        return is_finished
+    if not (target / RECORD).exists():
+        return True
     kept = json.loads((target / RECORD).read_text(encoding="utf-8"))
     return kept["settings"] != settings_of(case) or (not kept["finished"] and layers > kept["layers"])
 

@@ -105,9 +105,8 @@ class Campaign:
         self.of(case).mkdir(parents=True, exist_ok=True)
         (self.of(case) / NOTE).write_text(json.dumps(settings_of(case), indent=1) + "\n", encoding="utf-8")
         for name, new in ((PROCESSORS, processor()), (REVISIONS, self.revision)):
-            known = _listed(self.of(case) / name)
-            if new not in known:
-                (self.of(case) / name).write_text(json.dumps([*known, new]), encoding="utf-8")
+            others = [known for known in _listed(self.of(case) / name) if known != new]
+            (self.of(case) / name).write_text(json.dumps([*others, new]), encoding="utf-8")
 
     def check(self, case: Case) -> None:
         """Refuses a folder with a run of other settings."""
@@ -164,5 +163,5 @@ def processor_of(folder: Path) -> str:
 
 
 def revision_of(folder: Path) -> str:
-    """By which programs a run has been made so far; unknown if it was not started by the campaign."""
-    return ", ".join(_listed(folder / REVISIONS)) or "unknown"
+    """By which program a run went on last; unknown if it was not started by the campaign."""
+    return (_listed(folder / REVISIONS) or ["unknown"])[-1]

@@ -88,9 +88,12 @@ def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) ->
 
     for case in cases:
         take(case)
-    good = options.collect or campaign.work(cases, options.jobs, take)
-    for case in cases:  # also those that were stopped
-        take(case)
+    good = True
+    if not options.collect:
+        good = campaign.work(cases, options.jobs, take)
+        for case in cases:  # a run that was stopped, or has died
+            if not campaign.is_finished(case):
+                take(case)
     rebuild(options, campaign)
     return good
 
