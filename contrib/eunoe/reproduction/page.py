@@ -16,7 +16,7 @@ from eunoe.tables import Table, as_markdown
 from .cases import N_LAYERS, SETS
 from .pictures import picture_name
 from .places import PAGE
-from .results import HELD, OPEN, Findings, Result, origin_of, plain_label
+from .results import HELD, OPEN, Findings, Result, length_name, origin_of, plain_label
 from .verdict import verdict_table
 
 NOTHING = "No run of these has finished yet."
@@ -81,7 +81,16 @@ def densities_block(findings: Findings) -> str:
     if not groups:
         return NOTHING
     everyone = [*groups, measured_group(read_measured())]
-    return _block(densities_table(everyone), _results(groups), " ".join(rise_sentence(group) for group in groups))
+    return _block(densities_table(everyone), _results(groups), " ".join(map(rise_sentence, [*groups, *_together(groups)])))
+
+
+def _together(groups: list[Group]) -> list[Group]:
+    """The runs of all property sets on plates of one length."""
+    lengths: dict[float, list[Group]] = {}
+    for group in groups:
+        lengths.setdefault(group.runs[0].case.length, []).append(group)
+    return [Group(f"{' and '.join(group.runs[0].case.properties for group in same)} together, "
+                  f"{length_name(length)}", _results(same)) for length, same in lengths.items() if len(same) > 1]
 
 
 def _differences(pairs: list[list[Group]]) -> str:
@@ -188,9 +197,9 @@ PICTURES = {
              "open_layers": "The bed at four weighings, open ends", "open_pass": "A pass in four pictures, open ends"},
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
-BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "densities": densities_block, "lengths": lengths_block,
-          "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block, "open": open_block,
-          "held": held_block, "variants": variants_block, "needed": needed_block}
+BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "densities": densities_block,
+          "lengths": lengths_block, "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block,
+          "open": open_block, "held": held_block, "variants": variants_block, "needed": needed_block}
 
 
 def _pictures(name: str, folder: Path) -> str:
