@@ -129,17 +129,19 @@ PairForces::PairForces(const ContactModel &model, const PeriodicBox &box)
 
 PairForces::~PairForces() = default;
 
-void PairForces::list_near(const ParticleArrays &particles, PairList &pairs) const
+void PairForces::list_near(ParticleArrays &particles, PairList &pairs, const double dt) const
 {
   const Period period(box);
   NearPairs &near = pairs.near;
-  const double margin = near.begin() + model.range();
+  const double n_paces = near.begin();
+  for (std::size_t row = 0; row < particles.size(); ++row)
+    particles.pace[row] = static_cast<float>(near.pace(dt * norm(particles.velocity[row].vec())));
   Candidates candidates(pairs, pairs.some_sleep ? &pairs.awake : nullptr);
   std::size_t n = 0;
   for (std::size_t first = 0; first < candidates.size(); first += B) {
     candidates.take(first);
-    const std::uint64_t bits = within(particles.position.data(), candidates.i, candidates.j, period,
-                                      margin, 1. + NearPairs::slack);
+    const std::uint64_t bits = within_paces(particles, candidates.i, candidates.j, period,
+                                            model.range(), n_paces, 1. + NearPairs::slack);
     n = append(candidates, bits, near, n);
   }
   near.end(n);
@@ -208,7 +210,7 @@ void PairForces::add_of_some(ParticleArrays &particles, PairList &pairs, const d
   for (std::size_t k = 0; k < near.n_blocks(); ++k) {
     const std::size_t first = k * B;
     pairs.note_reach(k, within(particles.position.data(), &near.i[first], &near.j[first], period,
-                               model.range(), 1.));
+                               model.range()));
     for (std::uint64_t bits = near.in_reach[k]; bits != 0; bits &= bits - 1) {
       const std::int32_t at = static_cast<std::int32_t>(first) + __builtin_ctzll(bits);
       prefetch(particles, near.i[at]);
@@ -229,7 +231,7 @@ void PairForces::add_of_some(ParticleArrays &particles, PairList &pairs, const d
 void PairForces::add(ParticleArrays &particles, PairList &pairs, const double dt)
 {
   if (pairs.near.is_due())
-    list_near(particles, pairs);
+    list_near(particles, pairs, dt);
   if (pairs.near.is_dense())
     add_of_all(particles, pairs, dt);
   else

@@ -240,10 +240,11 @@ EUNOE_BY_WIDTH(std::uint64_t, add_and_describe_kernel,
                 const Period &period, const double range),
                add_and_describe_by, (last, next, p, period, range))
 
-template <unsigned int W>
-EUNOE_ALWAYS_INLINE std::uint64_t within_by(const Quad *position, const Offset *i, const Offset *j,
-                                            const Period &period, const double range,
-                                            const double factor)
+/// @param reach of the pairs from a lane on, from the sums of their radii
+template <unsigned int W, typename Reach>
+EUNOE_ALWAYS_INLINE std::uint64_t bits_within(const Quad *position, const Offset *i,
+                                              const Offset *j, const Period &period,
+                                              const Reach &reach)
 {
   const Pack<W> zero = {}, one = zero + 1.;
   return bits_of_block<W>([&](const unsigned int k) __attribute__((always_inline)) {
@@ -252,15 +253,48 @@ EUNOE_ALWAYS_INLINE std::uint64_t within_by(const Quad *position, const Offset *
     gather<W>(position, i + k, xi, ri);
     gather<W>(position, j + k, xj, rj);
     const Vectors<W> d = shortest(xj - xi, period);
-    const Pack<W> reach = factor * (ri + rj + range);
-    return dot(d, d) - reach * reach <= 0. ? one : zero;
+    const Pack<W> farthest = reach(k, ri + rj);
+    return dot(d, d) - farthest * farthest <= 0. ? one : zero;
   });
+}
+
+template <unsigned int W>
+EUNOE_ALWAYS_INLINE std::uint64_t within_by(const Quad *position, const Offset *i, const Offset *j,
+                                            const Period &period, const double range)
+{
+  return bits_within<W>(
+      position, i, j,
+      period, [&](unsigned int, const Pack<W> &radii) __attribute__((always_inline)) {
+        return radii + range;
+      });
 }
 
 EUNOE_BY_WIDTH(std::uint64_t, within_kernel,
                (const Quad *position, const Offset *i, const Offset *j, const Period &period,
-                const double range, const double factor),
-               within_by, (position, i, j, period, range, factor))
+                const double range),
+               within_by, (position, i, j, period, range))
+
+template <unsigned int W>
+EUNOE_ALWAYS_INLINE std::uint64_t within_paces_by(const ParticleArrays &p, const Offset *i,
+                                                  const Offset *j, const Period &period,
+                                                  const double range, const double n_paces,
+                                                  const double factor)
+{
+  return bits_within<W>(
+      p.position.data(), i, j,
+      period, [&](const unsigned int k, const Pack<W> &radii) __attribute__((always_inline)) {
+        Pack<W> paces;
+        for (unsigned int l = 0; l < W; ++l)
+          paces[l] = static_cast<double>(p.pace[row_of(i[k + l])]) +
+                     static_cast<double>(p.pace[row_of(j[k + l])]);
+        return factor * (radii + range + n_paces * paces);
+      });
+}
+
+EUNOE_BY_WIDTH(std::uint64_t, within_paces_kernel,
+               (const ParticleArrays &p, const Offset *i, const Offset *j, const Period &period,
+                const double range, const double n_paces, const double factor),
+               within_paces_by, (p, i, j, period, range, n_paces, factor))
 
 EUNOE_MULTIVERSION void recall_kernel(PairBlock &block, const ContactMemory &memory,
                                       const std::int32_t *record)
@@ -277,9 +311,16 @@ EUNOE_MULTIVERSION void remember_kernel(const PairBlock &block, ContactMemory &m
 } // namespace
 
 std::uint64_t within(const Quad *position, const Offset *i, const Offset *j, const Period &period,
-                     const double range, const double factor)
+                     const double range)
 {
-  return within_kernel(position, i, j, period, range, factor);
+  return within_kernel(position, i, j, period, range);
+}
+
+std::uint64_t within_paces(const ParticleArrays &p, const Offset *i, const Offset *j,
+                           const Period &period, const double range, const double n_paces,
+                           const double factor)
+{
+  return within_paces_kernel(p, i, j, period, range, n_paces, factor);
 }
 
 std::uint64_t describe(ParticleBlock &b, const ParticleArrays &p, const Period &period,

@@ -21,6 +21,10 @@ inline Offset offset_of(const std::int32_t row)
 {
   return static_cast<Offset>(row) * static_cast<Offset>(sizeof(Quad));
 }
+inline std::size_t row_of(const Offset offset)
+{
+  return offset / sizeof(Quad);
+}
 
 /// A block of pairs of particles.
 struct ParticleBlock : OwnPairBlock
@@ -31,11 +35,14 @@ struct ParticleBlock : OwnPairBlock
   Offset own_i[size], own_j[size];
 };
 
-/// Bits of the pairs of a block whose distance is at most @p factor times the sum of their radii
-/// and
-/// @p range (m).
+/// Bits of the pairs of a block whose separation is at most @p range (m).
 std::uint64_t within(const Quad *position, const Offset *i, const Offset *j, const Period &period,
-                     double range, double factor);
+                     double range);
+
+/// Bits of the pairs of a block whose distance is at most @p factor times the sum of their radii,
+/// @p range (m) and so many paces of both.
+std::uint64_t within_paces(const ParticleArrays &p, const Offset *i, const Offset *j,
+                           const Period &period, double range, double n_paces, double factor);
 
 /// Fills in the geometry and kinematics of a block of pairs.
 /// @param range separation beyond which a pair is out of reach (m)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace eunoe {
 
@@ -35,14 +34,14 @@ void ContactDetectionParameters::check(const ParameterCheck &check) const
 void SearchCriterion::ask(const unsigned long long step, const Travel &travel,
                           const double near_share)
 {
-  constexpr double unknown = std::numeric_limits<double>::infinity();
-  largest = {unknown, unknown, near_share};
+  largest = {Travel::unknown, Travel::unknown, Travel::unknown, near_share};
   const bool is_constant = parameters.method == "constant";
   if (is_constant && step % parameters.frequency != 0)
     return;
   // Whether MPI_MAX keeps a NaN depends on the MPI library.
   if (!is_constant && !std::isnan(travel.moved2))
-    largest = {std::sqrt(travel.moved2), std::sqrt(travel.step2), near_share};
+    largest = {std::sqrt(travel.moved2), std::sqrt(travel.paces2), std::sqrt(travel.mean_step2),
+               near_share};
   MPI_Iallreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE,
                  MPI_MAX, comm, &answer);
 }

@@ -189,7 +189,8 @@ void Simulation::advance()
     system.update_ghosts();
   }
   const bool searches = criterion.is_due(solids);
-  system.note_step(criterion.largest_step(), criterion.largest_near_share());
+  system.note_step(criterion.largest_paces(), criterion.typical_step(),
+                   criterion.largest_near_share());
   if (searches) {
     if (look_is_due)
       system.update_ghosts(); // for the inspection

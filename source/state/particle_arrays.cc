@@ -11,6 +11,7 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
     array->resize(size());
   id.resize(size());
   type.resize(size());
+  pace.assign(size(), 1.f);
   wake_all();
   reference.resize(owned);
   extra.resize(n_extra);

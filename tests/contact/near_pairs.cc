@@ -46,18 +46,19 @@ PairList all_pairs(const ContactModel &model)
 }
 
 /// Moves the particles by a step; some become faster on the way.
-/// @return the largest step
-double move(ParticleArrays &p, const unsigned int step)
+Travel move(ParticleArrays &p, const unsigned int step)
 {
-  double largest = 0.;
+  Travel travel = {0., 0., 0.};
   for (std::size_t k = 0; k < n; ++k) {
     const double hurry = k % 50 == 0 && step > 100 ? 5. : 1.;
     const Vec3 way = hurry * dt * p.velocity[k].vec();
     p.position[k].add(way);
-    largest = std::max(largest, norm(way));
+    const double step2 = norm_square(way), pace = p.pace[k];
+    travel.paces2 = std::max(travel.paces2, step2 / (pace * pace));
+    travel.mean_step2 += step2 / n;
     p.force[k] = p.torque[k] = Quad();
   }
-  return largest;
+  return travel;
 }
 
 bool same(const std::vector<Quad> &a, const std::vector<Quad> &b)
@@ -86,7 +87,9 @@ void check_flight(const std::string &name, const double skin, const bool is_dens
   double longest = 0.;
   for (unsigned int step = 0; step < 400; ++step) {
     // Something is left out of account for a while, as after an insertion.
-    near.near.note_step(move(p, step), skin, near.near.share());
+    const Travel travel = move(p, step);
+    near.near.note_step(std::sqrt(travel.paces2), std::sqrt(travel.mean_step2), skin,
+                        near.near.share());
     all.near.forget();
     if (step % 150 == 149)
       near.near.forget();
@@ -120,10 +123,13 @@ EUNOE_MPI_TEST()
   check_flight("sparse", 100. * radius, false);
 
   NearPairs unknown;
-  unknown.note_step(std::numeric_limits<double>::infinity(), radius, unknown.share());
+  unknown.note_step(Travel::unknown, Travel::unknown, radius, unknown.share());
   check("a list lasts for no step if steps are not known", unknown.begin() == 0.);
-  unknown.note_step(0., radius, unknown.share());
-  check("and for ever at rest", unknown.begin() == 0. && !unknown.is_due());
-  unknown.note_step(0.4 * radius, radius, unknown.share());
+  unknown.note_step(0., 0., radius, unknown.share());
+  check("and for ever at rest", unknown.begin() == 200. && !unknown.is_due());
+  check("where the slowest pace is not zero", unknown.pace(0.) > 0.);
+  unknown.note_step(200.1, 0.1 * radius, radius, unknown.share());
   check("but not when something is fast", unknown.is_due());
+  check("what is slower than others has their pace", unknown.pace(0.) == 0.1 * radius);
+  check("what is faster has its own", unknown.pace(radius) == radius);
 }

@@ -15,8 +15,12 @@ namespace eunoe {
 /// computed. The others, most of them where powder flows, are not looked at until the particles
 /// have gone far enough.
 ///
-/// A list is good for as long as twice the largest steps of any particle add up to its margin. A
-/// pair that is left out is out of reach, so forces are the same as of the whole list.
+/// Each particle has a pace, the step that it is expected to make at most while a list lasts: its
+/// present one, or a typical one if that is longer. So few grains that fall fast do not make the
+/// lists of all others long. A list has the pairs that can come within reach in so many paces of
+/// both, and is good until the largest steps, over the pace of the particle that made them, add up
+/// to as many. A pair that is left out is out of reach, so forces are the same as of the whole
+/// list.
 class NearPairs
 {
 public:
@@ -31,18 +35,22 @@ public:
     is_of_other_pairs = true;
   }
 
-  /// Every particle has gone by at most @p step since the last call (m), infinite if that is not
-  /// known.
+  /// Every particle has gone by at most @p paces of its own since the last call, infinite if that
+  /// is not known.
+  /// @param typical step (m)
   /// @param skin separation up to which the list has pairs (m)
   /// @param share see `share`; the same on all ranks, so that they make their lists at the same
   ///              steps and none waits for another's
-  void note_step(const double step, const double skin, const double share)
+  void note_step(const double paces, const double typical, const double skin, const double share)
   {
     constexpr double most_steps = 200.;
-    left -= 2. * step;
-    const double n_steps = std::min(most_steps, std::floor(std::sqrt(share * skin / step)));
-    wanted = n_steps >= 1. ? 2. * n_steps * step : 0.;
+    left -= paces;
+    slowest = std::max(typical, share * skin / (most_steps * most_steps));
+    wanted = std::floor(std::sqrt(share * skin / slowest));
   }
+
+  /// Of a particle, by its present step (m).
+  double pace(const double step) const { return std::max(step, slowest); }
 
   bool is_due() const { return !(left >= 0.); }
 
@@ -51,11 +59,11 @@ public:
   bool is_dense() const { return dense; }
 
   /// Looking at all pairs once in n steps costs as much a step as what n steps add to the margin if
-  /// n^2 is this share of skin over step.
+  /// n^2 is this share of skin over pace.
   double share() const { return dense ? share_if_dense : share_if_not; }
 
   /// Begins a list.
-  /// @return the separation up to which a pair belongs to it (m)
+  /// @return the paces of both particles up to whose sum a pair belongs to it
   double begin()
   {
     judge_density();
@@ -124,8 +132,9 @@ private:
 
   bool dense = true;
   std::size_t n_pairs = 0;
-  double left = -1.;  ///< of the margin (m)
-  double wanted = 0.; ///< margin of the next list (m)
+  double left = -1.;   ///< of the paces
+  double wanted = 0.;  ///< paces of the next list
+  double slowest = 1.; ///< pace (m)
 };
 
 } // namespace eunoe

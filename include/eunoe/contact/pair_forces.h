@@ -33,7 +33,7 @@ public:
 private:
   class Run;
 
-  void list_near(const ParticleArrays &particles, PairList &pairs) const;
+  void list_near(ParticleArrays &particles, PairList &pairs, double dt) const;
   /// All near pairs go through the laws, which work on their memory where it is.
   void add_of_all(ParticleArrays &particles, PairList &pairs, double dt) const;
   /// Only those within reach do, with copies of their memory: for lists in which these are few.

@@ -69,9 +69,13 @@ public:
 
   /// How seldom this rank would list its near pairs.
   double near_share() const { return pairs.near.share(); }
-  /// Particles have gone by at most @p step (m), infinite if that is not known.
+  /// Particles have gone by at most so many of their paces, and by @p typical (m), infinite if that
+  /// is not known.
   /// @param share largest `near_share` of a rank
-  void note_step(double step, double share) { pairs.near.note_step(step, skin, share); }
+  void note_step(double paces, double typical, double share)
+  {
+    pairs.near.note_step(paces, typical, skin, share);
+  }
 
   /// What is wrong with this rank's particles.
   Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const

@@ -52,10 +52,12 @@ public:
   /// Of a particle since the last search, on any rank, once all have answered (m); infinite if it
   /// is not known.
   double largest_displacement() const { return largest[0]; }
-  /// Of a particle in this step, likewise.
-  double largest_step() const { return largest[1]; }
+  /// In this step, likewise: of a particle over its pace, and the typical step (m), which is the
+  /// root of the largest mean square of a rank.
+  double largest_paces() const { return largest[1]; }
+  double typical_step() const { return largest[2]; }
   /// The largest of all ranks' shares; this rank's where nothing was asked.
-  double largest_near_share() const { return largest[2]; }
+  double largest_near_share() const { return largest[3]; }
 
   /// Whether a search is due, once all ranks have answered; collective.
   /// @param solids which have moved, too
@@ -65,8 +67,8 @@ private:
   const ContactDetectionParameters &parameters;
   const double allowed;
   MPI_Comm comm;
-  /// Since the last search and in this step (m), and the share, on any rank.
-  std::array<double, 3> largest = {};
+  /// Since the last search (m), in this step (paces, m), and the share, on any rank.
+  std::array<double, 4> largest = {};
   MPI_Request answer = MPI_REQUEST_NULL;
 };
 

@@ -13,11 +13,14 @@ namespace eunoe {
 /// Identity of a particle, unique over the whole run and never used again.
 using ParticleId = std::uint32_t;
 
-/// How far particles have gone at most: squares (m2).
+/// How far particles have gone: squares. Steps are infinite if they are not known.
 struct Travel
 {
-  double moved2; ///< from the reference positions, NaN if a place is not a number
-  double step2 = std::numeric_limits<double>::infinity(); ///< in a step, infinite if not known
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
+
+  double moved2; ///< at most from the reference positions (m2), NaN if a place is not a number
+  double paces2 = unknown;     ///< at most in this step, over the particle's pace
+  double mean_step2 = unknown; ///< of those that are awake, in this step (m2)
 };
 
 /// The hot state of the particles that a rank computes with: those that it owns, then copies of
@@ -34,6 +37,9 @@ struct ParticleArrays
   std::vector<Quad> torque;   ///< torque; w unused
   std::vector<ParticleId> id;
   std::vector<std::int32_t> type; ///< particle type, which is its material
+  /// Step that the particle is expected to make at most for a while (m), see NearPairs; the same on
+  /// all ranks that have it.
+  std::vector<float> pace;
 
   /// @name Awake particles (see SparseContacts)
   ///@{

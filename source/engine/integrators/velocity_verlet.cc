@@ -1,6 +1,8 @@
 #include <eunoe/core/simd.h>
 #include <eunoe/engine/integrator.h>
 
+#include <algorithm>
+
 namespace eunoe {
 namespace {
 
@@ -45,8 +47,7 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
 {
   const double half_dt = 0.5 * dt;
   // A maximum ignores NaN; this sum does not.
-  double largest = 0., poison = 0.;
-  simd::Four farthest2 = {};
+  double largest = 0., poison = 0., most_paces2 = 0., sum_step2 = 0.;
   const simd::Four time = three(dt);
   p.for_each_awake([&](const std::size_t k) {
     simd::Four &force = simd::four(p.force[k]), &torque = simd::four(p.torque[k]);
@@ -63,12 +64,14 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
     const double moved2 = norm_square(Vec3{x[0] - from.x, x[1] - from.y, x[2] - from.z});
     largest = moved2 > largest ? moved2 : largest;
     poison += 0. * moved2;
-    // By component, which takes no time and is at most three times the largest square.
-    const simd::Four way2 = way * way;
-    farthest2 = way2 > farthest2 ? way2 : farthest2;
+    const double step2 = norm_square(Vec3{way[0], way[1], way[2]}), pace = p.pace[k],
+                 paces2 = step2 / (pace * pace);
+    most_paces2 = paces2 > most_paces2 ? paces2 : most_paces2;
+    sum_step2 += step2;
   });
   p.clear_forces_on_pressed();
-  return {largest + poison, farthest2[0] + farthest2[1] + farthest2[2]};
+  const double n_awake = static_cast<double>(std::max<std::size_t>(p.n_awake(), 1));
+  return {largest + poison, most_paces2, sum_step2 / n_awake};
 }
 
 EUNOE_MULTIVERSION Travel first_step(ParticleArrays &p, const double dt)
