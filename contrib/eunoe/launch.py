@@ -30,13 +30,18 @@ def cores() -> int:
 
 
 def mpirun(ranks: int, *options: str) -> list[str]:
-    """The words before a program that runs on so many ranks; none for one rank. Without options
+    """The words before a program that runs on so many ranks; none for one rank. Unless options say otherwise,
     each rank has a core of its own as long as there are enough."""
     if ranks <= 1:
         return []
-    spare = ["--oversubscribe"] if not options and ranks > cores() else []
+    spare = ["--oversubscribe"] if "--oversubscribe" not in options and ranks > cores() else []
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     return ["mpirun", *root, *spare, *options, "-np", str(ranks)]
+
+
+def beside(jobs: int) -> tuple[str, ...]:
+    """Options of `mpirun` where so many programs run at the same time: each would bind its ranks to the same cores."""
+    return ("--bind-to", "none") if jobs > 1 else ()
 
 
 def overrides(entries: Mapping[str, Any] | Iterable[str]) -> list[str]:

@@ -25,7 +25,8 @@ from eunoe.powder import Powder, powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import SeededVariant, arguments, compute, layers_of, mean_and_spread, plus_minus, publish, spreading_command
+from .series import (SeededVariant, arguments, at_least, compute, layers_of, mean_and_spread, plus_minus, publish,
+                     spreading_command)
 
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
@@ -86,7 +87,7 @@ def table_of(found: dict[str, list[dict]]) -> Table:
 def main(words: list[str]) -> int:
     parser = arguments(__doc__, range(1, 7))
     parser.add_argument("--case", type=Path, default=CASES / "spreading" / "quickstart.prm")
-    parser.add_argument("--layers", type=int, default=6)
+    parser.add_argument("--layers", type=at_least(3), default=6)
     parser.add_argument("--variants", nargs="+", choices=VARIANTS, default=list(VARIANTS))
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--set", action="append", default=[])

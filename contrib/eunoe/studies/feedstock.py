@@ -26,7 +26,7 @@ from eunoe.launch import Failure, overrides
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import arguments, compute, in_errors, mean_and_spread, publish, summary_of
+from .series import arguments, at_least, compute, in_errors, mean_and_spread, publish, summary_of
 
 CASE = CASES / "discovery" / "micro_spreading.prm"
 SPREADING = "powder spreading/"
@@ -144,7 +144,7 @@ def table_of(found: dict[Feed, list[dict[str, float]]]) -> Table:
 
 def main(words: list[str]) -> int:
     parser = arguments(__doc__, [1, 2, 3])
-    parser.add_argument("--layers", type=int, default=3)
+    parser.add_argument("--layers", type=at_least(2), default=3)
     options = parser.parse_args(words)
     runs = [Run(feed, seed) for feed in FEEDS for seed in options.seeds]
     good = compute(runs, options)

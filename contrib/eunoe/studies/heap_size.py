@@ -20,7 +20,7 @@ import statistics
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
-from eunoe.launch import mpirun, overrides
+from eunoe.launch import beside, mpirun, overrides
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
@@ -53,7 +53,8 @@ class Run:
                     "heap/disc diameter": f"{self.disc}e-3",
                     "heap/fill ratio": self.fill_ratio,
                     "simulation control/output path": options.folder / self.name, **CONTINUED}
-        return [*mpirun(options.ranks), options.program, str(CASES / "heap" / f"{self.properties}_small.prm"),
+        return [*mpirun(options.ranks, *beside(options.jobs)), options.program,
+                str(CASES / "heap" / f"{self.properties}_small.prm"),
                 "--seed", str(self.seed), *overrides(settings)]
 
     def result(self, folder: Path) -> dict | None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from eunoe.folders import occupy
-from eunoe.launch import logged, mpirun, overrides, parser
+from eunoe.launch import beside, logged, mpirun, overrides, parser
 from eunoe.tables import Table, as_markdown, read_rows
 
 
@@ -49,6 +49,15 @@ MAKE_OTHERS = ("case", "layers", "set")
 CONTINUED = {"restart/restart": "auto", "restart/checkpoint": "true", "restart/wall time interval": 5}
 
 
+def at_least(least: int) -> Callable[[str], int]:
+    """The type of an argument that is a whole number from a least one on."""
+    def number(text: str) -> int:
+        if int(text) < least:
+            raise argparse.ArgumentTypeError(f"{text} is too few: give {least} or more")
+        return int(text)
+    return number
+
+
 def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentParser:
     """The command-line arguments that all studies share."""
     found = parser(documentation)
@@ -73,7 +82,7 @@ def spreading_command(options: argparse.Namespace, run: Run, seed: int, settings
     settings = {**settings, "powder spreading/number of layers": options.layers,
                 "powder spreading/layer pictures": "false",
                 "simulation control/output path": options.folder / run.name, **CONTINUED}
-    return [*mpirun(options.ranks), options.program, str(options.case), "--seed", str(seed),
+    return [*mpirun(options.ranks, *beside(options.jobs)), options.program, str(options.case), "--seed", str(seed),
             *overrides(settings), *overrides(options.set)]
 
 
