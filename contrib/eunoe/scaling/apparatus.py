@@ -44,7 +44,7 @@ def apparatus(length_factor: float, depth: float) -> dict[str, float]:
 def mesh_of(a: dict[str, float], largest: float = LARGEST, skin: float = 0.13) -> Mesh:
     """The mesh over an apparatus, for the largest diameter (m) and the skin as a share of it."""
     return Mesh.over((0., a["y_bottom"], 0.), (a["x_end"], a["y_top"], a["depth"]),
-                     (False, False, True), (1. + skin) * largest)
+                     (False, False, not a.get("side_walls", False)), (1. + skin) * largest)
 
 
 def lattice(lower: tuple[float, ...], upper: tuple[float, ...], density: float,

@@ -58,7 +58,8 @@ class Bench:
         @param label distinguishes several runs of a case
         @param settings overrides, "subsection/entry" with "__" for "/" and "_" for a blank
         """
-        folder = self.folder / (f"{case}_{label}" if label else case)
+        share = "" if self.rayleigh_share is None else f"_step{100. * self.rayleigh_share:g}"
+        folder = self.folder / ((f"{case}_{label}" if label else case) + share)
         if self.reuse and (folder / "summary.json").exists():
             return Results(folder)
         entries = {name.replace("__", "/").replace("_", " "): value for name, value in settings.items()}
