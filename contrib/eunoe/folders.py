@@ -25,13 +25,13 @@ def occupy(folder: Path, what: dict[str, object], note: str) -> None:
 
 
 @contextlib.contextmanager
-def alone_with(lock: Path) -> Iterator[int | None]:
+def alone_with(lock: Path, wait: bool = False) -> Iterator[int | None]:
     """Holds the lock of a file. Gives its descriptor, for programs that shall hold it as long as they run; None if
-    another process holds it."""
+    another process holds it, unless it is to be waited for."""
     lock.parent.mkdir(parents=True, exist_ok=True)
     with open(lock, "w", encoding="utf-8") as file:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(file, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
         except BlockingIOError:
             yield None
             return

@@ -42,7 +42,10 @@ def mean_of(values: Sequence[float]) -> Interval:
 
 
 def difference_of(values: Sequence[float], reference: Sequence[float]) -> Interval:
-    """Of the means; both may scatter differently."""
+    """Of the means; both may scatter differently. NaN values are left out."""
+    values, reference = ([value for value in group if not math.isnan(value)] for group in (values, reference))
+    if not values or not reference:
+        return Interval(math.nan, math.nan)
     difference = statistics.mean(values) - statistics.mean(reference)
     if min(len(values), len(reference)) < 2:
         return Interval(difference, math.nan)

@@ -24,8 +24,8 @@ from eunoe.intervals import difference_of, mean_of
 from eunoe.report import of_run
 from eunoe.report.bed_maps import maps_of, read_table, write_table
 from eunoe.report.comparison_report import default_labels
-from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, middle_sentence,
-                                          rise_sentence, supply_table)
+from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
+                                          supply_table)
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
@@ -113,6 +113,21 @@ class ZonesAtRest(unittest.TestCase):
         self.assertEqual((zones.first, zones.meet, zones.at_rest_from), (3, None, None))
         self.assertIsNone(zones_of(maps(range(3))).first)
 
+    def test_they_meet_only_if_they_have_grown_from_both_ends(self) -> None:
+        found = maps()
+        columns = np.arange(len(found.x) - 1)
+
+        def meet(*resting: np.ndarray) -> int | None:
+            stack = [np.zeros(found.resting.shape[1:]), *(np.outer(rest, np.ones(found.resting.shape[2])) for rest in resting)]
+            of_layers = replace(found, layers=found.layers[:len(stack)], resting=np.array(stack),
+                                tracked=np.full((len(stack), *found.tracked.shape[1:]), 9.))
+            return zones_of(of_layers).meet
+
+        everywhere = np.ones(len(columns))
+        self.assertEqual(meet((columns < 2) | (columns > 3), everywhere), 2)
+        self.assertIsNone(meet(columns < 2, everywhere))
+        self.assertIsNone(meet(everywhere))
+
     def test_a_rest_that_does_not_last(self) -> None:
         found = maps()
         found.resting[8] = 0.
@@ -197,15 +212,6 @@ class Supply(unittest.TestCase):
         table = supply_table([Group("a", [of(0.), of(1.)])])
         # Layer 20 has not been spread.
         self.assertEqual(table[1:], [["a", "1", "1.00", "1.50", "3.00"], ["a", "10", "19.00", "10.50", "3.00"]])
-
-    def test_the_middle_half(self) -> None:
-        layers = np.arange(19)
-        lrd = np.where(layers < 11, 0.58, 0.62) + 0.01 * (-1.)**layers
-        maps_of_run = SimpleNamespace(layers=layers, middle_lrd=lambda: lrd)
-        said = middle_sentence(replace(run_with(list(lrd[1:])), maps=maps_of_run))
-        self.assertIn("58.1 ± 0.8 % in layers 2 to 10 and 62.0 ± 0.9 % in layers 11 to 18", said)
-        self.assertIn("+3.9 ± 1.1 %, which is significant.", said)
-        self.assertEqual(middle_sentence(run_with(list(lrd[1:]))), "")
 
 
 class Movie(unittest.TestCase):

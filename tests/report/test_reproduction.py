@@ -144,6 +144,7 @@ class Campaign(unittest.TestCase):
         self.assertTrue((data / "PS1_L0.25_lips_stiff_seed1" / "bed.csv").exists())
         record = json.loads((data / "PS1_L0.25_seed1" / "run.json").read_text())
         self.assertEqual((record["git_revision"], record["finished"], record["layers"]), ("abc1234567", True, 21))
+        self.assertEqual(record["x_bins"], Findings(data).of("PS1", 0.25).runs[0].maps.x.size - 1)
         self.assertNotEqual(record["processor"], "unknown")
         result = Findings(data).of("PS1", 0.25).runs[1]
         self.assertEqual((round(result.peak[0], 4), result.peak[1]), (0.6437, 14.))
@@ -155,7 +156,7 @@ class Campaign(unittest.TestCase):
         self.assertRegex(text, r"\| PS1, L1/4 \| 3 \| 60\.2 ± 0\.2 \| .* \| 64\.4 ± 0\.2 \| 14\.0 \|")
         self.assertRegex(text, r"\| PS3, L1/4 \| 3 \| .* \| 64\.4 ± 0\.2 \| 10\.0 \|")
         self.assertRegex(text, r"\| PS1, L1/4 \| 3 \| 3 \| 6 \| 6 \| 100\.0 \|")
-        self.assertRegex(text, r"PS1 and PS3 together, L1/4: .* the mean LRD (changes|rises|falls) by ")
+        self.assertRegex(text, r"PS1 and PS3, L1/4, their mean for each of 3 seeds: .* the mean LRD (changes|rises|falls) by ")
         self.assertIn("| contacts forget every 7 ms | 1 |", text)
         self.assertIn("Made by `contrib/tools reproduction` at revision abc1234 on an ", text)
         self.assertRegex(text, r"\| `PS1_L0\.25` \| 3, 3 \| 1\.5 \|")
@@ -200,6 +201,22 @@ class Campaign(unittest.TestCase):
         self.assertEqual(self.run_it(*only)[0], 0)
         self.assertTrue(json.loads(record.read_text())["finished"])
         self.assertIn("None.", self.page.read_text())
+        # One that had finished is not made again, and nothing that has not finished takes its place.
+        before = record.read_text().replace('"settings": {', '"settings": {"some": "other",')
+        record.write_text(before)
+        shutil.rmtree(self.states)
+        self.states.mkdir()
+        code, output, _ = self.run_it(*only)
+        self.assertEqual((code, self.starts()), (0, 0))
+        self.assertIn("Finished before: 1 runs", output)
+        self.assertRegex(self.run_it("--plan", *only)[1], r"PS1_L0\.25_seed1 .* finished")
+        (self.states / "die").write_text("15")
+        elsewhere = [str(self.folder / "elsewhere") if word.endswith("data") and "/" in word else word
+                     for word in self.words(*only)]
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(commands.run("reproduction", elsewhere), 1)
+        self.assertEqual(self.run_it("--collect", *only)[0], 0)
+        self.assertEqual(record.read_text(), before)
 
     def test_a_run_of_another_process_is_left_alone(self) -> None:
         with open(self.states / "PS1_L0.25_seed1.lock", "w", encoding="utf-8") as lock:

@@ -42,7 +42,7 @@ def read_record(pictures: Path) -> dict[str, Entry]:
     file = pictures / NAME
     text = file.read_text(encoding="utf-8") if file.exists() else ""
     return {name: Entry(*words) for name, *words in
-            re.findall(r"^\| (\S+\.png) \| (\S+) \| ([0-9a-f]+(?:, [0-9a-f]+)*) \| ([0-9a-f]+) \|$", text, re.M)}
+            re.findall(r"^\| (\S+\.png) \| (\S+) \| ((?:[0-9a-f]+|unknown)(?:, (?:[0-9a-f]+|unknown))*) \| ([0-9a-f]+) \|$", text, re.M)}
 
 
 def write_record(pictures: Path, record: dict[str, Entry]) -> None:

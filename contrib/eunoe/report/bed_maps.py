@@ -18,16 +18,21 @@ from .evidence import FIELDS, Fields
 from .layer_results import RESTS_BELOW, moved_over_plate
 
 BIN = 0.1e-3  # wanted width of the bins in x (m)
-MOST_BINS = 52
+MOST_BINS = 104
 # Points by which a sphere is shared out among the cells that it reaches into.
 N_POINTS = 64
 
 
-def edges_of(apparatus: Apparatus) -> tuple[np.ndarray, np.ndarray]:
+def n_bins_of(apparatus: Apparatus) -> int:
+    """The number of bins in x."""
+    return int(np.clip(round(apparatus.plate_length / BIN), 1, MOST_BINS))
+
+
+def edges_of(apparatus: Apparatus, n_bins: int | None = None) -> tuple[np.ndarray, np.ndarray]:
     """The bounds of the bins in x and in height (m)."""
-    n = int(np.clip(round(apparatus.plate_length / BIN), 1, MOST_BINS))
     height = apparatus.layer_thickness
-    return np.linspace(0., apparatus.plate_length, n + 1), height * np.arange(apparatus.n_layers + 4)
+    return (np.linspace(0., apparatus.plate_length, (n_bins or n_bins_of(apparatus)) + 1),
+            height * np.arange(apparatus.n_layers + 4))
 
 
 def points_of_sphere() -> np.ndarray:
@@ -139,9 +144,10 @@ def write_table(file: Path, maps: BedMaps) -> None:
     write_csv(file, [list(COLUMNS), *rows])
 
 
-def read_table(file: Path, apparatus: Apparatus) -> BedMaps:
+def read_table(file: Path, apparatus: Apparatus, n_bins: int | None = None) -> BedMaps:
+    """:param n_bins: in x, if they are not those that a table has today"""
     columns = read_columns(file)
-    x, y = edges_of(apparatus)
+    x, y = edges_of(apparatus, n_bins)
     layers = np.unique(columns["layer"]).astype(int) if columns else np.empty(0, int)
     shape = (len(layers), len(x) - 1, len(y) - 1)
     arrays = [np.zeros(shape) for _ in range(4)]

@@ -31,7 +31,6 @@ def measured_group(measured: Measured, label: str = "measured, full size") -> Gr
 
 
 Number = Callable[[SpreadRun], float]
-BEFORE_THE_FALL = (11, 18)  # the measured density rises in these layers and falls after them
 SUPPLIED = (1, 10, 20)
 
 
@@ -82,34 +81,24 @@ def differences_table(groups: Sequence[Group]) -> Table:
 
 def rise_sentence(group: Group) -> str:
     """Whether the layers become denser after layer 10."""
-    rises = group.of_runs(lambda run: run.rise)
+    return change_sentence(group.label, group.of_runs(lambda run: run.rise))
+
+
+def change_sentence(label: str, rises: Sequence[float]) -> str:
+    """The same by changes that are independent of each other."""
     found = mean_of(rises)
     if math.isnan(found.value):
-        return f"{group.label}: too few layers to say whether they become denser."
+        return f"{label}: too few layers to say whether they become denser."
     spans = f"from layers {PLATEAU[0]} to {PLATEAU[1]} to layers {LATER[0]} to {LATER[1]}"
     if math.isnan(found.half):
-        return (f"{group.label}: the mean LRD changes by {100. * found.value:+.1f} % {spans}; one run has no "
+        return (f"{label}: the mean LRD changes by {100. * found.value:+.1f} % {spans}; one run has no "
                 "interval.")
     half = f"± {100. * found.half:.1f} %"
     if not found.is_significant:
-        return (f"{group.label}: {spans} the mean LRD changes by {100. * found.value:+.1f} {half}, which is not "
+        return (f"{label}: {spans} the mean LRD changes by {100. * found.value:+.1f} {half}, which is not "
                 "significant.")
     verb = "rises" if found.value > 0. else "falls"
-    return f"{group.label}: {spans} the mean LRD {verb} by {abs(100. * found.value):.1f} {half}."
-
-
-def middle_sentence(run: SpreadRun) -> str:
-    """Whether the middle half of the plate becomes denser before the measured fall, by one run: its layers are
-    taken as independent. Empty without maps."""
-    before, after = PLATEAU, BEFORE_THE_FALL
-    if run.maps is None or not np.isin([before[0], after[1]], run.maps.layers).all():
-        return ""
-    early, late = ([float(lrd) for layer, lrd in zip(run.maps.layers, run.maps.middle_lrd()) if span[0] <= layer <= span[1]]
-                   for span in (before, after))
-    change = difference_of(late, early)
-    return (f"{run.name}: in the middle half the mean LRD is {text_of(mean_of(early), 100.)} % in layers {before[0]} to "
-            f"{before[1]} and {text_of(mean_of(late), 100.)} % in layers {after[0]} to {after[1]}, if layers are independent: "
-            f"{text_of(change, 100., '+')} %, which is {'' if change.is_significant else 'not '}significant.")
+    return f"{label}: {spans} the mean LRD {verb} by {abs(100. * found.value):.1f} {half}."
 
 
 def supply_table(groups: Sequence[Group]) -> Table:

@@ -36,8 +36,11 @@ class Zones:
 
     @property
     def meet(self) -> int | None:
-        """The first layer in whose pass the two zones cover the bed; None if they do not."""
-        return self._first(np.abs(self.covered - 1.) < 1e-9)
+        """The first layer in whose pass the two zones cover the bed; None if they do not, or if they have not grown
+        from both ends before."""
+        covered = np.abs(self.covered - 1.) < 1e-9
+        from_both = np.cumsum(~covered & (self.left > 0.) & (self.right > 0.)) > 0
+        return self._first(covered & from_both)
 
     @property
     def first(self) -> int | None:

@@ -9,7 +9,7 @@ from typing import Any
 
 from eunoe.launch import Failure
 from eunoe.report.apparatus import Apparatus, ApparatusError
-from eunoe.report.bed_maps import read_maps, write_table
+from eunoe.report.bed_maps import n_bins_of, read_maps, write_table
 from eunoe.report.run_folder import Run, read_run
 from eunoe.studies.series import summary_of
 
@@ -26,11 +26,11 @@ KEPT = ("version", "git_revision", "ranks", "first_step", "steps", "time_step", 
         "mass_balance_error")
 
 
-def record_of(case: Case, folder: Path, layers: int) -> dict[str, Any]:
+def record_of(case: Case, folder: Path, layers: int, n_bins: int) -> dict[str, Any]:
     """What was run, by what, and what it took. A run that goes on has no timings yet."""
     summary = summary_of(folder) or {}
     return {"case": case.name, "finished": bool(summary), "layers": layers, "processor": processor_of(folder),
-            "settings": settings_of(case), "git_revision": revision_of(folder),
+            "settings": settings_of(case), "git_revision": revision_of(folder), "x_bins": n_bins,
             **{key: summary[key] for key in KEPT if key in summary}}
 
 
@@ -38,6 +38,12 @@ def _maps(run: Run, apparatus: Apparatus, file: Path) -> None:
     pictures = run.layer_pictures()
     if pictures:
         write_table(file, read_maps(pictures, apparatus))
+
+
+def is_kept(case: Case, data: Path) -> bool:
+    """Whether the results of a run that finished, perhaps elsewhere, are there."""
+    record = data / case.name / RECORD
+    return record.exists() and bool(json.loads(record.read_text(encoding="utf-8"))["finished"])
 
 
 def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
@@ -48,7 +54,7 @@ def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
     if not (target / RECORD).exists():
         return True
     kept = json.loads((target / RECORD).read_text(encoding="utf-8"))
-    return kept["settings"] != settings_of(case) or (not kept["finished"] and layers > kept["layers"])
+    return not kept["finished"] and (kept["settings"] != settings_of(case) or layers > kept["layers"])
 
 
 def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
@@ -70,6 +76,6 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
     # Maps are for the questions of the mechanism; other variants are compared by their densities alone.
     if case.is_seen_closely:
         _maps(run, apparatus, target / BED)
-    record = record_of(case, folder, len(run.layers))
+    record = record_of(case, folder, len(run.layers), n_bins_of(apparatus))
     (target / RECORD).write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     return target

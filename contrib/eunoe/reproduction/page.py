@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
+import statistics
 from math import isnan
 from pathlib import Path
 
 from eunoe.launch import Failure
-from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, middle_sentence, rest_table,
+from eunoe.report.comparison_text import (change_sentence, densities_table, differences_table, measured_group, rest_table,
                                           rise_sentence, span, supply_table)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, Group
@@ -81,16 +82,25 @@ def densities_block(findings: Findings) -> str:
     if not groups:
         return NOTHING
     everyone = [*groups, measured_group(read_measured())]
-    return _block(densities_table(everyone), _results(groups), " ".join(map(rise_sentence, [*groups, *_together(groups)])))
+    return _block(densities_table(everyone), _results(groups), " ".join([*map(rise_sentence, groups), *_together(groups)]))
 
 
-def _together(groups: list[Group]) -> list[Group]:
-    """The runs of all property sets on plates of one length."""
+def _together(groups: list[Group]) -> list[str]:
+    """Sentences on the rise of all property sets on plates of one length. Runs of one seed are of the same grains in
+    the same places, so they are not independent: what counts is the mean of each seed."""
     lengths: dict[float, list[Group]] = {}
     for group in groups:
         lengths.setdefault(group.runs[0].case.length, []).append(group)
-    return [Group(f"{' and '.join(group.runs[0].case.properties for group in same)} together, "
-                  f"{length_name(length)}", _results(same)) for length, same in lengths.items() if len(same) > 1]
+    sentences = []
+    for length, same in lengths.items():
+        by_seed = [{run.case.seed: run.rise for run in group.runs} for group in same]
+        seeds = sorted(set.intersection(*map(set, by_seed)))
+        if len(same) > 1 and len(seeds) > 1:
+            names = " and ".join(group.runs[0].case.properties for group in same)
+            rises = [statistics.mean(rise[seed] for rise in by_seed) for seed in seeds]
+            sentences.append(change_sentence(f"{names}, {length_name(length)}, their mean for each of {len(seeds)} seeds",
+                                             rises))
+    return sentences
 
 
 def _differences(pairs: list[list[Group]]) -> str:
@@ -129,18 +139,7 @@ def held_block(findings: Findings) -> str:
 
 
 def open_block(findings: Findings) -> str:
-    groups = findings.of_variants(OPEN)
-    return "\n\n".join([_all_about(groups), *_middle_sentences(groups[-1:])])
-
-
-def _middle_sentences(groups: list[Group]) -> list[str]:
-    return [text for run in _results(groups) if (text := middle_sentence(run))]
-
-
-def middle_block(findings: Findings) -> str:
-    """What the middle half of the longest plates does, run by run."""
-    longest = [group for properties in SETS for group in findings.lengths(properties)[-1:]]
-    return "\n\n".join(_middle_sentences(longest)) or NOTHING
+    return _all_about(findings.of_variants(OPEN))
 
 
 def supply_block(findings: Findings) -> str:
@@ -198,7 +197,7 @@ PICTURES = {
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "densities": densities_block,
-          "lengths": lengths_block, "sets": sets_block, "middle": middle_block, "rest": rest_block, "supply": supply_block,
+          "lengths": lengths_block, "sets": sets_block, "rest": rest_block, "supply": supply_block,
           "open": open_block, "held": held_block, "variants": variants_block, "needed": needed_block}
 
 

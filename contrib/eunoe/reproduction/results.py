@@ -16,6 +16,7 @@ from eunoe.report.spread_run import Group, SpreadRun
 from .cases import CASES, VARIANTS, Case
 from .collect import BED, RECORD
 from .places import DATA
+from .runs import UNKNOWN
 
 OPEN, HELD = ("open", "open_stiff"), ("lips_stiff",)  # the variants whose ends nothing holds, and those with lips
 
@@ -30,13 +31,14 @@ class Result(SpreadRun):
     @classmethod
     def read(cls, case: Case, folder: Path) -> Result:
         apparatus = Apparatus.read(folder / "apparatus.json")
-        maps = read_table(folder / BED, apparatus) if (folder / BED).exists() else None
         record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        maps = read_table(folder / BED, apparatus, record.get("x_bins")) if (folder / BED).exists() else None
         return cls(case.name, read_layers(folder / "layers.csv"), apparatus, maps, case, record)
 
     @property
     def revision(self) -> str:
-        return str(self.record["git_revision"])[:7]
+        revision = str(self.record["git_revision"])
+        return revision if revision == UNKNOWN else revision[:7]
 
 
 class Findings:

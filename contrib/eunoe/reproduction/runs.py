@@ -15,7 +15,7 @@ from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
 from eunoe.folders import alone_with
-from eunoe.launch import Failure, mpirun, output_of, overrides
+from eunoe.launch import Failure, beside, mpirun, output_of, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
 from .cases import Case
@@ -28,6 +28,7 @@ STOP = signal.SIGUSR1  # mpirun hands it on; after SIGTERM it would not wait for
 NOTE = "case.json"  # the settings of a run, beside its output
 LAYERS = "layers.csv"
 PROCESSORS, REVISIONS = "processors.json", "revisions.json"  # on and of which it was made
+UNKNOWN = "unknown"  # a revision or processor that nothing tells
 STOPPED = 3  # exit code of a run that was asked to stop and has left a checkpoint
 
 
@@ -39,8 +40,9 @@ def settings_of(case: Case) -> dict[str, str]:
 class Campaign:
     """The folder of the states, and the program that makes them."""
 
-    def __init__(self, program: str, folder: Path, ranks: int = 1) -> None:
+    def __init__(self, program: str, folder: Path, ranks: int = 1, jobs: int = 1) -> None:
         self.program, self.folder, self.ranks = program, folder, ranks
+        self.binding = beside(jobs)
         self.stopping = threading.Event()
         self.children: dict[str, subprocess.Popen] = {}
 
@@ -51,16 +53,16 @@ class Campaign:
             found = re.search(r"revision (\w+)", output_of([self.program, "--version"], Path.cwd()))
         except Failure:
             found = None
-        return found[1] if found else "unknown"
+        return found[1] if found else UNKNOWN
 
     def of(self, case: Case) -> Path:
         """The output folder of a case."""
         return self.folder / case.name
 
-    def command(self, case: Case, *launcher: str) -> list[str]:
+    def command(self, case: Case) -> list[str]:
         """The command that starts a case or goes on with it."""
         settings = {**case.settings, "simulation control/output path": self.of(case), **CONTINUED}
-        return [*(launcher or mpirun(self.ranks)), self.program, case.input_file, "--seed", str(case.seed),
+        return [*mpirun(self.ranks, *self.binding), self.program, case.input_file, "--seed", str(case.seed),
                 *overrides(settings)]
 
     def filmed(self, case: Case) -> list[str]:
@@ -68,7 +70,10 @@ class Campaign:
         change no particle's path."""
         if not case.is_seen_closely or case.seed != 1:
             return []
-        cost = cost_of(self.command(case))
+        try:
+            cost = cost_of(self.command(case))
+        except Failure:  # as for `revision`
+            return []
         first, last = (share * cost.steps * cost.time_step for share in FILMED)
         return overrides({"simulation control/output control": "time",
                           "simulation control/output time": FILM_INTERVAL,
@@ -88,8 +93,10 @@ class Campaign:
                 return None
             self.note(case)
             with open(self.folder / f"{case.name}.log", "a", encoding="utf-8") as log:
+                # In a session of its own, as a signal to all, such as Ctrl-C's, would let mpirun kill its ranks
+                # before they have left a checkpoint.
                 child = subprocess.Popen([*self.command(case), *self.filmed(case)], stdout=log, stderr=log,
-                                         pass_fds=[lock])
+                                         pass_fds=[lock], start_new_session=True)
             self.children[case.name] = child
             if self.stopping.is_set():  # since it was looked at
                 child.send_signal(STOP)
@@ -126,8 +133,6 @@ class Campaign:
 
     def work(self, cases: list[Case], jobs: int, after_each: Callable[[Case], None]) -> bool:
         """Makes the cases that have not finished, so many at a time; false if one failed."""
-        for case in cases:
-            self.check(case)
         before = {number: signal.signal(number, self.stop)
                   for number in (signal.SIGTERM, signal.SIGINT, signal.SIGUSR1)}
         turn = threading.Lock()
@@ -159,9 +164,9 @@ def _listed(file: Path) -> list[str]:
 
 def processor_of(folder: Path) -> str:
     """On which processors a run was made; unknown if it was not started by the campaign."""
-    return ", ".join(_listed(folder / PROCESSORS)) or "unknown"
+    return ", ".join(_listed(folder / PROCESSORS)) or UNKNOWN
 
 
 def revision_of(folder: Path) -> str:
     """By which program a run went on last; unknown if it was not started by the campaign."""
-    return (_listed(folder / REVISIONS) or ["unknown"])[-1]
+    return (_listed(folder / REVISIONS) or [UNKNOWN])[-1]

@@ -7,7 +7,7 @@ import math
 from eunoe.intervals import Interval, difference_of, mean_of
 from eunoe.report.comparison_text import layers_of, measured_group, text_of
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import PLATEAU, Group, SpreadRun
+from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
 from eunoe.tables import Table
 
 from .cases import SETS
@@ -77,17 +77,21 @@ def _differences(findings: Findings) -> Table:
     for properties in ("PS1", "PS2", "PS3"):
         groups = findings.lengths(properties)
         for shorter, longer in zip(groups, groups[1:]):
-            for title, number, size in (("the peak grows with the length", lambda run: run.peak[0], 100.),
-                                        ("its layer grows with the length", lambda run: run.peak[1], 1.)):
+            for title, number, size, unit in (
+                    ("the rise grows with the length", _rise, 100., " %"),
+                    ("the peak grows with the length", lambda run: run.peak[0], 100., " %"),
+                    ("its layer grows with the length", lambda run: run.peak[1], 1., "")):
                 found = difference_of(longer.of_runs(number), shorter.of_runs(number))
-                rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, '')}",
+                rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, unit)}",
                              _sign(Interval(found.value * size / 100., found.half * size / 100.), "+")])
     for length in sorted({result.case.length for result in findings.all}):
         first, third = findings.of("PS1", length), findings.of("PS3", length)
         if first and third:
-            found = difference_of(third.of_runs(lambda run: run.peak[0]), first.of_runs(lambda run: run.peak[0]))
-            rows.append(["the peak of PS3 is lower than that of PS1", "simulated: yes",
-                         f"{third.label}, less {first.label}: {_said(found)}", _sign(found, "-")])
+            for title, number in (("the peak of PS3 is lower than that of PS1", lambda run: run.peak[0]),
+                                  ("layers 11 to 20 of PS3 are looser", lambda run: run.mean_lrd(LATER))):
+                found = difference_of(third.of_runs(number), first.of_runs(number))
+                rows.append([title, "simulated: yes", f"{third.label}, less {first.label}: {_said(found)}",
+                             _sign(found, "-")])
     return rows
 
 
@@ -109,8 +113,13 @@ def _rest(groups: list[Group]) -> Table:
 
 
 def _longest(findings: Findings) -> list[Group]:
-    """The longest plate of each property set."""
-    return [groups[-1] for properties in SETS if (groups := findings.lengths(properties))]
+    """The longest plate of each property set, and the longest one with an interval."""
+    found = []
+    for properties in SETS:
+        groups = findings.lengths(properties)
+        found += [group for group in groups if group is groups[-1]
+                  or group is next((one for one in reversed(groups) if len(one.runs) > 1), None)]
+    return found
 
 
 def verdict_table(findings: Findings) -> Table:

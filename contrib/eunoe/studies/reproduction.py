@@ -7,8 +7,8 @@ Usage: contrib/tools reproduction path/to/eunoe-particles folder [--only CASE ..
        contrib/tools reproduction path/to/eunoe-particles folder --collect
        contrib/tools reproduction --list | --page-only
 
-The states of the runs lie in the folder, which should stand outside the repository. A run that has finished
-is not made again; one that was stopped or killed continues from its checkpoint. SIGTERM, SIGINT and SIGUSR1
+The states of the runs lie in the folder, which should stand outside the repository. A run whose results
+are kept is not made again; one that was stopped or killed continues from its checkpoint. SIGTERM, SIGINT and SIGUSR1
 ask all runs to leave a checkpoint and end; the exit code is then 3. Several of these commands may work in one folder: a case that
 another one runs is left out. --only takes names of cases, or of groups of seeds. --command
 prints the command that a batch job on this machine starts with its own launcher. --collect runs nothing: it
@@ -23,6 +23,7 @@ import shlex
 import sys
 from pathlib import Path
 
+from eunoe.folders import alone_with
 from eunoe.launch import Failure, parser
 from eunoe.reproduction.cases import CASES, Case, chosen
 from eunoe.reproduction.places import DATA, PAGE
@@ -58,8 +59,8 @@ def parse(words: list[str]) -> argparse.Namespace:
     return options
 
 
-def show_plan(campaign: Campaign, cases: list[Case], speed: float | None) -> None:
-    table, sentence = plan_of(campaign, cases, 1e6 * speed if speed else measured_speed(campaign, list(CASES)))
+def show_plan(campaign: Campaign, cases: list[Case], data: Path, speed: float | None) -> None:
+    table, sentence = plan_of(campaign, cases, data, 1e6 * speed if speed else measured_speed(campaign, list(CASES)))
     print(as_text(table), sentence, sep="\n")
 
 
@@ -78,23 +79,33 @@ def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
 
 def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
     """Runs, takes over the results of each run when it has finished, and rebuilds; false if a run failed."""
-    from eunoe.reproduction.collect import collect
+    from eunoe.reproduction.collect import collect, is_kept
 
     def take(case: Case) -> None:
         try:
-            collect(campaign, case, options.data)
+            with alone_with(lock, wait=True):
+                collect(campaign, case, options.data)
         except Failure as failure:  # the other runs go on
             print(failure, file=sys.stderr, flush=True)
 
+    lock = campaign.folder / "results.lock"  # of commands that work in one folder
+
+    for case in cases:
+        campaign.check(case)
     for case in cases:
         take(case)
     good = True
     if not options.collect:
-        good = campaign.work(cases, options.jobs, take)
-        for case in cases:  # a run that was stopped, or has died
+        missing = [case for case in cases if not is_kept(case, options.data)]
+        if len(missing) < len(cases):
+            print(f"Finished before: {len(cases) - len(missing)} runs, whose results {options.data} keeps. With an "
+                  "empty folder as --data they are made again.", flush=True)
+        good = campaign.work(missing, options.jobs, take)
+        for case in missing:  # a run that was stopped, or has died
             if not campaign.is_finished(case):
                 take(case)
-    rebuild(options, campaign)
+    with alone_with(lock, wait=True):
+        rebuild(options, campaign)
     return good
 
 
@@ -107,10 +118,10 @@ def main(words: list[str]) -> int:
     if options.page_only:
         rebuild(options, None)
         return 0
-    campaign = Campaign(str(Path(options.program).resolve()), options.folder.resolve(), options.ranks)
+    campaign = Campaign(str(Path(options.program).resolve()), options.folder.resolve(), options.ranks, options.jobs)
     os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     if options.plan:
-        show_plan(campaign, cases, options.speed)
+        show_plan(campaign, cases, options.data, options.speed)
         return 0
     if options.command:
         for case in cases:
