@@ -91,7 +91,7 @@ EUNOE_MPI_TEST()
       p.position[k].z = 0.;
     else if (k % 10 == 5)
       p.position[k].z = 5e-4;
-  pairs.near.note_step(std::numeric_limits<double>::infinity(), radius, pairs.near.share());
+  pairs.near.note_step(Travel::unknown, Travel::unknown, radius, pairs.near.share());
 
   ParticleArrays evaluated = p;
   clear(evaluated);

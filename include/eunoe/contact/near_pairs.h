@@ -45,8 +45,9 @@ public:
   {
     constexpr double most_steps = 200.;
     left -= paces;
-    slowest = std::max(typical, share * skin / (most_steps * most_steps));
-    wanted = std::floor(std::sqrt(share * skin / slowest));
+    const bool is_known = std::isfinite(typical);
+    slowest = std::max(is_known ? typical : 0., share * skin / (most_steps * most_steps));
+    wanted = is_known ? std::floor(std::sqrt(share * skin / slowest)) : 0.;
   }
 
   /// Of a particle, by its present step (m).
