@@ -54,6 +54,12 @@ class Series:
             return list(csv.DictReader(file))
 
 
+def head_of(checkpoint: Path) -> dict:
+    """What is small in a checkpoint: JSON between two lines and the rows."""
+    text = checkpoint.read_bytes()
+    return json.JSONDecoder().raw_decode(text[text.index(b"{"):].decode("utf-8", "replace"))[0]
+
+
 def expect(condition: bool, sentence: str) -> None:
     if not condition:
         raise Failure(sentence)
@@ -85,6 +91,10 @@ def results(series: Series) -> None:
     corners = np.isclose(surfaces["points"][:, 0], (69e-3 + 56e-3) * 0.01 + 0.1e-3, rtol=1e-6)
     height = float(surfaces["points"][corners, 1].max())
     expect(abs(height + 3. * THICKNESS) < 1e-3 * THICKNESS, f"the plate is at {height} m")
+    with open(series.folder / "more" / "measurements.csv", encoding="utf-8") as file:
+        measured = [(row["observable"], row["index"]) for row in csv.DictReader(file)]
+    expect(("solid_fraction", "3") in measured and len(set(measured)) == len(measured),
+           "a measurement stands twice in measurements.csv")
     summary = json.loads((series.folder / "more" / "summary.json").read_text(encoding="utf-8"))
     expect(summary["mass_balance_error"] == 0., "mass is lost unaccounted")
     for column, outlet in (("mass_to_gap", 2), ("mass_to_collector", 1)):
@@ -98,7 +108,10 @@ def stopped(series: Series) -> None:
     shutil.copytree(series.folder / "more", series.folder / "stopped")
     files = series.checkpoints("stopped")
     middle = [file for file in files if file.name > series.checkpoints("first")[-1].name]
-    for late in middle[len(middle) // 2:]:
+    passes = 2  # the phase of the process in which the bed of the feedstock is remembered
+    within = [file for file in middle if head_of(file)["powder spreading"]["phase"] == passes]
+    expect(len(within) > 1 and head_of(within[0])["bed_depth"] > 0., "no checkpoint is from within the passes")
+    for late in middle[middle.index(within[0]) + 1:]:
         late.unlink()
     said = series.run("stopped", "restart/restart = auto", *MORE[1:], ranks=2)
     expect("The newest checkpoint that is whole is" in said, said)

@@ -2,6 +2,7 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/key_ranges.h>
 #include <eunoe/core/random.h>
+#include <eunoe/engine/saved_layout.h>
 #include <eunoe/processes/box_mesh.h>
 #include <eunoe/processes/powder_spreading/feed_bed.h>
 
@@ -216,13 +217,19 @@ void FeedBed::save(CheckpointWriter &writer) const
 
 void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
 {
-  const unsigned int n_history = simulation.contact_model().history_size();
+  const ParticleSystem &system = simulation.get_system();
+  const ContactModel &model = system.contact_model();
+  // Laws and solids may be others now.
+  const SavedLayout layout(checkpoint.head, system.fields(), model, system.wall_model(),
+                           simulation.get_solids());
   depth = number_in(checkpoint.head.at("bed_depth"));
   const Rows all = checkpoint.rows("feed bed");
+  const double n_types = model.get_materials().n_types();
   bool ok = true;
   for (std::size_t k = 0; k < all.size(); ++k)
-    ok = ok && all.length(k) >= place::n_places && are_of_particle(all[k] + place::id, 1.) &&
-         ContactRows::are_records(all[k] + place::n_places, all[k] + all.length(k), n_history);
+    ok = ok && all.length(k) >= place::n_places && are_of_particle(all[k] + place::id, n_types) &&
+         ContactRows::are_records(all[k] + place::n_places, all[k] + all.length(k),
+                                  layout.n_history());
   checkpoint.require(ok, "its feedstock is not that of the case.");
   particles.clear();
   Rows contacts;
@@ -239,7 +246,7 @@ void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
     particles.push_back(p);
     contacts.append(row + place::n_places, row + all.length(k));
   }
-  rows = ContactRows(n_history, std::move(contacts));
+  rows = ContactRows(model.history_size(), layout.translate(contacts));
   unsigned long long n = particles.size();
   MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
   n_global = n;

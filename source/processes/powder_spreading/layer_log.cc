@@ -166,7 +166,15 @@ void LayerLog::take_profile(Simulation &simulation, const double plate_height)
   for (std::size_t row = 0; row < p.n_owned; ++row)
     plate.add(p.position[row].vec(), p.radius(row), p.mass(row));
   plate.reduce(simulation.communicator());
-  plate.append_to(measured);
+  // After more layers, those of the layers before are there.
+  std::vector<Measurement> profile;
+  plate.append_to(profile);
+  const auto is_replaced = [&profile](const Measurement &old) {
+    return std::any_of(profile.begin(), profile.end(),
+                       [&old](const Measurement &m) { return m.observable == old.observable; });
+  };
+  measured.erase(std::remove_if(measured.begin(), measured.end(), is_replaced), measured.end());
+  measured.insert(measured.end(), profile.begin(), profile.end());
 }
 
 std::vector<ObservableDescription> LayerLog::observables()
