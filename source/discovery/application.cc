@@ -118,7 +118,7 @@ void refuse_folders(const StudyParameters &p, const bool makes_data, MPI_Comm co
   for (const auto &[entry, folder] :
        {std::pair<std::string, std::string>("output path", p.output_path),
         std::pair<std::string, std::string>(
-            "table of runs", std::filesystem::path("./" + p.table_file()).parent_path().string())})
+            "table of runs", (std::filesystem::path(".") / p.table_file()).parent_path().string())})
   {
     const std::string obstacle = broadcast(rank == 0 ? obstacle_to_folder(folder) : "", comm);
     if (!obstacle.empty())

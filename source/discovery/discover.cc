@@ -292,6 +292,10 @@ void Study::run()
                                                 : !design.refine(round->evidence, findings))
       break;
   }
+  if (!curve.is_settled(*round, options.level))
+    notes.push_back("The budget of " + std::to_string(options.budget) +
+                    " runs was spent before the answer had settled. With a larger 'budget' the "
+                    "study goes on from here, and the answer may change.");
   round->look(rule);
 }
 

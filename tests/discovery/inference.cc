@@ -166,6 +166,21 @@ void distances_of_twins(Laboratory &lab)
         std::to_string(shortened / new_ones));
   check("and not as far as they are along the weights", of_rows / new_ones > 1.05,
         std::to_string(of_rows / new_ones));
+
+  const Evidence evidence(target, lab.space);
+  Target::Prediction truth = evidence.nothing().prediction;
+  truth.gradient.resize(truth.mean.size(), 0);
+  truth.leverage.setZero();
+  const auto distance = [&](const Twins::Scatter scatter) {
+    const Eigen::MatrixXd drawn = Twins(evidence, 4, scatter).draw(truth, number);
+    return (drawn.colwise() - truth.mean).colwise().squaredNorm().mean();
+  };
+  const double weighed = distance(Twins::Scatter::as_weighed),
+               by_distance = distance(Twins::Scatter::as_a_distance);
+  truth.scatter.setZero();
+  const double of_instrument = distance(Twins::Scatter::as_weighed),
+               ratio = (by_distance - of_instrument) / (weighed - of_instrument);
+  check("which twins know", std::abs(ratio - shortened / of_rows) < 0.02, std::to_string(ratio));
 }
 
 /// Points that were measured once scatter more than those that were measured nine times.

@@ -25,7 +25,7 @@ from eunoe.launch import Failure
 from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
 from eunoe.report.discovery_results import Study
-from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, verdict_text
+from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, title_of, verdict_text
 from sample_study import CHANGES, make_study
 
 EFFECTS = {"cohesion": {"sign": "above", "confounders": ["rolling_resistance"]},
@@ -68,6 +68,17 @@ class PageOfAStudy(InFolder):
         self.assertNotIn("none of them", " ".join(verdict_text(study)))
         study.content["p of the fit"] = 0.03
         self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
+
+    def test_one_effect_or_none_of_the_catalogue(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        self.assertEqual(title_of(study), "Several effects explain the data alike")
+        study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
+                                {"effects": "none of the catalogue", "probability": 0.1}]
+        self.assertEqual(title_of(study), "One effect, or something that the catalogue lacks")
+        words = " ".join(verdict_text(study))
+        self.assertIn("would tell whether it is this effect", words)
+        self.assertNotIn("bits that are open", words)
 
     def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
         make_study(self.folder / "tie", "tie")

@@ -10,7 +10,7 @@ import numpy as np
 from .discovery_charts import (cosine_figure, envelope_figure, fingerprint_figure, gap_figure,
                                learning_figure, posterior_figure, ranking_figure)
 from .discovery_results import Study
-from .discovery_text import (TITLES, detectability_rows, gap_text, held_out_text, plain,
+from .discovery_text import (detectability_rows, gap_text, held_out_text, plain, title_of,
                              verdict_text)
 from .page import Page, preformatted, table
 from .quantities import SPACE, duration, number
@@ -93,7 +93,7 @@ def _add_origin(page: Page, study: Study) -> None:
 
 def discovery_report(study: Study) -> Page:
     experiments = sorted({c["experiment"] for c in study.content["envelopes"]})
-    page = Page(TITLES.get(study.verdict, study.verdict),
+    page = Page(title_of(study),
                 f"{len(study.content['envelopes'])} measured cells of "
                 f"{', '.join(map(escape, experiments))}; {len(study.content.get('effects', []))} "
                 "effects looked for")

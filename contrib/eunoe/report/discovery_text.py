@@ -9,6 +9,8 @@ TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
           "tie": "Several effects explain the data alike",
           "off catalogue": "Something is missing that is not in the catalogue",
           "underpowered": "The data cannot tell"}
+ONE_OR_NONE = "One effect, or something that the catalogue lacks"
+NONE = "none of the catalogue"
 DOUBTFUL = 0.05  # as in the program's DecisionRule
 
 
@@ -18,6 +20,16 @@ def _amount(value: float, unit: str) -> str:
 
 def _probability(value: float) -> str:
     return number(value, 2) if value >= 0.001 else f"{value:.0e}"
+
+
+def is_one_or_none(study: Study) -> bool:
+    """Whether the only alternative to one answer is that it is none of the catalogue."""
+    names = [row["effects"] for row in study.content["tie"]]
+    return study.verdict == "tie" and len(names) == 2 and NONE in names
+
+
+def title_of(study: Study) -> str:
+    return ONE_OR_NONE if is_one_or_none(study) else TITLES.get(study.verdict, study.verdict)
 
 
 def plain(name: str) -> str:
@@ -100,7 +112,9 @@ def _tie(study: Study) -> list[str]:
         sentences.append(f"The likeliest describes the {'data' if fit <= held_out else 'held-out data'} badly "
                          f"(p = {_probability(min(fit, held_out))}), so it may be none of them.")
     breakers = study.content.get("measurements that would break the tie", [])
-    if breakers:
+    if is_one_or_none(study):
+        sentences.append("More repeats, and held-out conditions, would tell whether it is this effect.")
+    elif breakers:
         best = breakers[0]
         what = {"all": "everything", "all else": "everything else"}.get(best["observable"], plain(best["observable"]))
         again = " once more" if best["again"] else ""

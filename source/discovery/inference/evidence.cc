@@ -78,7 +78,7 @@ void Evidence::make_grid(const std::size_t k)
   for (const double limit : {factors.lower(k), factors.upper(k)}) {
     if (limit == 0.)
       continue;
-    double first = prior.least_range * (limit < 0. ? -1. : 1.);
+    double first = std::min(prior.least_range, 0.5 * std::abs(limit)) * (limit < 0. ? -1. : 1.);
     while (std::abs(first) * least_ratio < std::abs(limit) &&
            (target().predict({{k, first}}).mean - nothing().prediction.mean).norm() <
                prior.just_visible)

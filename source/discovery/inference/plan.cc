@@ -267,6 +267,9 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   constexpr std::size_t most_models = 4;
   constexpr unsigned int draws = 100, repeats = 4;
   std::vector<Model> models = findings.answer;
+  // One effect or none of the catalogue: nothing is known of what would tell them apart.
+  if (models.size() < 2)
+    return Json::array();
   if (models.size() > most_models)
     models.resize(most_models);
   const auto rank = [&](const Evidence &where, const unsigned int seed) {
@@ -291,16 +294,20 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
     known.insert(part.measured.points.begin(), part.measured.points.end());
   }
   experiments.insert(experiments.end(), made.begin(), made.end());
-  const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
-  if (!measured.empty()) {
-    const Target target(measured, samples, space, options.model_tolerance);
-    for (Json row : rank(Evidence(target, space), options.seed + 6)) {
-      row["again"] = false;
-      if (row["observable"] == "all" &&
-          std::find(made.begin(), made.end(), row["experiment"]) != made.end())
-        row["observable"] = "all else";
-      rows.push_back(row);
+  try {
+    const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
+    if (!measured.empty()) {
+      const Target target(measured, samples, space, options.model_tolerance);
+      for (Json row : rank(Evidence(target, space), options.seed + 6)) {
+        row["again"] = false;
+        if (row["observable"] == "all" &&
+            std::find(made.begin(), made.end(), row["experiment"]) != made.end())
+          row["observable"] = "all else";
+        rows.push_back(row);
+      }
     }
+  } catch (const TooFewRuns &) {
+    // The answer does not depend on what a further experiment, whose runs fail, would have told.
   }
   std::stable_sort(rows.begin(), rows.end(), [](const Json &a, const Json &b) {
     return a.at("information").get<double>() > b.at("information").get<double>();

@@ -34,20 +34,21 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
     const Eigen::Index n = rows.cols();
     const auto k = static_cast<Eigen::Index>(e);
     const auto repeats = std::max(1, static_cast<int>(std::lround(part.repeats)));
-    const auto row = [&] {
-      return rows.row(
-          static_cast<Eigen::Index>(random.index(static_cast<std::size_t>(rows.rows()))));
+    const double length =
+        kind == Scatter::as_a_distance ? std::sqrt(1. - part.emulator.own_share()) : 1.;
+    const auto deviation = [&]() -> Eigen::VectorXd {
+      const std::size_t row = random.index(static_cast<std::size_t>(rows.rows()));
+      return length * rows.row(static_cast<Eigen::Index>(row)).transpose();
     };
     Eigen::VectorXd scatter = Eigen::VectorXd::Zero(n);
     for (int r = 0; r < repeats; ++r)
-      scatter += row().transpose();
+      scatter += deviation();
     result.segment(part.first, n) += truth.scatter.segment(part.first, n)
                                          .cwiseSqrt()
                                          .cwiseProduct(part.rotation * (part.averaging * scatter)) /
                                      std::sqrt(repeats);
-    result.segment(part.first, n) += truth.leverage.segment(part.first, n)
-                                         .cwiseSqrt()
-                                         .cwiseProduct(part.rotation * row().transpose());
+    result.segment(part.first, n) +=
+        truth.leverage.segment(part.first, n).cwiseSqrt().cwiseProduct(part.rotation * deviation());
     result.segment(part.first, n) += part.rotation * instrument(part, truth.common(k), quantile);
   }
   return result;
