@@ -86,7 +86,7 @@ nlohmann::ordered_json Domain::save() const
 
 void Domain::load(const nlohmann::ordered_json &saved)
 {
-  if (moves())
+  if (moves() && !saved.is_null())
     pose = earlier = state_in(saved);
 }
 

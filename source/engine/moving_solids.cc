@@ -55,6 +55,19 @@ nlohmann::ordered_json MovingSolids::save() const
   return {{"names", names}, {"states", to_json(at_search)}};
 }
 
+std::vector<std::pair<std::string, double>> MovingSolids::jumps(
+    const nlohmann::ordered_json &saved) const
+{
+  const nlohmann::ordered_json &names = saved.at("names");
+  const std::vector<RigidState> before = states_in(saved.at("states"), names.size());
+  std::vector<std::pair<std::string, double>> list;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    for (const Solid &solid : solids)
+      if (names[k] == solid.name)
+        list.emplace_back(solid.name, displacement(solid, before[k], solid.state));
+  return list;
+}
+
 void MovingSolids::load(const nlohmann::ordered_json &saved)
 {
   at_search = states_in(saved.at("states"), solids.size());

@@ -149,6 +149,17 @@ void ParticleSystem::start_forces_on_new(const ParticleId first_new,
   });
 }
 
+void ParticleSystem::add_solid_loads(const std::vector<Solid> &solids, const double time,
+                                     std::vector<SolidLoad> &loads) const
+{
+  solid_contacts.evaluate(particles, solids, time, [&](const ContactForce &contact) {
+    const Vec3 point = particles.position[contact.first].vec() + contact.distance * contact.normal;
+    loads[contact.solid].add(contact.force(),
+                             cross(point - solids[contact.solid].state.centre, contact.force()) -
+                                 contact.rolling_torque);
+  });
+}
+
 std::vector<ContactForce> ParticleSystem::contact_forces(const std::vector<Solid> &solids,
                                                          const double time) const
 {

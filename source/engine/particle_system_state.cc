@@ -126,6 +126,13 @@ void ParticleSystem::check_guests(const Rows &rows, const std::string &path) con
     throw UserError(problems);
 }
 
+void ParticleSystem::check_guests(const Checkpoint &checkpoint,
+                                  const std::vector<Solid> &solids) const
+{
+  rows_of(checkpoint, {checkpoint.head, physics.fields, physics.model, physics.wall_model, solids},
+          true);
+}
+
 Rows ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &layout,
                              const bool begins_phase) const
 {

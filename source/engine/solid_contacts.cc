@@ -342,15 +342,10 @@ void SolidContacts::finish(ParticleArrays &particles, const std::vector<Solid> &
   for (unsigned int k = 0; k < b.n; ++k) {
     const ContactForce contact = force_of(b, k);
     const Vec3 force = contact.force();
-    if (loads != nullptr) {
-      SolidLoad &load = (*loads)[contact.solid];
-      const Vec3 torque =
-          cross(b.point[k] - solids[contact.solid].state.centre, force) - contact.rolling_torque;
-      for (unsigned int d = 0; d < 3; ++d) {
-        load.force[d] += force[d];
-        load.torque[d] += torque[d];
-      }
-    }
+    if (loads != nullptr)
+      (*loads)[contact.solid].add(force,
+                                  cross(b.point[k] - solids[contact.solid].state.centre, force) -
+                                      contact.rolling_torque);
     if (b.record[k] == ContactMemory::none)
       continue;
     const std::int32_t p = contact.first;

@@ -46,6 +46,17 @@ void tell_differences(const Problems &differences, const std::string &path, Log 
              " more entries, most of which only one of them has");
 }
 
+/// Whether two paths mean one folder, however they are written.
+bool is_same_folder(const std::string &a, const std::string &b)
+{
+  const auto canonical = [](const std::string &path) {
+    std::error_code error;
+    const fs::path found = fs::weakly_canonical(fs::path(path) / "", error);
+    return error ? fs::path(path) : found;
+  };
+  return a == b || canonical(a) == canonical(b);
+}
+
 /// Time of a checkpoint (s).
 double time_in(const nlohmann::ordered_json &clock)
 {
@@ -148,8 +159,9 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
   // Where checkpoints have a path of their own, the results may lie elsewhere.
   EntryValues entries = values_in(head["input"]);
   has_own_results =
-      is_own_folder && (folder == control.output_path ||
-                        entries[{{"simulation control"}, "output path"}] == control.output_path);
+      is_own_folder &&
+      (is_same_folder(folder, control.output_path) ||
+       is_same_folder(entries[{{"simulation control"}, "output path"}], control.output_path));
   if (parameters.restart == "auto" && is_own_folder)
     for (const Problem &difference : differences.all())
       problems.add(difference.where, difference.what, difference.mend);
@@ -176,6 +188,13 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
                                 : "step " + std::to_string(last) + "."),
                    "Raise 'time end' or 'iteration end', or start anew with 'restart = false'.");
   });
+}
+
+double Checkpoints::time() const
+{
+  double time = 0.;
+  understand([&](const nlohmann::ordered_json &head) { time = time_in(head.at("clock")); });
+  return time;
 }
 
 void Checkpoints::understand(

@@ -1,3 +1,4 @@
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/input_file.h>
 #include <eunoe/simulation/simulation.h>
 #include <eunoe/solids/crossings.h>
@@ -70,6 +71,18 @@ void check_domain(const Domain &domain, const Parameters &parameters, const doub
 void check_phase(const Parameters &parameters, const Problems &differences,
                  const nlohmann::ordered_json &head, Problems &problems)
 {
+  // Particles come type by type, and a checkpoint knows how many have come in all.
+  const std::size_t n_types = parameters.physics.types.size();
+  const bool have_come = count_in(head.at("insertion").at("supplied")) > 0;
+  for (std::size_t k = 0; have_come && k + 1 < n_types; ++k) {
+    const std::string entry =
+        describe({"lagrangian physical properties", "particle type " + std::to_string(k)},
+                 "number of particles");
+    for (const Problem &difference : differences.all())
+      if (difference.where == entry)
+        problems.add(difference.where, difference.what,
+                     "Keep it, and give further particles as a type behind the others.");
+  }
   if (parameters.process() == nullptr)
     return;
   std::vector<Problem> of_process;

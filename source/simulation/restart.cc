@@ -60,8 +60,11 @@ void Simulation::resume()
         "Nothing is inserted in this phase, although not all particles have come: with "
         "'insertion frequency = 0' they come at the first step of a run only. Give a "
         "frequency.");
-  if (!checkpoints.is_own())
-    outputs.begin(clock, *this);
+  if (checkpoints.is_own())
+    return;
+  if (outputs.want_solid_loads(clock.step()))
+    system.add_solid_loads(solids.list(), clock.time(), solids.new_loads());
+  outputs.begin(clock, *this);
 }
 
 /// Continues as if the run had not stopped.
@@ -77,11 +80,36 @@ void Simulation::go_on(const Checkpoint &checkpoint)
   system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), false, true);
 }
 
+/// Whether particles have passed an outlet of a mesh that moves depends on where it was at the last
+/// search.
+void Simulation::place_domain_of(const Checkpoint &checkpoint)
+{
+  domain.load(checkpoint.head.at("domain"));
+  domain.move_to(checkpoints.time());
+}
+
+/// Refuses a phase whose particles do not fit into it, before anything is written.
+void Simulation::check_guests()
+{
+  checkpoints.understand([this](const nlohmann::ordered_json &) {
+    const Checkpoint &checkpoint = *checkpoints.opened();
+    place_domain_of(checkpoint);
+    system.check_guests(checkpoint, solids.list());
+  });
+}
+
 /// Takes the particles and what their contacts remember, and goes on with what the input says now:
 /// with other walls, solids, laws, loads, steps.
 void Simulation::begin_phase(const Checkpoint &checkpoint)
 {
+  place_domain_of(checkpoint);
   move_solids();
+  for (const auto &[name, way] : solids.jumps(checkpoint.head.at("solids")))
+    if (way > criterion.allowed_displacement())
+      get_log().warning(
+          "'" + name + "' stands up to " + format(way) +
+          " m from where it stood, as motions count from t = 0 and not from the "
+          "beginning of a phase. Give it a motion that has brought it there by then.");
   // A process has the outlets that it had, and measures what goes through them.
   const bool keeps_ledger = process != nullptr;
   for (const std::string &loss : system.load(checkpoint, solids.list(), parameters.load_balancing,

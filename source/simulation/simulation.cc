@@ -61,6 +61,8 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
   if (!problems.empty())
     throw UserError(problems);
   solids.take(std::move(all));
+  if (checkpoints.begins_phase())
+    check_guests();
   // A trial without a folder finds what is wrong with them before anything is written.
   for (const auto &[name, section] : parameters.observables)
     section->make(*this);

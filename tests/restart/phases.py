@@ -24,6 +24,7 @@ BOUNDARY = "DEM boundary conditions/boundary condition "
 # Rain into a closed box, of which the second phase opens a side, drops the paddle, stops the rain and
 # makes friction weaker.
 LOAD = (END + "6000", "restart/checkpoint = true", "restart/frequency = 6000", BOUNDARY + "1/type = fixed_wall")
+MOTION = "solid objects/solid surfaces/solid object 0/translational velocity/Function expression = "
 OPEN = (END + "12000", CONTINUE, "solid objects/solid surfaces/number of solids = 0",
         "lagrangian physical properties/particle type 0/friction coefficient particles = 0.1")
 
@@ -161,6 +162,12 @@ def own_path(program: Program) -> None:
     names = sorted(path.name for path in (program.folder / "marks").glob("*.checkpoint"))
     if names != ["dem_000000006000.checkpoint", "dem_000000012000.checkpoint", "dem_phase_000000006000.checkpoint"]:
         raise Failure(f"the checkpoints are {names}")
+    # However the path is written, the tables are its own.
+    more = (*OPEN[1:2], OPEN[3], *marks[:2], "restart/frequency = 500", END + "12500")
+    program.run("open.prm", *more, OUTPUT + "./two/")
+    rows = (program.folder / "two" / "energies.csv").read_text().splitlines()
+    if not rows[1].startswith("0.006") or abs(float(rows[-1].split(",")[0]) - 0.0125) > 1e-12:
+        raise Failure("a table is not continued in a folder that is written in another way")
 
 
 def found_nearby(program: Program) -> None:
@@ -244,15 +251,51 @@ def refused(program: Program) -> None:
             ((END + "6000", kind + "g = 0, -5, 0"), "is of step 6000, and the run ends at step 6000", 2),
             ((END + "7000", kind + "particle type 0/average diameter = 0.3e-3",
               kind + "particle type 0/standard deviation = 0.01e-3"),
-             "m, and those of the input have 0.0005 m at most", 1),
+             "m, and those of the input have 0.0005 m at most", 2),
             ((END + "7000", "mesh/grid arguments = 5, 4, 2 : 0, 0, 0 : 6e-3, 8e-3, 4e-3 : true"),
-             "particles that lie outside the mesh of this input.", 1),
+             "particles that lie outside the mesh of this input.", 2),
+            ((END + "7000", kind + "particle type 0/number of particles = 1"),
+             "Keep it, and give further particles as a type behind the others.", 2),
             ((END + "7000", "restart/restart folder = nowhere"), "nowhere holds no checkpoint 'restart'.", 2)):
         expect(program.run("case.prm", *start, *settings, code=code), sentence)
-    expect(program.run("one_type.prm", *start, END + "7000", kind + "number of particle types = 1", code=1),
+    expect(program.run("one_type.prm", *start, END + "7000", kind + "number of particle types = 1", code=2),
            "holds particles of type 1, and the input has the types 0 to 0.")
     expect(program.run("case.prm", *LOAD[1:], END + "7000", OUTPUT + "load", "restart/restart = auto",
                        kind + "g = 0, -5, 0", code=2), "entry 'g' is '0, -5, 0', and was '0, -9.81, 0'")
+    # Nothing of the earlier results is lost by that.
+    names = ("summary.json", "energies.csv", "used.prm")
+    before = [(program.folder / "load" / name).read_bytes() for name in names]
+    expect(program.run("one_type.prm", *LOAD[1:], CONTINUE, OUTPUT + "load", END + "7000",
+                       kind + "number of particle types = 1", code=2), "holds particles of type 1")
+    if [(program.folder / "load" / name).read_bytes() for name in names] != before:
+        raise Failure("a phase that is refused has changed the results before it")
+
+
+def loads_at_the_beginning(program: Program) -> None:
+    """Forces on walls at the moment at which a phase begins are those at which the part before it ended."""
+    often = ("boundary forces/output frequency = 1000", "post-processing/solid forces/output frequency = 1000")
+    program.run("case.prm", *LOAD, *often, OUTPUT + "often")
+    program.run("case.prm", *LOAD[1:], *often, END + "6100", CONTINUE, "restart/restart folder = often", OUTPUT + "loads",
+                "lagrangian physical properties/g = 0, -9.8, 0")
+    for name in ("force_0.csv", "force_2.csv"):
+        last = (program.folder / "often" / name).read_text().splitlines()[-1].split(",")
+        first = (program.folder / "loads" / name).read_text().splitlines()[1].split(",")
+        if not same_numbers(first, last, 0.05):
+            raise Failure(f"{name} begins with {first}, and ended with {last}")
+
+
+def same_numbers(one: list[str], other: list[str], share: float) -> bool:
+    """Whether two rows agree within a share of their largest number but the first, which is the time."""
+    a, b = (list(map(float, row)) for row in (one, other))
+    size = max(abs(value) for value in b[1:])
+    return size > 0. and a[0] == b[0] and all(abs(x - y) <= share * size for x, y in zip(a[1:], b[1:]))
+
+
+def jumps(program: Program) -> None:
+    """A motion that would have begun before the phase is told of."""
+    said = program.run("case.prm", *LOAD[1:], END + "6010", CONTINUE, "restart/restart folder = load", OUTPUT + "jumps",
+                       MOTION + "0.1; 0; 0")
+    expect(said, "m from where it stood, as motions count from t = 0")
 
 
 def main() -> int:
@@ -260,7 +303,7 @@ def main() -> int:
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
     for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving,
-                    refused):
+                    refused, loads_at_the_beginning, jumps):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
 

@@ -6,6 +6,8 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <mpi.h>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace eunoe {
@@ -34,6 +36,8 @@ public:
 
   /// Where they were at the last search.
   nlohmann::ordered_json save() const;
+  /// By how far each solid that is still there is now from where it was then (m).
+  std::vector<std::pair<std::string, double>> jumps(const nlohmann::ordered_json &saved) const;
   /// Takes the solids back there.
   void load(const nlohmann::ordered_json &saved);
 

@@ -77,6 +77,10 @@ public:
     pairs.near.note_step(paces, typical, skin, share);
   }
 
+  /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
+  /// collective.
+  void check_guests(const Checkpoint &checkpoint, const std::vector<Solid> &solids) const;
+
   /// What is wrong with this rank's particles.
   Faults inspect(const ParticleGuard &guard, const std::vector<Solid> &solids) const
   {
@@ -117,6 +121,10 @@ public:
   /// @param on_solids if not null: forces on the solids, one per solid
   void add_forces(const std::vector<Solid> &solids, double time, double dt,
                   std::vector<SolidLoad> *on_solids);
+
+  /// Adds the present forces of the contacts to @p loads, one per solid, and changes nothing else.
+  void add_solid_loads(const std::vector<Solid> &solids, double time,
+                       std::vector<SolidLoad> &loads) const;
 
   /// Computes the forces on the owned particles with ids from @p first_new on, which a scheme with
   /// an opening half step needs.
@@ -165,8 +173,6 @@ private:
   /// The outlet through which a particle of a checkpoint has gone since its last search, -1 if
   /// none.
   int outlet_passed(const double *row) const;
-  /// Throws a UserError if particles of another input's checkpoint do not fit into this run;
-  /// collective.
   void check_guests(const Rows &rows, const std::string &path) const;
   /// What a checkpoint holds of this rank's particles.
   Rows rows_to_save() const;

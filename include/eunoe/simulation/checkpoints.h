@@ -40,6 +40,8 @@ public:
   bool begins_phase() const { return is_other_input; }
   /// Whether its results lie in the output folder, where they are continued.
   bool is_own() const { return has_own_results; }
+  /// Of the one that was opened (s).
+  double time() const;
   /// Lets @p action read the head of the one that was opened, which is the same on every rank, and
   /// refuses it if it is not what it should be.
   void understand(const std::function<void(const nlohmann::ordered_json &head)> &action) const;

@@ -125,6 +125,8 @@ private:
   void resume();
   void go_on(const Checkpoint &checkpoint);
   void begin_phase(const Checkpoint &checkpoint);
+  void place_domain_of(const Checkpoint &checkpoint);
+  void check_guests();
   /// Writes a checkpoint if it is time or if the run was asked to stop.
   void checkpoint_if_due();
   void write_checkpoint();

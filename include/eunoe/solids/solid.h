@@ -70,6 +70,15 @@ double displacement(const Solid &solid, const RigidState &before, const RigidSta
 struct SolidLoad
 {
   std::array<ExactSum, 3> force, torque;
+
+  /// @param more_torque about the solid's centre (N m)
+  void add(const Vec3 &more_force, const Vec3 &more_torque)
+  {
+    for (unsigned int d = 0; d < 3; ++d) {
+      force[d] += more_force[d];
+      torque[d] += more_torque[d];
+    }
+  }
 };
 
 } // namespace eunoe
