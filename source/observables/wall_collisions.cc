@@ -134,6 +134,7 @@ public:
     if (!section.all_walls)
       section.find_walls(simulation.get_domain());
     for (const Solid &solid : simulation.get_solids()) {
+      names.push_back(solid.name);
       boundary.push_back(solid.boundary);
       counts.push_back(section.counts(solid));
     }
@@ -184,6 +185,7 @@ public:
   {
     write();
     json["collisions"] = n_collisions;
+    json["solids"] = names;
     json["near"] = nlohmann::ordered_json::array();
     for (const Approach &approach : sorted_of_all_ranks(near_walls(), comm))
       json["near"].push_back(approach.numbers());
@@ -192,12 +194,20 @@ public:
   void resume(const nlohmann::ordered_json &json) override
   {
     n_collisions = count_in(json.at("collisions"));
+    const nlohmann::ordered_json &saved = json.at("solids");
     for (const auto &values : json.at("near")) {
       Approach::Numbers numbers;
       if (values.size() != numbers.size())
         throw std::invalid_argument("this is no particle near a wall");
       std::transform(values.begin(), values.end(), numbers.begin(), number_in);
-      kept.push_back(Approach::of(numbers));
+      Approach approach = Approach::of(numbers);
+      // In another phase a wall may have another number, or be gone.
+      const auto wall =
+          std::find(names.begin(), names.end(), saved.at(static_cast<std::size_t>(approach.wall)));
+      if (wall == names.end())
+        continue;
+      approach.wall = static_cast<int>(wall - names.begin());
+      kept.push_back(approach);
     }
     has_kept = true;
   }
@@ -259,7 +269,8 @@ private:
 
   MPI_Comm comm;
   const std::shared_ptr<CsvFile> file;
-  std::vector<std::optional<unsigned int>> boundary; ///< of each solid
+  std::vector<std::string> names;                    ///< of each solid
+  std::vector<std::optional<unsigned int>> boundary; ///< likewise
   std::vector<bool> counts;                          ///< whether its collisions are recorded
   std::vector<Approach> approaches; ///< one per candidate of the contacts with solids
   /// Search at which the approaches were put in their places, at first none.
