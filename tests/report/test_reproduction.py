@@ -196,7 +196,10 @@ class Campaign(unittest.TestCase):
             self.assertEqual(self.run_it(*only)[0], 1)
             found = json.loads(record.read_text())
             self.assertEqual((found["finished"], found["layers"], found["git_revision"]), (False, kept, "9876543210"))
-        self.assertRegex(self.page.read_text(), r"`PS1_L0\.25_seed1` \| 12 of 21 \| 60\.1 \| 61\.3 \| ")
+        text = self.page.read_text()
+        self.assertRegex(text, r"`PS1_L0\.25_seed1` \| 12 of 21 \| 60\.1 \| 61\.3 \| .* \| 1\.2 \|\n")
+        # Zones that meet in layer 6.
+        self.assertRegex(text, r"`PS1_L0\.25_seed1` \| 10 \| \d+ \| 100\.0 \| ")
         self.assertIn("at revision 9876543", self.page.read_text())
         self.assertEqual(self.run_it(*only)[0], 0)
         self.assertTrue(json.loads(record.read_text())["finished"])

@@ -41,8 +41,9 @@ def read_record(pictures: Path) -> dict[str, Entry]:
     """The entries by the names of the pictures; empty if there is no record yet."""
     file = pictures / NAME
     text = file.read_text(encoding="utf-8") if file.exists() else ""
-    return {name: Entry(*words) for name, *words in
-            re.findall(r"^\| (\S+\.png) \| (\S+) \| ((?:[0-9a-f]+|unknown)(?:, (?:[0-9a-f]+|unknown))*) \| ([0-9a-f]+) \|$", text, re.M)}
+    revision = r"(?:[0-9a-f]+|unknown)"
+    line = rf"^\| (\S+\.png) \| (\S+) \| ({revision}(?:, {revision})*) \| ([0-9a-f]+) \|$"
+    return {name: Entry(*words) for name, *words in re.findall(line, text, re.M)}
 
 
 def write_record(pictures: Path, record: dict[str, Entry]) -> None:

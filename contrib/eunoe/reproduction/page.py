@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 import statistics
-from math import isnan
+from collections.abc import Sequence
 from pathlib import Path
 
+from eunoe.intervals import mean_of
 from eunoe.launch import Failure
 from eunoe.report.comparison_text import (change_sentence, densities_table, differences_table, measured_group, rest_table,
-                                          rise_sentence, span, supply_table)
+                                          rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, Group
 from eunoe.tables import Table, as_markdown
@@ -65,16 +66,37 @@ def runs_block(findings: Findings) -> str:
 
 
 def under_way_block(findings: Findings) -> str:
-    """The runs that have not finished, as far as they have come."""
+    """The runs that have not finished, as far as they have come, and finished ones of the same powder in the same
+    layers."""
     after = f"layers {LATER[0]} to the last"
     table = [["run", "layers weighed", span(PLATEAU), f"LRD of {after} (%)",
-              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)"]]
+              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)", "rise (%)"]]
+    passes = [["run", "pass", "displacement of what lay there (um)", "zones at rest cover (%)",
+               "removed (% of the mass before)"]]
     for run in findings.under_way:
         later = (LATER[0], max(run.layers.last, LATER[0]))
-        means = [run.mean_lrd(PLATEAU), run.mean_lrd(later), run.middle_lrd(PLATEAU), run.middle_lrd(later)]
-        table.append([f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}",
-                      *("" if isnan(mean) else f"{100. * mean:.1f}" for mean in means)])
-    return _block(table, findings.under_way) if findings.under_way else "None."
+        groups = [(f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}", [run]),
+                  *((group.label, f"{len(group.runs)} runs", group.runs) for group in findings.lengths(run.case.properties))]
+        for name, extent, runs in groups:
+            means = [[one.mean_lrd(PLATEAU) for one in runs], [one.mean_lrd(later) for one in runs],
+                     [one.middle_lrd(PLATEAU) for one in runs], [one.middle_lrd(later) for one in runs],
+                     [one.mean_lrd(later) - one.mean_lrd(PLATEAU) for one in runs]]
+            table.append([name, extent, *(text_of(mean_of(values), 100.) for values in means)])
+            passes += [[name, str(layer), *_pass(runs, layer)] for layer in sorted({1, 5, 10, run.layers.last})
+                       if layer <= run.layers.last and all(one.maps for one in runs)]
+    if not findings.under_way:
+        return "None."
+    shown = [*findings.under_way, *(one for run in findings.under_way
+                                    for group in findings.lengths(run.case.properties) for one in group.runs)]
+    return "\n\n".join(_block(rows, shown) for rows in (table, passes) if len(rows) > 1)
+
+
+def _pass(runs: Sequence[Result], layer: int) -> list[str]:
+    """How far the pass of a layer moved the bed, how much of it rested, and what was taken off; means."""
+    moved = [1e6 * float(one.maps.moved_of_layers()[one.maps.layers == layer].mean()) for one in runs]
+    covered = [100. * float(one.zones.covered[one.zones.layers == layer].mean()) for one in runs]
+    removed = [100. * float(one.scraped[one.layers.layer == layer].mean()) for one in runs]
+    return [f"{mean_of(moved).value:.0f}", text_of(mean_of(covered)), text_of(mean_of(removed))]
 
 
 def densities_block(findings: Findings) -> str:

@@ -113,12 +113,13 @@ def _rest(groups: list[Group]) -> Table:
 
 
 def _longest(findings: Findings) -> list[Group]:
-    """The longest plate of each property set, and the longest one with an interval."""
+    """The longest plate of each property set; before it, if that has one run, the longest that has an interval."""
     found = []
     for properties in SETS:
         groups = findings.lengths(properties)
-        found += [group for group in groups if group is groups[-1]
-                  or group is next((one for one in reversed(groups) if len(one.runs) > 1), None)]
+        if groups and len(groups[-1].runs) == 1:
+            found += [group for group in groups if len(group.runs) > 1][-1:]
+        found += groups[-1:]
     return found
 
 
