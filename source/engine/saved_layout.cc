@@ -1,6 +1,7 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/engine/contact_rows.h>
 #include <eunoe/engine/saved_layout.h>
+#include <eunoe/solids/saved_states.h>
 
 #include <algorithm>
 
@@ -11,14 +12,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::string key = "layout";
-
-/// Number of the solid with a name, -1 if there is none.
-int number_of(const std::string &name, const std::vector<Solid> &solids)
-{
-  const auto found = std::find_if(solids.begin(), solids.end(),
-                                  [&](const Solid &solid) { return solid.name == name; });
-  return found == solids.end() ? -1 : static_cast<int>(found - solids.begin());
-}
 
 } // namespace
 
@@ -54,11 +47,14 @@ SavedLayout::SavedLayout(const Json &head, const ParticleFields &fields, const C
     for (unsigned int c = 0; c < field.n_components; ++c)
       extras.push_back(goes_on ? static_cast<int>(found->second.first + c) : -1);
   }
-  for (const Json &name : head.at("solids").at("names")) {
-    numbers.push_back(number_of(name, solids));
-    if (numbers.back() < 0)
-      gone += (gone.empty() ? "'" : ", '") + name.get<std::string>() + "'";
-  }
+  const auto names = head.at("solids").at("names").get<std::vector<std::string>>();
+  std::vector<std::string> present;
+  for (const Solid &solid : solids)
+    present.push_back(solid.name);
+  numbers = numbers_now(names, present);
+  for (std::size_t k = 0; k < names.size(); ++k)
+    if (numbers[k] < 0)
+      gone += (gone.empty() ? "'" : ", '") + names[k] + "'";
 }
 
 Rows SavedLayout::translate(const Rows &saved) const

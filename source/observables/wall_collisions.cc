@@ -2,6 +2,7 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/gather.h>
 #include <eunoe/simulation/simulation.h>
+#include <eunoe/solids/saved_states.h>
 
 #include <algorithm>
 #include <array>
@@ -194,20 +195,18 @@ public:
   void resume(const nlohmann::ordered_json &json) override
   {
     n_collisions = count_in(json.at("collisions"));
-    const nlohmann::ordered_json &saved = json.at("solids");
+    // In another phase a wall may have another number, or be gone.
+    const std::vector<int> walls =
+        numbers_now(json.at("solids").get<std::vector<std::string>>(), names);
     for (const auto &values : json.at("near")) {
       Approach::Numbers numbers;
       if (values.size() != numbers.size())
         throw std::invalid_argument("this is no particle near a wall");
       std::transform(values.begin(), values.end(), numbers.begin(), number_in);
       Approach approach = Approach::of(numbers);
-      // In another phase a wall may have another number, or be gone.
-      const auto wall =
-          std::find(names.begin(), names.end(), saved.at(static_cast<std::size_t>(approach.wall)));
-      if (wall == names.end())
-        continue;
-      approach.wall = static_cast<int>(wall - names.begin());
-      kept.push_back(approach);
+      approach.wall = walls.at(static_cast<std::size_t>(approach.wall));
+      if (approach.wall >= 0)
+        kept.push_back(approach);
     }
     has_kept = true;
   }

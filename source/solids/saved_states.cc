@@ -1,6 +1,9 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/solids/saved_states.h>
 
+#include <deque>
+#include <map>
+
 namespace eunoe {
 
 using Json = nlohmann::ordered_json;
@@ -40,6 +43,22 @@ std::vector<RigidState> states_in(const Json &json, const std::size_t n)
   for (std::size_t k = 0; k < n; ++k)
     states.push_back(state_in(json.at(k)));
   return states;
+}
+
+std::vector<int> numbers_now(const std::vector<std::string> &saved,
+                             const std::vector<std::string> &present)
+{
+  std::map<std::string, std::deque<int>> left;
+  for (std::size_t k = 0; k < present.size(); ++k)
+    left[present[k]].push_back(static_cast<int>(k));
+  std::vector<int> numbers;
+  for (const std::string &name : saved) {
+    std::deque<int> &of_name = left[name];
+    numbers.push_back(of_name.empty() ? -1 : of_name.front());
+    if (!of_name.empty())
+      of_name.pop_front();
+  }
+  return numbers;
 }
 
 std::vector<RigidState> states_of(const std::vector<Solid> &solids)

@@ -25,6 +25,8 @@ BOUNDARY = "DEM boundary conditions/boundary condition "
 # makes friction weaker.
 LOAD = (END + "6000", "restart/checkpoint = true", "restart/frequency = 6000", BOUNDARY + "1/type = fixed_wall")
 MOTION = "solid objects/solid surfaces/solid object 0/translational velocity/Function expression = "
+FAR_AWAY = ("floating walls/number of floating walls = 1", "floating walls/wall 0/point on wall = 1, 0, 0",
+            "floating walls/wall 0/normal vector = 1, 0, 0", "floating walls/wall 0/end time = 1")
 OPEN = (END + "12000", CONTINUE, "solid objects/solid surfaces/number of solids = 0",
         "lagrangian physical properties/particle type 0/friction coefficient particles = 0.1")
 
@@ -89,9 +91,7 @@ def nothing_else(program: Program) -> None:
     of the first half step are those of the complete velocities."""
     longer = (END + "6300", *LOAD[1:])
     program.run("case.prm", *longer, OUTPUT + "alone")
-    far_away = ("floating walls/number of floating walls = 1", "floating walls/wall 0/point on wall = 1, 0, 0",
-                "floating walls/wall 0/normal vector = 1, 0, 0", "floating walls/wall 0/end time = 1")
-    program.run("case.prm", *longer, OUTPUT + "walled", CONTINUE, "restart/restart folder = load", *far_away)
+    program.run("case.prm", *longer, OUTPUT + "walled", CONTINUE, "restart/restart folder = load", *FAR_AWAY)
     alone, walled = (program.summary(name)["kinetic_energy"] for name in ("alone", "walled"))
     if not abs(walled - alone) < 1e-5 * alone:
         raise Failure(f"kinetic energy of {walled} instead of {alone} J")
@@ -291,6 +291,39 @@ def same_numbers(one: list[str], other: list[str], share: float) -> bool:
     return size > 0. and a[0] == b[0] and all(abs(x - y) <= share * size for x, y in zip(a[1:], b[1:]))
 
 
+def walls_of_one_name(program: Program) -> None:
+    """The sides of a box that share an id are told apart by their order."""
+    text = (HERE / "stirred.prm").read_text(encoding="utf-8").replace("4e-3 : true", "4e-3 : false")
+    begin, end = text.index("subsection DEM boundary"), text.index("subsection lagrangian")
+    (program.folder / "plain.prm").write_text(text[:begin] + text[end:], encoding="utf-8")
+    until = LOAD[1:3]
+    program.run("plain.prm", END + "6000", *until, OUTPUT + "plain")
+    program.run("plain.prm", END + "6300", *until, OUTPUT + "undisturbed")
+    program.run("plain.prm", END + "6300", *until, OUTPUT + "phase", CONTINUE, "restart/restart folder = plain", *FAR_AWAY)
+    alone, phase = (program.summary(name)["kinetic_energy"] for name in ("undisturbed", "phase"))
+    if not abs(phase - alone) < 1e-5 * alone:
+        raise Failure(f"kinetic energy of {phase} instead of {alone} J")
+
+
+def only_the_balance(program: Program) -> None:
+    """Where particles are computed changes nothing, so it begins no phase."""
+    said = program.run("case.prm", *LOAD[1:], END + "6010", CONTINUE, "restart/restart folder = load", OUTPUT + "balance",
+                       "model parameters/load balancing/cell weight function/Function expression = 2 + x")
+    if "with another input" in said:
+        raise Failure(said)
+
+
+def turns_in_place(program: Program) -> None:
+    """A flat wall that begins to turn about an axis anywhere has not moved."""
+    said = program.run("case.prm", *LOAD[1:], END + "6010", CONTINUE, "restart/restart folder = load", OUTPUT + "turns",
+                       *(BOUNDARY + "1/" + entry for entry in (
+                           "type = rotational", "rotational speed = 3", "rotational vector = 1, 0, 0",
+                           "point on rotational vector = 0, 4e-3, 2e-3")))
+    expect(said, "with another input")
+    if "from where it stood" in said:
+        raise Failure(said)
+
+
 def jumps(program: Program) -> None:
     """A motion that would have begun before the phase is told of."""
     said = program.run("case.prm", *LOAD[1:], END + "6010", CONTINUE, "restart/restart folder = load", OUTPUT + "jumps",
@@ -303,7 +336,7 @@ def main() -> int:
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
     for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving,
-                    refused, loads_at_the_beginning, jumps):
+                    refused, loads_at_the_beginning, jumps, walls_of_one_name, only_the_balance, turns_in_place):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <string>
 #include <vector>
 
 namespace eunoe {
@@ -20,6 +21,11 @@ std::vector<RigidState> states_in(const nlohmann::ordered_json &json, std::size_
 ///@}
 
 std::vector<RigidState> states_of(const std::vector<Solid> &solids);
+
+/// The present numbers of saved solids by their names, -1 for one that is gone. Flat walls of one
+/// boundary share a name; they have kept their order.
+std::vector<int> numbers_now(const std::vector<std::string> &saved,
+                             const std::vector<std::string> &present);
 
 } // namespace eunoe
 
