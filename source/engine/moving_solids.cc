@@ -5,9 +5,31 @@
 
 namespace eunoe {
 
-void MovingSolids::take(std::vector<Solid> &&all)
+namespace {
+
+std::vector<std::string> names_of(const std::vector<Solid> &solids)
+{
+  std::vector<std::string> names;
+  for (const Solid &solid : solids)
+    names.push_back(solid.name);
+  return names;
+}
+
+/// Whether a wall stands where the mesh has it, at most turning or sliding in place; then its
+/// centre is the origin or on the axis, and says nothing about its place.
+bool is_in_place(const RigidState &wall)
+{
+  const Rotation unturned;
+  return wall.rotation.x == unturned.x && wall.rotation.y == unturned.y &&
+         (wall.centre == Vec3() || wall.angular_velocity != Vec3());
+}
+
+} // namespace
+
+void MovingSolids::take(std::vector<Solid> &&all, const std::size_t number_of_given)
 {
   solids = std::move(all);
+  n_given = number_of_given;
   loads.resize(solids.size());
 }
 
@@ -49,22 +71,24 @@ std::vector<SolidLoad> MovingSolids::global_loads(MPI_Comm comm) const
 
 nlohmann::ordered_json MovingSolids::save() const
 {
-  nlohmann::ordered_json names = nlohmann::ordered_json::array();
-  for (const Solid &solid : solids)
-    names.push_back(solid.name);
-  return {{"names", names}, {"states", to_json(at_search)}};
+  return {{"names", names_of(solids)}, {"states", to_json(at_search)}};
 }
 
 std::vector<std::pair<std::string, double>> MovingSolids::jumps(
     const nlohmann::ordered_json &saved) const
 {
-  const nlohmann::ordered_json &names = saved.at("names");
+  const auto names = saved.at("names").get<std::vector<std::string>>();
   const std::vector<RigidState> before = states_in(saved.at("states"), names.size());
+  const std::vector<int> numbers = numbers_now(names, names_of(solids));
   std::vector<std::pair<std::string, double>> list;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    for (const Solid &solid : solids)
-      if (names[k] == solid.name)
-        list.emplace_back(solid.name, displacement(solid, before[k], solid.state));
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    const auto number = static_cast<std::size_t>(numbers[k]);
+    if (numbers[k] < 0 || number >= n_given)
+      continue;
+    const Solid &solid = solids[number];
+    if (!(solid.boundary && is_in_place(before[k]) && is_in_place(solid.state)))
+      list.emplace_back(solid.name, displacement(solid, before[k], solid.state));
+  }
   return list;
 }
 

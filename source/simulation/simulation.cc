@@ -52,15 +52,15 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
   }
   if (!problems.empty())
     throw UserError(problems);
+  const std::size_t n_given = all.size();
   if (process) {
-    const std::size_t n_given = all.size();
     process->add_solids(all);
     check_crossings(all, n_given, problems);
   }
   give_materials(all, parameters.physics, problems);
   if (!problems.empty())
     throw UserError(problems);
-  solids.take(std::move(all));
+  solids.take(std::move(all), n_given);
   if (checkpoints.begins_phase())
     check_guests();
   // A trial without a folder finds what is wrong with them before anything is written.

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <limits>
 #include <mpi.h>
 #include <string>
 #include <utility>
@@ -18,7 +19,10 @@ class MovingSolids
 {
 public:
   /// Takes the solids of a run, once they are all known.
-  void take(std::vector<Solid> &&all);
+  /// @param n_given number of those that mesh and input give, the first; a process knows where its
+  ///                own are
+  void take(std::vector<Solid> &&all,
+            std::size_t n_given = std::numeric_limits<std::size_t>::max());
 
   const std::vector<Solid> &list() const { return solids; }
 
@@ -36,13 +40,14 @@ public:
 
   /// Where they were at the last search.
   nlohmann::ordered_json save() const;
-  /// By how far each solid that is still there is now from where it was then (m).
+  /// By how far each given solid that is still there is now from where it was then (m).
   std::vector<std::pair<std::string, double>> jumps(const nlohmann::ordered_json &saved) const;
   /// Takes the solids back there.
   void load(const nlohmann::ordered_json &saved);
 
 private:
   std::vector<Solid> solids;
+  std::size_t n_given = 0;
   std::vector<RigidState> at_search;
   std::vector<SolidLoad> loads;
 };
