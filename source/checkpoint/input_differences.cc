@@ -17,7 +17,7 @@ bool is_harmless(const Path &path, const std::string &entry)
 {
   if (path == Path{"simulation control"})
     return entry != "time step" && entry != "time step share";
-  if (path == Path{"model parameters", "load balancing"})
+  if (path.size() >= 2 && path[0] == "model parameters" && path[1] == "load balancing")
     return true;
   if (path == Path{"model parameters"})
     return entry == "lost particles" || entry == "largest overlap" || entry == "excessive overlap";
