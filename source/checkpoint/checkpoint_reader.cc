@@ -251,9 +251,10 @@ Rows Checkpoint::rows(const std::string &name) const
                   lengths.size() * sizeof(std::uint32_t));
   });
   Rows mine;
+  // Not std::partial_sum, which adds in the type of the lengths.
   mine.starts.assign(lengths.size() + 1, 0);
-  std::partial_sum(lengths.begin(), lengths.end(), mine.starts.begin() + 1,
-                   [](std::size_t sum, std::uint32_t n) { return sum + n; });
+  for (std::size_t k = 0; k < lengths.size(); ++k)
+    mine.starts[k + 1] = mine.starts[k] + lengths[k];
   const std::uint64_t n_values = mine.starts.back();
   std::uint64_t before = 0, all = 0;
   MPI_Exscan(&n_values, &before, 1, MPI_UINT64_T, MPI_SUM, comm);

@@ -140,7 +140,8 @@ Rows ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &la
   const std::size_t n_fixed = n_places + layout.n_extra();
   const double n_types =
       begins_phase ? std::numeric_limits<int>::max() : model.get_materials().n_types();
-  bool ok = begins_phase || layout.n_extra() == extra_defaults.size();
+  bool ok = begins_phase || (layout.n_extra() == extra_defaults.size() &&
+                             layout.n_history() == model.history_size());
   for (std::size_t k = 0; k < share.size(); ++k)
     ok = ok && share.length(k) >= n_fixed && are_of_particle(share[k] + id, n_types) &&
          ContactRows::are_records(share[k] + n_fixed, share[k] + share.length(k),
