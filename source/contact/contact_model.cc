@@ -45,7 +45,8 @@ void ContactLawSections::check(const ParameterCheck &check) const
 }
 
 ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
-                           const ContactLawSections &sections, const double largest_radius)
+                           const ContactLawSections &sections, const double largest_radius,
+                           const bool is_of_walls)
     : materials(std::move(materials_))
 {
   const auto add = [&](const std::string &family, const std::string &name) {
@@ -71,8 +72,9 @@ ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
   for (const auto &law : laws) {
     first_history.push_back(n_history);
     n_history += law->history_size();
-    for (int kind = 0; kind < materials.size() * materials.size(); ++kind)
-      largest_range = std::max(largest_range, law->range(kind));
+    for (int first = 0; first < (is_of_walls ? materials.n_types() : materials.size()); ++first)
+      for (int second = is_of_walls ? materials.n_types() : 0; second < materials.size(); ++second)
+        largest_range = std::max(largest_range, law->range(materials.kind(first, second)));
   }
   if (n_history > PairBlock::max_history)
     throw std::invalid_argument("these laws together remember " + std::to_string(n_history) +

@@ -66,21 +66,21 @@ std::string ContactParameters::model_of_walls() const
 ContactModel ContactParameters::model(const Materials &materials,
                                       const double largest_diameter) const
 {
-  return make(method, materials, largest_diameter);
+  return make(method, materials, largest_diameter, false);
 }
 
 ContactModel ContactParameters::wall_model(const Materials &materials,
                                            const double largest_diameter) const
 {
-  return make(model_of_walls(), materials, largest_diameter);
+  return make(model_of_walls(), materials, largest_diameter, true);
 }
 
 ContactModel ContactParameters::make(const std::string &name, const Materials &materials,
-                                     const double largest_diameter) const
+                                     const double largest_diameter, const bool is_of_walls) const
 {
   ContactModelNames names = contact_models().make(name).laws;
   names.rolling = rolling_method;
-  return {materials, names, laws, 0.5 * largest_diameter};
+  return {materials, names, laws, 0.5 * largest_diameter, is_of_walls};
 }
 
 } // namespace eunoe

@@ -67,4 +67,9 @@ EUNOE_TEST()
   check("none by default", Laws({m}, 1, names, "", 20e-6).model.range() == 0.);
   m.added[surface_charge] = -1e-6;
   check_relative("default range", Laws({m}, 1, names, "", 20e-6).model.range(), 10e-6, 1e-14);
+  // As the laws of walls are made.
+  ContactParameters contacts;
+  read_entries([&](dealii::ParameterHandler &prm) { contacts.declare(prm); }, "");
+  const Materials with_wall({m, Material()}, 1);
+  check("walls are out of reach", contacts.wall_model(with_wall, 40e-6).range() == 0.);
 }

@@ -53,8 +53,9 @@ class ContactModel
 public:
   /// @param sections of the laws, with their coefficients
   /// @param largest_radius of the particles (m)
+  /// @param is_of_walls whether one of the two bodies is a wall or solid
   ContactModel(Materials materials, const ContactModelNames &names,
-               const ContactLawSections &sections, double largest_radius);
+               const ContactLawSections &sections, double largest_radius, bool is_of_walls = false);
 
   /// Number of doubles that a contact remembers.
   unsigned int history_size() const { return n_history; }
@@ -63,7 +64,7 @@ public:
   /// contacts of two models go the same ways, all have the same size.
   void widen(unsigned int n) { n_history = std::max(n_history, n); }
 
-  /// Largest separation at which some law acts between any two materials (m).
+  /// Largest separation at which some law acts between any two materials that meet (m).
   double range() const { return largest_range; }
 
   /// Runs all laws over a block whose geometry and history are filled in.

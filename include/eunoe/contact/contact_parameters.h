@@ -21,8 +21,8 @@ public:
 private:
   /// Name of the model that walls take: that of the particles where it has a name for walls.
   std::string model_of_walls() const;
-  ContactModel make(const std::string &name, const Materials &materials,
-                    double largest_diameter) const;
+  ContactModel make(const std::string &name, const Materials &materials, double largest_diameter,
+                    bool is_of_walls) const;
 
   std::string method = "hertz_mindlin_limit_overlap";
   std::string wall_method = "nonlinear";

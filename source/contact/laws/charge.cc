@@ -25,7 +25,10 @@ public:
   {
   }
 
-  double range(int) const override { return cut_off; }
+  double range(const int kind) const override
+  {
+    return table[static_cast<std::size_t>(kind)].strength != 0. ? cut_off : 0.;
+  }
 
   void apply(PairBlock &block, unsigned int, double) const override
   {
