@@ -196,6 +196,17 @@ void test_tables()
         p.make()->smallest() == 50e-6 && p.make()->largest() == 80e-6);
   set(p, "set custom distribution interpolation = false\n");
   check("cut-offs of classes", share_below(60e-6) > 0.9999);
+
+  SizeDistributionParameters step;
+  step.type = "custom";
+  set(step, "set custom distribution diameters values = 20e-6, 20e-6, 40e-6\n"
+            "set custom distribution diameters probabilities = 0, 0.3, 1\n"
+            "set custom distribution probability function type = CDF\n"
+            "set custom distribution interpolation = true\n");
+  double finest = 0.;
+  for (const double drawn : draw(step))
+    finest += drawn <= 20e-6 ? 1. / n : 0.;
+  check_close("interpolated: a step of the CDF", finest, 0.3, error);
 }
 
 } // namespace

@@ -101,6 +101,11 @@ std::unique_ptr<SizeDistribution> make_spread(const SizeDistributionParameters &
   for (std::size_t c = 1; c < table.diameters.size(); ++c) {
     const double a = table.diameters[c - 1], b = table.diameters[c];
     const double from = std::max(a, low), to = std::min(b, high);
+    // A step of a CDF: two rows of one diameter.
+    if (a == b && a >= low && a <= high) {
+      diameters.push_back(b);
+      numbers.push_back(number(table.shares[c], b));
+    }
     if (!(from < to))
       continue;
     const double piece = (to - from) / n_pieces, share = table.shares[c] * piece / (b - a);
