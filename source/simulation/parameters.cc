@@ -62,6 +62,23 @@ SectionCounts count(const std::vector<InputEntry> &entries)
   return counts;
 }
 
+/// Two records in one file would destroy each other.
+void check_file_names(const std::map<std::string, std::shared_ptr<ObservableSection>> &observables,
+                      const ParameterCheck &check)
+{
+  std::map<std::string, const RecordSection *> taken;
+  for (const auto &[name, observable] : observables) {
+    const auto *const record = dynamic_cast<const RecordSection *>(observable.get());
+    if (record == nullptr || !record->calculation)
+      continue;
+    const auto [first, is_new] = taken.emplace(record->file, record);
+    check.require(is_new, record->subsection(), "filename",
+                  "is '" + record->file + "', as " +
+                      describe(first->second->subsection(), "filename") + " is.",
+                  "Give each its own name.");
+  }
+}
+
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
@@ -161,7 +178,12 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
     // A process makes its own insertion.
     if (process == nullptr || section != &parameters.insertion)
       section->check(check);
+  check_file_names(parameters.observables, check);
   parameters.sparse_contacts.check_with(parameters.physics.gravity, check);
+  // A process counts its particles itself: all types may be there.
+  if (process != nullptr)
+    for (ParticleType &type : parameters.physics.types)
+      type.number = 0;
   // Sizes and materials make sense only now.
   ControlParameters &control = parameters.control;
   if (!control.given_time_step && problems.empty())

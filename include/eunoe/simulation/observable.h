@@ -84,6 +84,8 @@ public:
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
 
+  const ParameterCheck::Path &subsection() const { return path; }
+
   bool calculation = false;
   std::string file;
   unsigned long long frequency; ///< steps between two rows
