@@ -4,7 +4,7 @@ namespace eunoe {
 
 namespace {
 
-const ParameterCheck::Path section = {"lagrangian physical properties"};
+const ParameterCheck::Path powder = {"lagrangian physical properties"};
 
 } // namespace
 
@@ -12,7 +12,7 @@ void require_one_type(const Parameters &parameters, const ParameterCheck &check,
                       const std::string &who)
 {
   const std::size_t n_types = parameters.physics.types.size();
-  check.require(n_types == 1, section, "number of particle types",
+  check.require(n_types == 1, powder, "number of particle types",
                 "is " + std::to_string(n_types) + ".",
                 who + " works with one type; give the size classes as a custom distribution.");
 }
@@ -21,7 +21,7 @@ void check_gravity_of_process(const Parameters &parameters, const ParameterCheck
                               const std::string &why)
 {
   const Vec3 &g = parameters.physics.gravity;
-  check.require(g.y < 0. && g.x == 0. && g.z == 0., section, "g", "does not point to -y.",
+  check.require(g.y < 0. && g.x == 0. && g.z == 0., powder, "g", "does not point to -y.",
                 "Set it to 0, -9.81, 0: " + why + ".");
 }
 
@@ -32,6 +32,10 @@ void refuse_decisions_of_process(const ParameterCheck &check, const std::string 
        {"mesh", "box refinement", "DEM boundary conditions", "insertion info"})
     check.require(!check.has_changes(section), {section}, "",
                   "is set, but the process makes its own.", "Remove the subsection.");
+  const ParameterCheck::Path first_type = {powder[0], "particle type 0"};
+  check.advise(!check.is_changed(first_type, "number of particles"), first_type,
+               "number of particles", "has no effect, as the process counts its particles itself.",
+               "Remove the entry.");
   for (const char *const entry : {"end control", "time end", "iteration end"})
     check.require(!check.is_changed({"simulation control"}, entry), {"simulation control"}, entry,
                   "is set, but the process ends when " + end + ".",

@@ -225,6 +225,7 @@ void judge_interval(const Parameters &parameters, const std::vector<NewParticle>
                   "Raise the frequency, which is a number of steps, or the initial velocity.");
 }
 
+/// Whether particles come, and as many as the types have.
 void judge_number(const Parameters &parameters, const Insertion &insertion, Problems &problems)
 {
   double wanted = 0.;
@@ -252,6 +253,12 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
                       format_count(static_cast<double>(n_events), "event", "events") + ".",
                   "Let the run last longer, lower 'insertion frequency', or raise 'inserted number "
                   "of particles at each time step'.");
+  else if (coming < wanted && parameters.insertion.frequency == 0)
+    problems.warn(insertion_info + " / entry 'insertion frequency':",
+                  "is 0, so that the particles come once: " + format_whole(coming) + " of " +
+                      format_whole(wanted) + ".",
+                  "Give the number of steps after which they come again, or correct 'number of "
+                  "particles'.");
 }
 
 /// @param n_outside of this rank's share of an event, likewise @p n_inside

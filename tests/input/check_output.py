@@ -65,6 +65,8 @@ DOUBTFUL = {
     "nothing doubtful": ([], []),
     "walls with other laws": ([MODEL + "particle particle contact force method = DMT"],
                               ["is 'nonlinear' while particles use 'DMT', so that they touch walls"]),
+    "a list that comes once": ([*LIST, TYPE + "number of particles = 5"],
+                               ["entry 'insertion frequency': is 0, so that the particles come once: 2 of 5."]),
     "no such boundary": ([CONDITION + "number of boundary conditions = 1",
                           CONDITION + "boundary condition 0/boundary id = 17"],
                          ["the mesh has no boundary 17, so the condition has no effect."]),

@@ -34,6 +34,14 @@ void examine_parameters()
   Parameters::read(small_spreading("results", "  set feedstock level = 120e-6"), "test.prm", {},
                    of_level);
   check("a bed above the spreader's clearance is refused", !of_level.empty());
+  Problems of_number;
+  const Parameters counted = Parameters::read(
+      small_spreading("results", ""), "test.prm",
+      {"lagrangian physical properties/particle type 0/number of particles = 7"}, of_number);
+  check("a number of particles is said to have no effect",
+        of_number.empty() && of_number.warnings().size() == 1 &&
+            of_number.warnings()[0].where.find("number of particles") != std::string::npos);
+  check("and has none", counted.physics.types[0].number == 0);
   const auto first = first_particles(parameters), second = first_particles(parameters);
   check("a simulation leaves its input as it was",
         parameters.mesh.grid_arguments == Parameters().mesh.grid_arguments &&
