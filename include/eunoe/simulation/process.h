@@ -105,6 +105,9 @@ public:
   /// @param parameters with what the process decides
   virtual std::unique_ptr<Process> make(const Parameters &parameters) const = 0;
 
+  /// Number of the type of the particles that the process measures.
+  virtual std::size_t powder() const { return 0; }
+
   /// What the process measures.
   virtual std::vector<ObservableDescription> observables() const { return {}; }
 

@@ -71,6 +71,7 @@ struct SpreadingParameters : public ProcessSection
   RunEstimate estimate(const Parameters &parameters) const override;
   double fastest_solid() const override;
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
+  std::size_t powder() const override { return particle_type; }
   std::vector<ObservableDescription> observables() const override;
   std::vector<Measurement> measure(
       const Parameters &parameters,
