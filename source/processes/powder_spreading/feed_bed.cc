@@ -82,8 +82,13 @@ std::vector<std::size_t> in_reservoir(const ParticleArrays &p, const Apparatus &
 
 std::vector<std::size_t> in_the_way(const ParticleArrays &p, const Apparatus &apparatus)
 {
-  if (apparatus.bed_level == 0.)
-    return in_reservoir(p, apparatus);
+  return apparatus.bed_level == 0. ? in_reservoir(p, apparatus)
+                                   : reaching_into_reservoir(p, apparatus);
+}
+
+std::vector<std::size_t> reaching_into_reservoir(const ParticleArrays &p,
+                                                 const Apparatus &apparatus)
+{
   std::vector<std::size_t> found;
   for (std::size_t row = 0; row < p.n_owned; ++row)
     if (p.position[row].x - p.radius(row) < apparatus.x_transfer)

@@ -65,10 +65,15 @@ bool PowderSpreading::has_settled(Simulation &simulation)
   if (simulation.step_number() % settling_check != 0 || waited < 1e-3)
     return false;
   const ParticleArrays &particles = simulation.complete_step();
-  unsigned long long count[2] = {0, particles.n_owned};
-  for (std::size_t row = 0; row < particles.n_owned; ++row)
+  unsigned long long count[2] = {0, 0};
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    // Not what lies on the plates since an earlier series.
+    if (series.first_layer > 0 && !apparatus.is_in_reservoir(particles.position[row].vec()))
+      continue;
+    ++count[1];
     if (norm(particles.velocity[row].vec()) > p.settled_speed)
       ++count[0];
+  }
   MPI_Allreduce(MPI_IN_PLACE, count, 2, MPI_UNSIGNED_LONG_LONG, MPI_SUM, simulation.communicator());
   // A few particles that still bounce on the surface do not delay the pass.
   const bool settled = static_cast<double>(count[0]) < moving_share * static_cast<double>(count[1]);
@@ -95,6 +100,10 @@ void PowderSpreading::go_on_after_settling(Simulation &simulation)
     insert_loose_bed(simulation);
     return;
   }
+  if (phase == Phase::settling_bed && !apparatus.is_full(type, n_above))
+    simulation.get_log().warning("after " + std::to_string(n_fillings) +
+                                 " fillings the powder in the reservoir still does not reach its "
+                                 "level; going on with less.");
   simulation.insert_and_remove({}, above);
   if (phase == Phase::settling_bed) {
     bed.take(simulation, apparatus, -apparatus.bed_depth);

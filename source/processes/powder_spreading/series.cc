@@ -84,7 +84,8 @@ void PowderSpreading::empty_reservoir(Simulation &simulation)
   series.emptying = simulation.time();
   apparatus.platform->add(series.emptying, 0.,
                           {0., -apparatus.bed_depth - series.platform_height, 0.});
-  simulation.insert_and_remove({}, in_reservoir(simulation.complete_step(), apparatus));
+  // Also what lies on the edge of the transfer plate, into which the loose bed would be put.
+  simulation.insert_and_remove({}, reaching_into_reservoir(simulation.complete_step(), apparatus));
   simulation.renew_solids();
   insert_loose_bed(simulation);
 }

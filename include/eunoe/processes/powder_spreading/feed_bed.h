@@ -42,6 +42,10 @@ std::vector<std::size_t> above_level(const ParticleArrays &particles, const Appa
 /// All particles in the reservoir: their rows.
 std::vector<std::size_t> in_reservoir(const ParticleArrays &particles, const Apparatus &apparatus);
 
+/// Those that reach into it, too, from the edge of the transfer plate.
+std::vector<std::size_t> reaching_into_reservoir(const ParticleArrays &particles,
+                                                 const Apparatus &apparatus);
+
 /// Those that a fresh bed could touch, too, if it is higher than the transfer plate: what lies
 /// there at the edge.
 std::vector<std::size_t> in_the_way(const ParticleArrays &particles, const Apparatus &apparatus);
