@@ -132,10 +132,9 @@ void declare_imperfections(dealii::ParameterHandler &prm, SpreadingParameters &p
 
 void declare_measurement(dealii::ParameterHandler &prm, SpreadingParameters &p)
 {
-  declare::count(prm, "profile bins", p.profile_bins,
-                 "Number of bins along the plate in which the surface's height and the mean "
-                 "diameter are measured after the last layer.",
-                 1);
+  declare::between(prm, "profile bins", p.profile_bins, 1, 10000,
+                   "Number of bins along the plate in which the surface's height and the mean "
+                   "diameter are measured after the last layer.");
   declare::entry(prm, "layer pictures", p.layer_pictures,
                  "Whether the particles are written at every weighing (<name>_layers.pvd).");
   declare::count(prm, "spreader force sampling", p.force_sampling,
