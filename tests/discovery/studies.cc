@@ -231,6 +231,34 @@ void withdrawn()
   check("and the gap grows, without a clip", held_out["gap after"] > held_out["gap before"]);
 }
 
+/// What was not run under the held-out condition is not judged by it.
+void no_room_for_held_out_data()
+{
+  SyntheticSimulator simulator(nature(72));
+  simulator.remember();
+  const Amplitudes truth = {{"c", simulator.amplitude_of("c", 16., both)}};
+  const MeasuredData data = simulator.measure(both, thick, truth, 4, 0.2, 1);
+  MeasuredData of_fit = data;
+  of_fit.held_out.clear();
+  study(simulator, of_fit);
+  StudyOptions poor = small();
+  poor.budget = 1;
+  const Discovery d = study(simulator, data, poor);
+  const auto &held_out = d.content["gaps"]["held-out"];
+  check("an answer that the budget cannot test stands", d.model_after.count("c") == 1);
+  check("and is said to be untested",
+        held_out["result"] == "the budget has no room to test the answer on held-out data",
+        held_out.dump());
+  // The base model and one model, but not all four.
+  poor.budget = 2 * poor.validate_runs * 3;
+  const Discovery some = study(simulator, data, poor);
+  const auto &tested = some.content["gaps"]["held-out"];
+  check("the answer is tested first",
+        some.model_after.count("c") == 1 && tested.contains("p after"), tested.dump());
+  check("others only as far as the budget goes", tested["could have refuted"].size() < 4,
+        tested.dump());
+}
+
 void runs_of_an_earlier_study()
 {
   Nature frail = nature(81);
@@ -353,6 +381,7 @@ EUNOE_MPI_TEST()
   tie_that_held_out_data_break();
   too_weak_to_see();
   withdrawn();
+  no_room_for_held_out_data();
   runs_of_an_earlier_study();
   refused_amplitudes();
   filled_table();

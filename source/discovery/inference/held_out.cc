@@ -83,35 +83,42 @@ bool HeldOut::is_doubtful(const TestedModels &tested, const std::size_t n_answer
                      [&](const double p) { return p > clearly && p < hardly; });
 }
 
-std::vector<Model> HeldOut::first_tested(const Findings &by_fit)
+std::vector<Model> HeldOut::first_tested(const Findings &by_fit) const
 {
-  std::vector<Model> models = by_fit.answer;
+  std::vector<Model> wanted = by_fit.answer;
   if (by_fit.detected)
     for (const Model &model : by_fit.models)
-      if (models.size() < most_tested && model.effects.size() == 1 && !is_among(model, models))
-        models.push_back(model);
-  if (models.size() > most_tested)
-    models.resize(most_tested);
+      if (wanted.size() < most_tested && model.effects.size() == 1 && !is_among(model, wanted))
+        wanted.push_back(model);
+  std::vector<Model> models;
+  add(wanted, most_tested, models);
   return models;
 }
 
-void HeldOut::follow(const std::vector<Model> &answer, std::vector<Model> &models) const
+void HeldOut::add(const std::vector<Model> &wanted, const std::size_t most,
+                  std::vector<Model> &models) const
 {
+  const auto runs_of = [&](const std::size_t n_effects) {
+    return runs_to_test(static_cast<unsigned int>(n_effects), options.validate_runs, space,
+                        experiments, samples);
+  };
   const std::size_t before = models.size();
-  std::uint64_t planned = 0;
-  for (const Model &model : answer) {
-    if (models.size() == before + most_followed)
+  // Those of the base model are made once for all.
+  const std::uint64_t of_base = runs_of(0);
+  std::uint64_t planned = of_base;
+  for (const Model &model : wanted) {
+    if (models.size() == before + most)
       break;
     if (is_among(model, models))
       continue;
-    const std::uint64_t needed = runs_to_test(static_cast<unsigned int>(model.effects.size()),
-                                              options.validate_runs, space, experiments, samples);
+    // Of what was never run nothing could be said but that it changes nothing.
     const bool is_known = std::all_of(model.best.begin(), model.best.end(), [&](const auto &at) {
       return samples.has_near(at.first, at.second, 1, experiments);
     });
+    const std::uint64_t needed = is_known ? 0 : runs_of(model.effects.size()) - of_base;
     if (!is_known && planned + needed > samples.remaining())
       continue;
-    planned += is_known ? 0 : needed;
+    planned += needed;
     models.push_back(model);
   }
 }
@@ -123,10 +130,11 @@ Json HeldOut::describe_test(const Test &test, const Findings &by_fit,
   Json table = {{"p before", tested.p_nothing}};
   if (by_fit.verdict == Verdict::named || by_fit.verdict == Verdict::tie) {
     Json members = Json::array();
-    for (std::size_t m = 0; m < std::min(tested.models.size(), by_fit.answer.size()); ++m)
-      members.push_back({{"effects", name_of(tested.models[m], space)},
-                         {"p", tested.p[m]},
-                         {"result", sentence(tested.p_nothing, tested.p[m], rule.refuted)}});
+    for (std::size_t m = 0; m < tested.models.size(); ++m)
+      if (is_among(tested.models[m], by_fit.answer))
+        members.push_back({{"effects", name_of(tested.models[m], space)},
+                           {"p", tested.p[m]},
+                           {"result", sentence(tested.p_nothing, tested.p[m], rule.refuted)}});
     table["members of the tie"] = members;
     table["result"] = leader ? sentence(tested.p_nothing, tested.p[*leader], rule.refuted)
                              : "the likeliest model that they leave was not tested";
@@ -161,6 +169,8 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   const auto judge_anew = [&](Findings &anew) { judge(evidence, rule, options.seed, anew); };
   const Findings by_fit = findings;
   std::vector<Model> models = first_tested(by_fit);
+  if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), models))
+    return {{"result", "the budget has no room to test the answer on held-out data"}};
   Test last;
   for (unsigned int round = 0; round < most_rounds; ++round) {
     if (round > 0 && models.size() == last.tested.models.size())
@@ -181,7 +191,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
     Findings left = by_fit;
     refute(last.tested, Untested::stay, rule, judge_anew, left);
     if (left.verdict != Verdict::off_catalogue)
-      follow(left.answer, models);
+      add(left.answer, most_followed, models);
   }
   const std::optional<std::size_t> leader =
       refute(last.tested, Untested::fall, rule, judge_anew, findings);

@@ -49,13 +49,14 @@ private:
     TestedModels tested;
   };
   /// Models of the answer, and others that held-out data might speak for.
-  static std::vector<Model> first_tested(const Findings &by_fit);
+  std::vector<Model> first_tested(const Findings &by_fit) const;
   /// Runs the models and compares.
   Test compare(const Evidence &fit, const std::vector<Model> &models, unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
   bool is_doubtful(const TestedModels &tested, std::size_t n_answers) const;
-  /// Adds models of the answer that are not yet tested, as far as the budget has room.
-  void follow(const std::vector<Model> &answer, std::vector<Model> &models) const;
+  /// Adds at most so many models that are not yet among those that are tested, as far as the budget
+  /// has room.
+  void add(const std::vector<Model> &wanted, std::size_t most, std::vector<Model> &models) const;
   /// @param leader place of the model that leads the answer
   Json describe_test(const Test &test, const Findings &by_fit,
                      const std::optional<std::size_t> &leader) const;
