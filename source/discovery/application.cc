@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 namespace eunoe::discovery {
@@ -219,16 +220,22 @@ int prepare(const StudyInput &study, const ExtraArguments &arguments, MPI_Comm c
   const StudyParameters &p = study.parameters;
   try {
     stop_request::listen();
-    DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
-                           log);
-    simulator.find_data_points(100000 * p.options.seed + 1);
     std::vector<std::string> experiments;
     for (const Experiment &experiment : study.experiments)
       experiments.push_back(experiment.name());
+    // Each opens the table anew, so that a plan knows what has just been filled in.
+    const auto simulate = [&](const std::function<void(DemSimulator &)> &task) {
+      DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run,
+                             comm, log);
+      simulator.find_data_points(100000 * p.options.seed + 1);
+      task(simulator);
+    };
     if (arguments.fill_table)
-      fill_table(p.options, experiments, study.plain_factors(), simulator, log);
+      simulate([&](DemSimulator &simulator) {
+        fill_table(p.options, experiments, study.plain_factors(), simulator, log);
+      });
     if (arguments.plan)
-      make_plan(study, experiments, simulator, log);
+      simulate([&](DemSimulator &simulator) { make_plan(study, experiments, simulator, log); });
   } catch (const Interrupted &) {
     log.line("Stopped as asked. Give the same command again to go on.");
     return exit_stopped;

@@ -155,7 +155,10 @@ Json describe_remainder(const Evidence &evidence, const Findings &findings)
                                       {"cosine", largest}});
   }
   constexpr std::size_t most = 3;
-  return {{"closest model", name_of(findings.models.front(), evidence.space())},
+  // The model that p is of; the first of all may be "none of the catalogue".
+  const Model &closest =
+      findings.answer.empty() ? findings.models.front() : findings.answer.front();
+  return {{"closest model", name_of(closest, evidence.space())},
           {"p of its fit", findings.p_fit},
           {"resembles", largest_first(std::move(rows), most)}};
 }
@@ -294,8 +297,8 @@ void Study::run()
   }
   if (!curve.is_settled(*round, options.level))
     notes.push_back("The budget of " + std::to_string(options.budget) +
-                    " runs was spent before the answer had settled. With a larger 'budget' the "
-                    "study goes on from here, and the answer may change.");
+                    " runs was spent before the answer had settled. With a larger 'budget of "
+                    "runs' the study goes on from here, and the answer may change.");
   round->look(rule);
 }
 

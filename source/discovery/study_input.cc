@@ -29,10 +29,11 @@ std::map<std::string, std::string> StudyInput::identity() const
   std::map<std::string, std::string> parts;
   parts["engine"] = engine_digest();
   parts["measured data"] = data_text;
-  // Paths and the use of ranks do not change results.
+  // Paths and the use of ranks do not change results; with a larger budget a study makes the same
+  // runs for the fit as before, and then more.
   static const std::set<std::string> places = {"output path",   "table of runs", "ranks per run",
                                                "measured data", "write page",    "effect folders",
-                                               "case file"};
+                                               "case file",     "budget of runs"};
   for (const auto &[place, value] : values_in(parameters.as_input_file()))
     if (places.count(place.second) == 0)
       parts["study file"] += describe(place.first, place.second) + value + "\n";

@@ -172,6 +172,15 @@ def check_second_measurement(program: Program) -> None:
     assert content["verdict"] == "named" and content["candidates"][0]["effect"] == "tilt"
 
 
+def check_larger_budget(program: Program) -> None:
+    """A study whose budget is spent goes on with a larger one."""
+    expect(program.run("study.prm", *settings(output_path="poor", budget_of_runs="60")), 0)
+    expect(program.run("study.prm", *settings(output_path="poor", budget_of_runs="90")), 0, "Going on with the study")
+    more = json.loads((program.folder / "poor" / "discovery.json").read_text())
+    # The same runs to fit; those that test the answer come later now, with other seeds.
+    assert more["simulations"]["from_table"] > 20, more["simulations"]
+
+
 def check_plan(program: Program) -> None:
     expect(program.run("study.prm", "--plan", *settings(measured_data="none.csv",
                                                         table_of_runs="output_runs.sqlite",
@@ -193,6 +202,16 @@ def check_fill(program: Program) -> None:
     expect(program.run("study.prm", "--verdict-exit-code",
                        *settings(output_path="from_filled", table_of_runs="filled.sqlite", budget_of_runs="40")), NAMED)
     assert n_rows(table) <= rows + 41, "the study made many runs of its own"  # one looks at the data points
+
+
+def check_fill_and_plan(program: Program) -> None:
+    """A plan rests on what the same command has filled in before it."""
+    def plan() -> list[str]:
+        result = program.run("study.prm", "--fill-table", "--plan",
+                             *settings(measured_data="none.csv", table_of_runs="both.sqlite", budget_of_runs="120"))
+        expect(result, 0, "bits  core-seconds of a run")
+        return result[1][result[1].index("What a measurement"):].splitlines()
+    assert plan() == plan(), "the second plan knows more than the first"
 
 
 def check_full_disk(program: Program) -> None:
@@ -229,8 +248,10 @@ def main() -> None:
     check_resume(program, reference)
     check_full_disk(program)
     check_second_measurement(program)
+    check_larger_budget(program)
     check_plan(program)
     check_fill(program)
+    check_fill_and_plan(program)
     print("ok")
 
 
