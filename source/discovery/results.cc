@@ -163,13 +163,14 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
     };
     const auto n_points = count_points(study.data.fit) + count_points(study.data.held_out);
     const double n_nuisances = n_factors - n_effects;
+    const bool is_compared = n_points > 0 || (study.data.fit.empty() && !experiment.is_held_out());
     // First runs; the rest of the budget goes where it is expected to tell most.
     constexpr double levels = 4., replicates = 2., models = 4.;
-    const double n =
-        experiment.is_held_out() ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
-        : n_points == 0          ? 0.
-                                 : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
-                              levels * replicates * n_effects;
+    const double n = experiment.is_held_out()
+                         ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
+                     : !is_compared ? 0.
+                                    : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
+                                          levels * replicates * n_effects;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
@@ -194,7 +195,8 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
            format_count(n_factors - n_effects, "nuisance", "nuisances") + ": " + names);
   if (!study.left_out.empty())
     log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
-  log.line("  runs:       about " + format_whole(runs) + " at most");
+  log.line("  runs:       about " + format_whole(runs) +
+           (options.budget > 0 ? " at most" : " at first, and no limit"));
   log.line("  core-hours: about " + format_roughly(core_hours));
   log.line(n_warnings == 0
                ? "The study is in order."
