@@ -89,9 +89,12 @@ def measured_rows(repeats: list[list[dict[str, str]]], options: argparse.Namespa
         for row in repeat:
             values.setdefault((row["observable"], row["index"]), []).append(float(row["value"]))
     use = "held-out" if options.held_out else "fit"
+    complete = {key: found for key, found in values.items()
+                if len(found) == len(repeats) and all(map(math.isfinite, found))}
+    # What is the same in all repeats has no scatter by which a study could weigh it.
     return [f"{options.experiment},{name},{index},{statistics.fmean(found):.9g},{statistics.stdev(found):.6g},"
             f"{len(found)},{use}"
-            for (name, index), found in values.items() if len(found) == len(repeats) and all(map(math.isfinite, found))]
+            for (name, index), found in complete.items() if statistics.stdev(found) > 0.]
 
 
 def chosen(rows: list[dict[str, str]], only: str) -> list[dict[str, str]]:
