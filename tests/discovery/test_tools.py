@@ -62,6 +62,16 @@ class PageOfAStudy(InFolder):
             make_study(folder, verdict)
             self.assertIn(words, " ".join(verdict_text(Study(folder))))
 
+    def test_nothing_in_the_fit_beside_held_out_data_that_differ(self) -> None:
+        make_study(self.folder / "none", "none")
+        study = Study(self.folder / "none")
+        self.assertEqual(title_of(study), "Nothing is missing")
+        study.content["gaps"]["held-out"] = {"p before": 1e-6, "result": "the base model does not describe the held-out data"}
+        self.assertIn("held-out data differ", title_of(study))
+        words = " ".join(verdict_text(study))
+        self.assertIn("the held-out data do not (p = 1e-06)", words)
+        self.assertNotIn("The measured data agree", words)
+
     def test_a_tie_whose_first_model_fits_badly_says_so(self) -> None:
         make_study(self.folder / "tie", "tie")
         study = Study(self.folder / "tie")

@@ -11,7 +11,8 @@ TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
           "underpowered": "The data cannot tell"}
 ONE_OR_NONE = "One effect, or something that the catalogue lacks"
 NONE = "none of the catalogue"
-DOUBTFUL = 0.05  # as in the program's DecisionRule
+DOUBTFUL, REFUTED = 0.05, 0.01  # as in the program's DecisionRule
+BUT_HELD_OUT = "Nothing is missing in the data of the fit, but the held-out data differ"
 
 
 def _amount(value: float, unit: str) -> str:
@@ -28,7 +29,15 @@ def is_one_or_none(study: Study) -> bool:
     return study.verdict == "tie" and len(names) == 2 and NONE in names
 
 
+def _held_out_differs(study: Study) -> float | None:
+    """The held-out data's p of the base model where nothing was found in the fit, but that model is refuted there."""
+    p = study.content["gaps"].get("held-out", {}).get("p before")
+    return p if study.verdict == "none" and p is not None and p < REFUTED else None
+
+
 def title_of(study: Study) -> str:
+    if _held_out_differs(study) is not None:
+        return BUT_HELD_OUT
     return ONE_OR_NONE if is_one_or_none(study) else TITLES.get(study.verdict, study.verdict)
 
 
@@ -152,7 +161,11 @@ def verdict_text(study: Study) -> list[str]:
     rows = study.content.get("effects", [])
     seen = sum(1 for row in rows if row.get("detectable"))
     if study.verdict == "none":
-        return ["The measured data agree with the base model within the scatter of both. " + chance,
+        differs = _held_out_differs(study)
+        agrees = ("The measured data agree with the base model within the scatter of both. " if differs is None else
+                  "The data of the fit agree with the base model within the scatter of both, the held-out data do not "
+                  f"(p = {_probability(differs)}): an effect may act that only they show. Give some of them to the fit. ")
+        return [agrees + chance,
                 f"Of {len(rows)} effects, {seen} would have been seen within their ranges; the table "
                 "of what could have been seen gives the bounds."]
     return ["Nothing was found, but that says little: only "
