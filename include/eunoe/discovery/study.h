@@ -67,7 +67,7 @@ Discovery discover(const StudyOptions &options, const MeasuredData &data,
 
 /// Without measured data: which experiments and observables are expected to tell most about which
 /// effect is missing, from runs of the base model and of all effects.
-/// @return rows "experiment", "observable", "information" (bit), "of" (bit), "core_seconds"
+/// @return rows "experiment", "observable", "information" (bit), "of" (bit)
 nlohmann::ordered_json plan(const StudyOptions &options,
                             const std::vector<std::string> &experiments,
                             const std::vector<Factor> &factors, Simulator &simulator, Log &log);

@@ -73,7 +73,7 @@ public:
   InspectionResult judge(const Faults &faults, const ParticleArrays &particles,
                          const std::function<std::string(std::size_t)> &describe);
 
-  /// The most particles that were too deep in others at one time, where that does not stop the run.
+  /// The most overlaps that were too deep at one time, where that does not stop the run.
   std::uint64_t most_squeezed() const { return most_at_once; }
   /// Goes on from a number that was saved.
   void set_most_squeezed(std::uint64_t n) { most_at_once = n; }
