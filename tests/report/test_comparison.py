@@ -30,7 +30,7 @@ from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
 from eunoe.report.run_folder import Layers
-from eunoe.report.spread_run import Group, SpreadRun, peak_of
+from eunoe.report.spread_run import Group, SpreadRun, difference, peak_of
 from eunoe.report.static_zones import zones_of
 from eunoe.vtk_files import Snapshot
 
@@ -161,6 +161,21 @@ class Numbers(unittest.TestCase):
         self.assertTrue(np.isnan(mean_of([3., 3.]).half))
         self.assertFalse(difference_of([1., 1.], [2., 2.]).is_significant)
 
+    def test_differences_of_runs_that_spread_the_same_grains(self) -> None:
+        def group(label: str, *densities: float, first: int = 1) -> Group:
+            return Group(label, [run_with([lrd] * 20, f"{label}_seed{seed}") for seed, lrd in enumerate(densities, first)])
+        def of(run: SpreadRun) -> float:
+            return float(run.layers.lrd[0])
+        # Each seed differs by 0.01 and a little, while the seeds scatter by ten times that.
+        reference, softer = group("a", 0.5, 0.6, 0.7), group("b", 0.51, 0.611, 0.709)
+        found = difference(softer, reference, of)
+        self.assertAlmostEqual(found.value, 0.01)
+        self.assertTrue(found.is_significant and found.half < 0.003)
+        # Without a partner for each run of the smaller group nothing pairs them.
+        other = difference(group("c", 0.51, 0.611, 0.709, first=2), reference, of)
+        self.assertFalse(other.is_significant)
+        self.assertTrue(np.isnan(difference(group("d", 0.51), reference, of).half))
+
     def test_the_pass_that_is_shown(self) -> None:
         """The last one of which all was filmed; else that of which most was."""
         def shown(*times: float) -> int:
@@ -266,8 +281,11 @@ class Page(unittest.TestCase):
         self.assertIn("There are 1 labels for 3 runs", errors)
 
     def test_labels_of_folders_with_one_name(self) -> None:
-        folders = [Path(name) for name in ("A_seed1/run", "A_seed2/run", "B/run", "C_seed3")]
-        self.assertEqual(default_labels(folders), ["A/run", "A/run", "B/run", "C"])
+        for names, labels in (
+                (("A_seed1/run", "A_seed2/run", "B/run", "C_seed3"), ["A/run", "A/run", "B/run", "C"]),
+                (("A/PS1_seed1", "A/PS1_seed2", "B/PS1_seed1"), ["A/PS1", "A/PS1", "B/PS1"]),
+                (("L1/run_seed1", "L2/run_seed2"), ["L1/run", "L2/run"])):
+            self.assertEqual(default_labels([Path(name) for name in names]), labels)
 
     def test_figures_go_to_a_folder(self) -> None:
         self.assertEqual(self.make("--figures", str(self.folder / "paper"))[0], 0)

@@ -44,12 +44,17 @@ def _without_seed(name: str) -> str:
 
 
 def default_labels(folders: Sequence[Path]) -> list[str]:
-    """The folders' names; names that differ in the seed alone have one label. Where folders have one name, as in
-    A/run and B/run, that of the folder around them comes before it."""
+    """The folders' names; names that differ in the seed alone have one label. Where several folders have runs of one
+    such name, as A/run_seed1 and B/run_seed2, that of the folder around them comes before it."""
     places = [folder.resolve() for folder in folders]
-    names = [place.name for place in places]
-    return [_without_seed(place.name) if names.count(place.name) == 1 else
-            f"{_without_seed(place.parent.name)}/{_without_seed(place.name)}" for place in places]
+    parents: dict[str, set[Path]] = {}
+    for place in places:
+        parents.setdefault(_without_seed(place.name), set()).add(place.parent)
+    labels = []
+    for place in places:
+        name = _without_seed(place.name)
+        labels.append(name if len(parents[name]) == 1 else f"{_without_seed(place.parent.name)}/{name}")
+    return labels
 
 
 def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str]) -> list[Group]:
@@ -60,6 +65,10 @@ def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str
     runs: dict[str, list[SpreadRun]] = {}
     for folder, label in zip(folders, labels or default_labels(folders)):
         runs.setdefault(label, []).append(spread_run(read_run(folder), problems))
+    for label, found in runs.items():
+        if len({run.plate_length for run in found}) > 1:
+            raise ReportError(f"The runs of '{label}' have plates of different lengths, which cannot be pooled: give each "
+                              "length a --label of its own.")
     if len(runs) > MOST_GROUPS:
         raise ReportError(f"{len(runs)} labels are too many for one page: give at most {MOST_GROUPS}.")
     return [Group(label, found) for label, found in runs.items()]
@@ -96,8 +105,9 @@ def _add_densities(page: Page, groups: Sequence[Group]) -> None:
     if len(groups) > 1:
         head, *rows = _unmarked(differences_table(groups))
         page.table(head, rows)
-        page.paragraph("Differences of the means with their 95 % intervals (Welch's t). Where 0 lies within, the runs "
-                       "do not show a difference.")
+        page.paragraph("Differences of the means with their 95 % intervals: of the pairs with one seed where both have all "
+                       "seeds and one length, as these spread the same grains, else by Welch's t. Where 0 lies within, "
+                       "the runs do not show a difference.")
 
 
 def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:

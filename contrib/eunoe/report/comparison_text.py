@@ -1,5 +1,5 @@
 """Tables and sentences that compare groups of spreading runs, with 95 % intervals of the means (Student's t,
-differences by Welch)."""
+differences pair by pair of seeds, or by Welch)."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from dataclasses import fields
 
 import numpy as np
 
-from eunoe.intervals import Interval, difference_of, mean_of
+from eunoe.intervals import Interval, mean_of
 from eunoe.tables import Table
 
 from .measured import Measured
 from .run_folder import Layers
-from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
+from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun, difference
 
 
 def measured_group(measured: Measured, label: str = "measured, full size") -> Group:
@@ -72,7 +72,7 @@ def differences_table(groups: Sequence[Group]) -> Table:
     for group in groups[1:]:
         cells = []
         for number, size in numbers.values():
-            found = difference_of(group.of_runs(number), groups[0].of_runs(number))
+            found = difference(group, groups[0], number)
             text = text_of(found, size, "+")
             cells.append(f"**{text}**" if found.is_significant else text)
         table.append([group.label, str(len(group.runs)), *cells])

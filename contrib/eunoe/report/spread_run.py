@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+
+from eunoe.intervals import Interval, difference_of, mean_of
 
 from .apparatus import Apparatus
 from .bed_maps import BedMaps
@@ -36,6 +39,16 @@ class SpreadRun:
     layers: Layers
     apparatus: Apparatus | None
     maps: BedMaps | None
+
+    @property
+    def seed(self) -> int | None:
+        """That of its name."""
+        found = re.search(r"seed[_-]?(\d+)$", self.name)
+        return int(found[1]) if found else None
+
+    @property
+    def plate_length(self) -> float | None:
+        return self.apparatus.plate_length if self.apparatus else None
 
     @cached_property
     def zones(self) -> Zones | None:
@@ -100,6 +113,18 @@ class Group:
     def of_runs(self, number) -> list[float]:
         """A number of each run."""
         return [number(run) for run in self.runs]
+
+
+def difference(group: Group, reference: Group, number) -> Interval:
+    """Of the means of a number of each run. Runs of one seed on plates of one length spread the same grains, so where
+    all runs have partners they are compared pair by pair; else both groups scatter by themselves (Welch)."""
+    ours, theirs = ({run.seed: run for run in runs} for runs in (group.runs, reference.runs))
+    seeds = [seed for seed in ours if seed in theirs]
+    have_partners = (None not in ours and len(ours) == len(group.runs) and len(seeds) == min(len(ours), len(theirs))
+                     and len({run.plate_length for run in (*group.runs, *reference.runs)}) == 1)
+    if have_partners:
+        return mean_of([number(ours[seed]) - number(theirs[seed]) for seed in seeds])
+    return difference_of(group.of_runs(number), reference.of_runs(number))
 
 
 def mean_and_spread(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray | None]:

@@ -7,7 +7,7 @@ import math
 from eunoe.intervals import Interval, difference_of, mean_of
 from eunoe.report.comparison_text import layers_of, measured_group, text_of
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
+from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun, difference
 from eunoe.tables import Table
 
 from .cases import SETS
@@ -81,7 +81,7 @@ def _differences(findings: Findings) -> Table:
                     ("the rise grows with the length", _rise, 100., " %"),
                     ("the peak grows with the length", lambda run: run.peak[0], 100., " %"),
                     ("its layer grows with the length", lambda run: run.peak[1], 1., "")):
-                found = difference_of(longer.of_runs(number), shorter.of_runs(number))
+                found = difference(longer, shorter, number)
                 rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, unit)}",
                              _sign(Interval(found.value * size / 100., found.half * size / 100.), "+")])
     for length in sorted({result.case.length for result in findings.all}):
@@ -89,7 +89,7 @@ def _differences(findings: Findings) -> Table:
         if first and third:
             for title, number in (("the peak of PS3 is lower than that of PS1", lambda run: run.peak[0]),
                                   ("layers 11 to 20 of PS3 are looser", lambda run: run.mean_lrd(LATER))):
-                found = difference_of(third.of_runs(number), first.of_runs(number))
+                found = difference(third, first, number)
                 rows.append([title, "simulated: yes", f"{third.label}, less {first.label}: {_said(found)}",
                              _sign(found, "-")])
     return rows
