@@ -253,7 +253,7 @@ def main(words: list[str]) -> int:
     model = model_of(options.case, options.program, options.set)
     apparatus = Apparatus.of(model)
     occupy(options.folder,
-           {"engine": options.engine, "case": options.case.name, "set": options.set,
+           {"engine": options.engine, "case": str(options.case.resolve()), "set": options.set,
             **{name: getattr(options, name) for name in ("friction", "rolling", "cohesion", "filling", "rest")}},
            "truth.json")
     repeats = []

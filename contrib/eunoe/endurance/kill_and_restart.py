@@ -50,7 +50,7 @@ class Case:
 
     def processes(self) -> list[int]:
         """Process numbers of the ranks that run the case, without the launcher."""
-        found = subprocess.run(["pgrep", "-f", f"^{self.program} .*{self.results}"], text=True,
+        found = subprocess.run(["pgrep", "-f", f"^{re.escape(self.program)} .*{re.escape(str(self.results))}( |$)"], text=True,
                                capture_output=True, check=False)
         return [int(word) for word in found.stdout.split()]
 
@@ -181,8 +181,9 @@ def main(words: list[str]) -> int:
     options = arguments.parse_args(words)
     ranks = rank_numbers(options.ranks)
     program = str(Path(options.program).resolve())
-    reference = Case(program, options.case, options.folder / "alone", options.settings)
-    killed = Case(program, options.case, options.folder / "killed", options.settings)
+    folder = options.folder.resolve()
+    reference = Case(program, options.case, folder / "alone", options.settings)
+    killed = Case(program, options.case, folder / "killed", options.settings)
     reference.run(ranks[0])
     restarts, ends, lost = kill_and_restart(reference, killed, ranks, options.kills, options.frequency,
                                             random.Random(options.seed))

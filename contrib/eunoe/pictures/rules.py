@@ -87,8 +87,8 @@ RULES = (
           "--figure {folder}/collapse.png --table {folder}/collapse.md",)),
     Rule("discovery", "2 hours: a twin and two studies of the worked example",
          {"discovery_tie.png": "angle/figures/figure-1.png",
-          "discovery_envelopes.png": "study/figures/figure-2.png",
-          "discovery_gap.png": "study/figures/figure-3.png"},
+          "discovery_envelopes.png": "study/figures/figure-3.png",
+          "discovery_gap.png": "study/figures/figure-4.png"},
          (_lesson("truth", "twin"),
           "bash -c \"grep -E '^#|^experiment|heap,base_angle,' {folder}/measured.csv "
           "> {folder}/measured_angle.csv\"",
