@@ -6,10 +6,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 # Open MPI counts cores, not their threads.
 cores=$(lscpu -p=SOCKET,CORE | grep -v '^#' | sort -u | wc -l)
-ranks=${EUNOE_RANKS:-$((cores < $(nproc) ? cores : $(nproc)))}
+ranks=$((cores < $(nproc) ? cores : $(nproc)))
 if [ "$ranks" -gt 4 ]; then
   ranks=4 # a case of three thousand particles gains nothing from more
 fi
+ranks=${EUNOE_RANKS:-$ranks}
 
 contrib/install_dependencies.sh
 echo "Building (a few minutes the first time)"
