@@ -22,14 +22,15 @@ import sample_bed
 import sample_run
 from eunoe.intervals import difference_of, mean_of
 from eunoe.report import of_run
-from eunoe.report.bed_maps import maps_of, read_table, write_table
+from eunoe.report.apparatus import Apparatus
+from eunoe.report.bed_maps import maps_of, read_maps, read_table, write_table
 from eunoe.report.comparison_report import default_labels
 from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
                                           supply_table)
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
-from eunoe.report.run_folder import Layers
+from eunoe.report.run_folder import Layers, read_run
 from eunoe.report.spread_run import Group, SpreadRun, difference, peak_of
 from eunoe.report.static_zones import zones_of
 from eunoe.vtk_files import Snapshot
@@ -330,6 +331,14 @@ class Page(unittest.TestCase):
     def test_maps_of_a_whole_run(self) -> None:
         self.assertEqual(self.make(names=["PS1_seed1"])[0], 0)
         self.assertIn("Displacement and density along the plate", (self.folder / "PS1_seed1/report.html").read_text())
+        head, *rows = (self.folder / "PS1_seed1" / "bed.csv").read_text().splitlines()
+        self.assertEqual(head, "layer,x,y,solid_fraction,displacement")
+        pictures = read_run(self.folder / "PS1_seed1").layer_pictures()
+        found = read_maps(pictures, Apparatus.read(self.folder / "PS1_seed1" / "apparatus.json"))
+        self.assertAlmostEqual(sum(float(row.split(",")[3]) for row in rows), found.fraction.sum(), delta=1e-4 * len(rows))
+        places = [float(row.split(",")[1]) for row in rows]
+        self.assertTrue(found.x[0] < min(places) and max(places) < found.x[-1])
+        self.assertEqual(sum(row.endswith(",") for row in rows), np.count_nonzero((found.fraction > 5e-5) & (found.tracked == 0)))
 
 
 if __name__ == "__main__":

@@ -144,6 +144,15 @@ def write_table(file: Path, maps: BedMaps) -> None:
     write_csv(file, [list(COLUMNS), *rows])
 
 
+def write_for_others(file: Path, maps: BedMaps) -> None:
+    """The same in metres: x from the beginning of the plate, y from its surface, middles of the cells."""
+    x, y = 0.5 * (maps.x[1:] + maps.x[:-1]), 0.5 * (maps.y[1:] + maps.y[:-1])
+    rows = [[int(maps.layers[k]), f"{x[i]:.6g}", f"{y[j]:.6g}", f"{maps.fraction[k, i, j]:.4f}",
+             f"{maps.moved[k, i, j]:.4g}" if maps.tracked[k, i, j] > 0 else ""]
+            for k, i, j in np.argwhere((maps.fraction > 5e-5) | (maps.tracked > 0))]
+    write_csv(file, [["layer", "x", "y", "solid_fraction", "displacement"], *rows])
+
+
 def read_table(file: Path, apparatus: Apparatus, n_bins: int | None = None) -> BedMaps:
     """:param n_bins: in x, if they are not those that a table has today"""
     columns = read_columns(file)

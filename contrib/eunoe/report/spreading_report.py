@@ -8,7 +8,7 @@ from eunoe.vtk_files import VtkError
 
 from . import bed_pictures
 from .apparatus import Apparatus, ApparatusError
-from .bed_maps import read_maps
+from .bed_maps import read_maps, write_for_others
 from .case_section import add_case_section
 from .comparison_charts import maps_figure
 from .evidence import Evidence, Fields, gather
@@ -161,7 +161,7 @@ def spreading_report(run: Run, layers: Layers) -> Page:
 
 
 def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None) -> None:
-    """Of runs whose layers all have pictures."""
+    """Of runs whose layers all have pictures; also as a table, bed.csv."""
     pictures = run.layer_pictures()
     if apparatus is None or len(pictures) < max(len(layers), 3):
         return
@@ -174,6 +174,8 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
     page.figure(maps_figure(group), "By place and layer: (a) mean displacement in the pass of what lay on the plate; "
                 f"grey: less than {length(RESTS_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
                 "added, as density of its layer.")
+    write_for_others(run.folder / "bed.csv", maps)
+    page.paragraph("bed.csv, beside this page's run, has the maps in numbers.")
 
 
 def add_movie(page: Page, run: Run, layers: Layers, layer: int | None) -> None:
