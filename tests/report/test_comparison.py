@@ -83,6 +83,15 @@ class Maps(unittest.TestCase):
         np.testing.assert_allclose(found[1:3], sample_bed.FRACTION)
         self.assertTrue(np.isnan(found[[0, 3]]).all())  # the layer before is not known
 
+    def test_what_is_pressed_together_far_below(self) -> None:
+        found = maps(range(8))
+        np.testing.assert_allclose(found.compaction()[1:], 0., atol=1e-12)
+        # The lowest row becomes denser from weighing 6 to 7; in that of weighing 4 what lies at most four rows below.
+        found.fraction[7:, :, 0] += 0.03
+        found.fraction[4:, :, 1:] += 0.03
+        np.testing.assert_allclose(found.compaction()[[4, 7]], [0., 0.03], atol=1e-12)
+        self.assertTrue(np.isnan(maps([0, 2]).compaction()[1]))
+
     def test_density_of_the_middle_half(self) -> None:
         beds = [sample_bed.bed(layer) for layer in range(3)]
         for bed in beds:  # the new layers of the first 0.4 mm, outside the middle half, are missing

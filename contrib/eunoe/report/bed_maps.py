@@ -19,6 +19,7 @@ from .layer_results import RESTS_BELOW, moved_over_plate
 
 BIN = 0.1e-3  # wanted width of the bins in x (m)
 MOST_BINS = 104
+DEEP = 5  # rows of height below the new layer from which on it no longer reaches there
 # Points by which a sphere is shared out among the cells that it reaches into.
 N_POINTS = 64
 
@@ -93,6 +94,18 @@ class BedMaps:
         for k in range(1, len(self.layers)):
             if self.layers[k] == self.layers[k - 1] + 1:
                 found[k] = (self.columns()[k] - self.columns()[k - 1]) / np.diff(self.y)[0]
+        return found
+
+
+    def compaction(self) -> np.ndarray:
+        """What the rows of height that lie `DEEP` and more below the new layer gained since the weighing before, as
+        density of a layer, by weighing; NaN where that is not known. A new layer lies in the row of its number and
+        one, above those of layer 0 and the bed that the plate's first fall has room for."""
+        found = np.full(len(self.layers), np.nan)
+        for k in range(1, len(self.layers)):
+            if self.layers[k] == self.layers[k - 1] + 1:
+                rows = max(int(self.layers[k]) + 2 - DEEP, 0)
+                found[k] = (self.fraction[k, :, :rows] - self.fraction[k - 1, :, :rows]).mean(axis=0).sum()
         return found
 
 

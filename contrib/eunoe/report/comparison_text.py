@@ -126,7 +126,8 @@ def layers_of(values: Sequence[int | None]) -> str:
 def rest_table(groups: Sequence[Group]) -> Table:
     """From which layers on the bed rests, of the groups with maps."""
     table = [["", "runs", "first zone at rest", "zones meet", "90 % at rest from", "at rest in the last pass (%)",
-              "removed by a pass from layer 11 on (% of the mass before)"]]
+              "removed by a pass from layer 11 on (% of the mass before)",
+              *(f"gained five layers and more below, layers {first} to {last} (% of a layer a pass)" for first, last in (PLATEAU, LATER))]]
     for group in groups:
         zones = [run.zones for run in group.mapped]
         if not zones:
@@ -136,5 +137,6 @@ def rest_table(groups: Sequence[Group]) -> Table:
         table.append([group.label, str(len(zones)), layers_of([zone.first for zone in zones]),
                       layers_of([zone.meet for zone in zones]), layers_of([zone.at_rest_from for zone in zones]),
                       text_of(mean_of([float(zone.resting[-1]) for zone in zones]), 100.),
-                      text_of(mean_of(late), 100.)])
+                      text_of(mean_of(late), 100.),
+                      *(text_of(mean_of([run.compaction(layers) for run in group.mapped]), 100.) for layers in (PLATEAU, LATER))])
     return table

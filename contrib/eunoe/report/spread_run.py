@@ -66,6 +66,13 @@ class SpreadRun:
         rows = (self.maps.layers >= span[0]) & (self.maps.layers <= span[1])
         return float(self.maps.middle_lrd()[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
 
+    def compaction(self, span: tuple[int, int]) -> float:
+        """Mean of what passes press together far below their layer, as density of a layer; NaN without maps."""
+        if self.maps is None:
+            return np.nan
+        rows = (self.maps.layers >= span[0]) & (self.maps.layers <= span[1])
+        return float(self.maps.compaction()[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
+
     @property
     def rise(self) -> float:
         """Of the mean LRD from the plateau's layers to the later ones."""

@@ -70,17 +70,21 @@ def under_way_block(findings: Findings) -> str:
     layers."""
     after = f"layers {LATER[0]} to the last"
     table = [["run", "layers weighed", span(PLATEAU), f"LRD of {after} (%)",
-              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)", "rise (%)"]]
+              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)", "rise (%)",
+              f"gained five layers and more below, layers {PLATEAU[0]} to {PLATEAU[1]} (% of a layer a pass)", f"the same, {after}"]]
     passes = [["run", "pass", "displacement of what lay there (um)", "zones at rest cover (%)",
                "removed (% of the mass before)"]]
+    measured = measured_group(read_measured())
     for run in findings.under_way:
         later = (LATER[0], max(run.layers.last, LATER[0]))
         groups = [(f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}", [run]),
-                  *((group.label, f"{len(group.runs)} runs", group.runs) for group in findings.lengths(run.case.properties))]
+                  *((group.label, f"{len(group.runs)} runs", group.runs) for group in findings.lengths(run.case.properties)),
+                  (measured.label, f"{len(measured.runs)} repeats", measured.runs)]
         for name, extent, runs in groups:
             means = [[one.mean_lrd(PLATEAU) for one in runs], [one.mean_lrd(later) for one in runs],
                      [one.middle_lrd(PLATEAU) for one in runs], [one.middle_lrd(later) for one in runs],
-                     [one.mean_lrd(later) - one.mean_lrd(PLATEAU) for one in runs]]
+                     [one.mean_lrd(later) - one.mean_lrd(PLATEAU) for one in runs],
+                     [one.compaction(PLATEAU) for one in runs], [one.compaction(later) for one in runs]]
             table.append([name, extent, *(text_of(mean_of(values), 100.) for values in means)])
             passes += [[name, str(layer), *_pass(runs, layer)] for layer in sorted({1, 5, 10, run.layers.last})
                        if layer <= run.layers.last and all(one.maps for one in runs)]
