@@ -25,21 +25,32 @@ std::size_t count(const std::vector<Measurement> &all, const std::string &observ
       all.begin(), all.end(), [&](const Measurement &m) { return m.observable == observable; }));
 }
 
-void examine(const std::string &name, const std::string &more)
+/// @param more entries of subsection powder spreading
+/// @param others further subsections
+void examine(const std::string &name, const std::string &more, const std::string &others = "")
 {
   int rank, n_ranks;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
   const std::string checkpoints =
-      "subsection restart\n set checkpoint = true\n set frequency = 15000\n";
+      others + "subsection restart\n set checkpoint = true\n set frequency = 15000\n";
   const std::string folder = "results_" + name;
   Case all(small_spreading(folder, more, checkpoints + "end\n"));
-  all.run();
+  unsigned long long most_asleep = 0;
+  all.run([&most_asleep](Simulation &simulation) {
+    const ParticleArrays &p = simulation.get_system().particles;
+    most_asleep = std::max<unsigned long long>(most_asleep, p.n_owned - p.n_awake());
+  });
   const auto measured = all->measurements();
   if (n_ranks > 1) {
-    Case alone(small_spreading(folder + std::to_string(rank), more), MPI_COMM_SELF);
+    Case alone(small_spreading(folder + std::to_string(rank), more, others), MPI_COMM_SELF);
     alone.run();
     check(name + ": on one rank", are_same(measured, alone->measurements()));
+    check(name + ": the same grains", particle_table(*all) == particle_table(*alone));
+  }
+  if (!others.empty()) {
+    MPI_Allreduce(MPI_IN_PLACE, &most_asleep, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, MPI_COMM_WORLD);
+    check(name + ": some sleep", most_asleep > 50, std::to_string(most_asleep));
   }
   // Continues from the last checkpoint before the one of the end.
   if (rank == 0) {
@@ -85,7 +96,7 @@ void examine(const std::string &name, const std::string &more)
   check(name + ": surface between plate and spreader", height.empty(), height);
   const std::string density = lies_between("solid_fraction", 0., 0.7);
   check(name + ": solid fractions of layers", density.empty(), density);
-  const std::string mean = lies_between("mean_diameter", 60e-6, 80e-6);
+  const std::string mean = lies_between("mean_diameter", 59.99e-6, 80.01e-6);
   check(name + ": mean diameter between the smallest and the largest", mean.empty(), mean);
 }
 
@@ -102,4 +113,16 @@ EUNOE_MPI_TEST()
   set plate recoil                 = 20e-6
   set side walls                   = true
   set side wall friction           = 0.2)");
+  examine("full", "  set feedstock = full\n  set spreader = flat blade");
+  examine("asleep", "", R"(
+subsection model parameters
+  subsection adaptive sparse contacts
+    set enable adaptive sparse contacts = true
+  end
+  subsection load balancing
+    set load balance method = frequent
+    set frequency           = 300
+  end
+end
+)");
 }
