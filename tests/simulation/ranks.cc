@@ -106,7 +106,7 @@ struct Result
   std::vector<std::vector<double>> particles;
   std::vector<double> load;
   ExactSum lost;
-  unsigned long long searches, in_place;
+  unsigned long long searches, in_place, balances;
 };
 
 /// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to matter.
@@ -155,6 +155,7 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
   const ParticleSystem &system = test_case->get_system();
   result.searches = system.n_searches();
   result.in_place = system.n_searches_in_place();
+  result.balances = system.n_balances();
   return result;
 }
 
@@ -168,6 +169,8 @@ void check_searches(const Result &result)
 
 void compare(const std::string &laws, const std::vector<std::string> &balancings)
 {
+  int n_ranks;
+  MPI_Comm_size(MPI_COMM_WORLD, &n_ranks);
   Result alone;
   if (is_first_rank())
     alone = run(laws, none, MPI_COMM_SELF);
@@ -183,6 +186,10 @@ void compare(const std::string &laws, const std::vector<std::string> &balancings
           together.load == alone.load && std::abs(alone.load[1]) > 0.);
     if (balancing == none)
       check_searches(together);
+    else if (n_ranks > 1)
+      // One may come at the start by itself.
+      check("the work was shared out anew", together.balances > 3,
+            std::to_string(together.balances) + " times");
     check("the same mass lost", together.lost == alone.lost && alone.lost.value() > 0.);
   }
 }
