@@ -57,7 +57,7 @@ struct Story
   std::vector<Grain> grains;
   std::string plate = "0; 0; 0", blade = "0; 0; 0"; ///< velocities (m/s)
   std::string blade_bottom = "3e-3", rolling = "epsd", more;
-  double end = 0.3;
+  double soon = event + 1e-2, end = 0.3; ///< when the others are compared
 };
 
 /// Grains in rows and layers, slightly out of order, that fall on the plate.
@@ -139,7 +139,7 @@ using Places = std::vector<Vec3>;
 
 struct Course
 {
-  Places before, soon, end; ///< of all grains at the event, 10 ms later, and at the end (m)
+  Places before, soon, end; ///< of all grains at the event, soon after, and at the end (m)
   double asleep = 0.;       ///< share of sleepers just before the event
 };
 
@@ -149,7 +149,7 @@ Course run(const Story &story, bool sleep)
   Course course;
   test_case.run([&](Simulation &simulation) {
     const auto is_at = [&](double t) { return std::abs(simulation.time() - t) < 0.5e-5; };
-    const bool is_before = is_at(event - 1e-4), is_soon = is_at(event + 1e-2);
+    const bool is_before = is_at(event - 1e-4), is_soon = is_at(story.soon);
     if (!is_before && !is_soon && !is_at(story.end))
       return;
     Places places;
@@ -298,6 +298,8 @@ void test_bed(const Story &story)
   };
   const double far = norm(moved(awake, &Course::end));
   check(story.name + ": the bed moves", far > 0.02 * diameter, format(far) + " m");
+  const double early = norm(moved(awake, &Course::soon));
+  check(story.name + ": it has begun to", early > 0.02 * far, format(early / far));
   // If the sleeping bed did not respond, the difference would be all that the other one moves.
   check_close(story.name + ": soon after",
               norm(moved(asleep, &Course::soon) - moved(awake, &Course::soon)) / far, 0., 0.02);
@@ -336,6 +338,7 @@ EUNOE_MPI_TEST()
   test_bed(plate);
   Story spreader = still;
   spreader.name = "a blade arrives";
+  spreader.soon = event + 3e-2; // on its way for 20 ms
   spreader.blade = "if(t>0.2, 0.05, 0); 0; 0";
   test_bed(spreader);
   Story wall = still;
