@@ -39,6 +39,23 @@ EUNOE_TEST()
   check_close("normal force", relative_error(forces, force), 0., 1e-13);
   check_close("tangential force", relative_error(shears, shear), 0., 1e-13);
 
+  // A contact that slides: the spring stays as long as the Coulomb limit lets it.
+  a.friction = b.friction = 0.4;
+  a.restitution = b.restitution = 1.;
+  Laws sliding({a, b}, 2, {"linear", {}, "linear_limit_overlap", "none"});
+  Contact slides;
+  slides.kind = sliding.model.get_materials().kind(0, 1);
+  slides.overlap = 1e-6;
+  slides.slip = {0., 1., 0.};
+  Response last;
+  for (int k = 0; k < 10; ++k)
+    last = sliding.apply(slides, slides.overlap);
+  // The tangential stiffness is 0.4 of the normal one.
+  check_relative("Coulomb limit", norm(last.shear), 0.4 * last.contact_force, 1e-12);
+  check_relative("the spring of a contact that slides",
+                 std::hypot(slides.history[0], slides.history[1], slides.history[2]),
+                 slides.overlap, 1e-12);
+
   // The stiffness is chosen so that an undamped impact of 1 m/s reaches the overlap of Hertz's law.
   const double radius = 1e-3, mass = 1e-6;
   const double hertz = std::pow(1.25 * mass / (4. / 3. * young * std::sqrt(radius)), 0.4);
