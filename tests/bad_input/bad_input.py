@@ -79,7 +79,10 @@ def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
             file.unlink()
         else:
             file.write_bytes(content)
+        before = contents(place)
         refuse(programs, "checkpointed", sentence, place, again, *settings, codes=codes)
+        if codes == (2,) and contents(place) != before:
+            fail(f"{name}: what is refused has changed the folder")
 
     # Some forgeries are found only after the results were opened, which gives exit code 1.
     strictly = "restart/restart = auto"

@@ -4,17 +4,18 @@ of 60 degrees, of which one is seen in another observable too.
 Exit code 77, which skips the test, if numpy is missing.
 """
 
+import importlib.util
 import itertools
 import math
 import sys
 import tempfile
 from pathlib import Path
 
-try:
-    import numpy as np
-    from eunoe.discovery import fingerprints
-except ImportError:
+if importlib.util.find_spec("numpy") is None:
     sys.exit(77)
+import numpy as np
+
+from eunoe.discovery import fingerprints
 from eunoe.launch import Failure
 
 STRENGTH = 8.

@@ -233,6 +233,8 @@ def check_doubtful(program: ManyRuns, folder: Path) -> None:
             fail(name, "a check has written something")
         if name not in LONG:
             code, out, errors = call(program, "case.prm", settings=settings, cwd=folder)
+            if code != 0 and (code != 1 or not expected):
+                fail(name, f"the run ends with exit code {code}\n{out}{errors}")
             if [line for line in warnings(out) if line not in found] or not set(found) <= set(warnings(out)):
                 fail(name, f"the run says something else than\n{found}\n{out}{errors}")
             shutil.rmtree(folder / "results", ignore_errors=True)

@@ -260,11 +260,11 @@ def refused(program: Program) -> None:
         expect(program.run("case.prm", *start, *settings, code=code), sentence)
     expect(program.run("one_type.prm", *start, END + "7000", kind + "number of particle types = 1", code=2),
            "holds particles of type 1, and the input has the types 0 to 0.")
-    expect(program.run("case.prm", *LOAD[1:], END + "7000", OUTPUT + "load", "restart/restart = auto",
-                       kind + "g = 0, -5, 0", code=2), "entry 'g' is '0, -5, 0', and was '0, -9.81, 0'")
     # Nothing of the earlier results is lost by that.
     names = ("summary.json", "energies.csv", "used.prm")
     before = [(program.folder / "load" / name).read_bytes() for name in names]
+    expect(program.run("case.prm", *LOAD[1:], END + "7000", OUTPUT + "load", "restart/restart = auto",
+                       kind + "g = 0, -5, 0", code=2), "entry 'g' is '0, -5, 0', and was '0, -9.81, 0'")
     expect(program.run("one_type.prm", *LOAD[1:], CONTINUE, OUTPUT + "load", END + "7000",
                        kind + "number of particle types = 1", code=2), "holds particles of type 1")
     if [(program.folder / "load" / name).read_bytes() for name in names] != before:

@@ -7,6 +7,7 @@ Usage: test_lethe.py
 from __future__ import annotations
 
 import contextlib
+import importlib.util
 import io
 import math
 import sys
@@ -14,14 +15,13 @@ import tempfile
 import unittest
 from pathlib import Path
 
-try:
-    import numpy as np
-    from eunoe.lethe import examples, last_states
-except ImportError:
+if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules")):
     print("skipped: numpy or VTK is missing")
     sys.exit(77)
+import numpy as np
 
 from eunoe import commands
+from eunoe.lethe import examples, last_states
 from eunoe.launch import Failure
 
 PROGRAM = """#!/bin/sh
