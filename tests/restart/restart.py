@@ -16,7 +16,7 @@ import sys
 import time
 from pathlib import Path
 
-from attempts import HANGING, Attempts
+from attempts import Attempts
 from eunoe.endurance.kill_and_restart import Case, compare, kill_and_restart
 from eunoe.launch import Failure
 
@@ -93,24 +93,6 @@ def write_failure(reference: Case, folder: Path) -> None:
     shutil.rmtree(obstacle)
     other.run(1, *EVERY, "restart/restart = true")
     compare(reference, other, "After a checkpoint that could not be written")
-
-
-def locked_semaphore(program: str, folder: Path) -> None:
-    """The semaphore of a run that was killed while it opened a picture does not block later
-    runs."""
-    name = f"left_behind_{os.getpid()}"
-    left = Path(f"/dev/shm/sem.OMPIO_{name}_cells_00000.vtu")
-    if not left.parent.is_dir():
-        return
-    left.write_bytes(bytes(32))
-    other = Case(program, CASE, folder, [])
-    settings = (f"simulation control/output name = {name}", "simulation control/iteration end = 500")
-    try:
-        subprocess.run(other.command(1, *settings), check=True, capture_output=True, timeout=HANGING)
-    except subprocess.SubprocessError as error:
-        raise Failure(f"With a semaphore that a killed run left locked: {error}") from None
-    finally:
-        left.unlink()
 
 
 def sleeping(program: str, folder: Path) -> None:
@@ -197,7 +179,6 @@ def main(program: str, folder: Path) -> int:
     attempts.make("SIGTERM", stopped, reference, folder / "term", signal.SIGTERM, 1, 2)
     attempts.make("SIGUSR1", stopped, reference, folder / "usr1", signal.SIGUSR1, 2, 1)
     attempts.make("write failure", write_failure, reference, folder / "full")
-    attempts.make("locked semaphore", locked_semaphore, reference.program, folder / "left")
     attempts.make("sleep", sleeping, reference.program, folder / "sleep")
     attempts.make("all laws", all_laws, reference.program, folder / "laws")
     attempts.make("plane", on_plane, reference.program, folder / "plane")
