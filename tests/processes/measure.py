@@ -72,13 +72,19 @@ def check_heap(folder: Path) -> None:
 
 
 def check_study_table(folder: Path) -> None:
-    files = [str(folder / "particles.csv")] * 2 + [str(folder / "turned.csv")]
-    done = tool(str(HEAP), "--experiment", "pile", "--held-out", "--only", "height", files[0], files[1])
+    one, taller = str(folder / "particles.csv"), str(folder / "taller.csv")
+    rows = read_particles(folder / "particles.csv") * (1., 1.01, 1., 1.)
+    np.savetxt(taller, rows, delimiter=",", header="x,y,z,d", comments="", fmt="%.17g")
+    done = tool(str(HEAP), "--experiment", "pile", "--held-out", "--only", "height", one, taller)
     assert done.returncode == 0, done.stderr
     head, row = done.stdout.split()
     assert head == "experiment,observable,index,value,std,repeats,use"
-    assert row.startswith("pile,height,0,") and row.endswith(",0,2,held-out"), row
-    done = tool(str(HEAP), "--only", "beauty", files[0])
+    *_, std, repeats, use = row.split(",")
+    assert row.startswith("pile,height,0,") and float(std) > 0. and (repeats, use) == ("2", "held-out"), row
+    # What does not scatter is left out, as a study refuses it.
+    done = tool(str(HEAP), "--experiment", "pile", "--only", "height", one, one)
+    assert done.returncode == 0 and done.stdout.split() == [head], (done.stdout, done.stderr)
+    done = tool(str(HEAP), "--only", "beauty", one)
     assert done.returncode == 1 and "does not measure 'beauty'" in done.stderr, done.stderr
 
 
