@@ -197,7 +197,7 @@ class Campaign(unittest.TestCase):
             found = json.loads(record.read_text())
             self.assertEqual((found["finished"], found["layers"], found["git_revision"]), (False, kept, "9876543210"))
         text = self.page.read_text()
-        self.assertRegex(text, r"`PS1_L0\.25_seed1` \| 12 of 21 \| 60\.1 \| 61\.3 \| .* \| 1\.2 \|\n")
+        self.assertRegex(text, r"`PS1_L0\.25_seed1` \| 12 of 21 \| 60\.1 \| 61\.3 \| .* \| 1\.2 \| .*\|\n")
         # Zones that meet in layer 6.
         self.assertRegex(text, r"`PS1_L0\.25_seed1` \| 10 \| \d+ \| 100\.0 \| ")
         self.assertIn("at revision 9876543", self.page.read_text())
