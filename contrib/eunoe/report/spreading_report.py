@@ -175,7 +175,7 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
                 f"grey: less than {length(RESTS_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
                 "added, as density of its layer.")
     write_for_others(run.folder / "bed.csv", maps)
-    page.paragraph("bed.csv, beside this page's run, has the maps in numbers.")
+    page.paragraph("bed.csv in the run's folder has the maps in numbers.")
 
 
 def add_movie(page: Page, run: Run, layers: Layers, layer: int | None) -> None:
