@@ -113,7 +113,9 @@ public:
         return false;
     if (round.findings.detected ? has_challenger(round) : could_be_detected(round))
       return false;
-    if (!round.findings.detected || round.findings.models.front().probability > sure)
+    // More runs do not tell an effect from one like it that the catalogue lacks.
+    const double of_catalogue = 1. - round.findings.off_catalogue;
+    if (!round.findings.detected || round.findings.models.front().probability > sure * of_catalogue)
       return true;
     double largest = 0.;
     for (const Model &model : round.findings.answer)
@@ -176,14 +178,22 @@ Json describe_nuisances(const FactorSpace &space, const Eigen::VectorXd &values)
   return rows;
 }
 
-Json describe_calibration(const Calibration &c)
+Json describe_calibration(const Findings &findings, const FactorSpace &space)
 {
-  return {{"twins", c.twins},
-          {"temperature", c.temperature},
-          {"mean stated", c.stated},
-          {"right", c.right},
-          {"coverage of plain intervals", c.coverage},
-          {"interval", c.interval}};
+  const Calibration &c = findings.calibration;
+  Json lookalikes = nullptr;
+  if (findings.detected) {
+    Json taken_for = Json::object();
+    for (const auto &[k, share] : findings.lookalikes.taken_for)
+      taken_for[space.effect(k).name] = share;
+    lookalikes = {{"strength", findings.lookalikes.strength},
+                  {"recognised", findings.lookalikes.recognised},
+                  {"taken for", taken_for}};
+  }
+  return {
+      {"lookalikes", lookalikes}, {"twins", c.twins}, {"temperature", c.temperature},
+      {"mean stated", c.stated},  {"right", c.right}, {"coverage of plain intervals", c.coverage},
+      {"interval", c.interval}};
 }
 
 std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points)
@@ -334,7 +344,7 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
   c["decisive"] = of_fit["decisive"];
   c["effects"] = power;
   c.update(describe_fingerprints(evidence));
-  c["calibration"] = describe_calibration(findings.calibration);
+  c["calibration"] = describe_calibration(findings, space);
   c["learning curve"] = curve.rows;
   c["runs"] = {{"known", samples.n_known()},
                {"asked for", samples.n_asked()},

@@ -21,11 +21,15 @@ const std::vector<std::string> both = {"spreading", "heap"};
 /// Runs of a synthetic model, and an evaluation of data of a truth.
 struct Laboratory
 {
-  Laboratory(const Nature &nature, unsigned int seed, const StudyOptions &study = {})
+  /// @param alike effects whose fingerprints are those of others
+  Laboratory(const Nature &nature, unsigned int seed, const StudyOptions &study = {},
+             const std::map<std::string, std::string> &alike = {})
       : simulator(nature), options(study), space(simulator.factors()),
         samples(options, space, simulator, both), design(options, space, samples, both)
   {
     options.seed = seed;
+    for (const auto &[name, other] : alike)
+      simulator.make_alike(name, other, 0., both);
     design.run_base();
     design.run_effects([this] { return target({}, 1); });
   }
@@ -318,6 +322,49 @@ void calibrations(Laboratory &lab)
         seen ? std::to_string(*seen) : "none");
 }
 
+/// Of four effects two are alike: each of them, left out, is taken for the other, and the two that
+/// resemble none are recognised as none of the catalogue. So a name of one of the two may be that
+/// of an effect like them that the catalogue lacks, and a name of the others may hardly be.
+void lookalikes()
+{
+  constexpr std::size_t a = 0, b = 1, c = 2;
+  constexpr double strength = 8.;
+  Nature apart = nature();
+  apart.alike = 0.;
+  Laboratory lab(apart, 1, {}, {{"b", "c"}});
+  double none[2];
+  for (const bool has_relative : {false, true}) {
+    const std::string name = has_relative ? "b" : "a";
+    const Target target = lab.target({{name, lab.simulator.amplitude_of(name, strength, both)}}, 3);
+    const Evidence evidence(target, lab.space);
+    none[has_relative] = weigh(evidence, lab.options, {}).off_catalogue;
+    const Lookalikes found = find_lookalikes(evidence, strength, 400, 1);
+    double sum = found.recognised;
+    for (const auto &[effect, share] : found.taken_for)
+      sum += share;
+    check("each twin is taken for something", std::abs(sum - 1.) < 1e-9);
+    const auto share = [&](const std::size_t k) {
+      const auto of = found.taken_for.find(k);
+      return of == found.taken_for.end() ? 0. : of->second;
+    };
+    constexpr double of_four = 0.25, error = 0.06;
+    for (const std::size_t alike : {b, c})
+      check("an effect is taken for the one like it", std::abs(share(alike) - of_four) < error,
+            std::to_string(share(alike)));
+    check("and not for another one", share(a) < error, std::to_string(share(a)));
+    check("what resembles none is recognised", std::abs(found.recognised - 0.5) < 2. * error,
+          std::to_string(found.recognised));
+  }
+  check("an effect like none has no double off the catalogue", none[false] < 0.02,
+        std::to_string(none[false]));
+  // A tenth of what is missing is not in the catalogue, and half of that looks like the two.
+  const Prior prior;
+  const double expected = prior.none_of_these / (prior.none_of_these + prior.one_effect);
+  check("an effect with a relative may have another one off the catalogue",
+        std::abs(none[true] / expected - 1.) < 0.3,
+        std::to_string(none[true]) + ", " + std::to_string(expected));
+}
+
 /// Width and lower end of the central 90 % of an effect's posterior on a grid of @p n times @p n
 /// amplitudes, each of the two between these factors of the best one.
 std::pair<double, double> on_fine_grid(
@@ -529,6 +576,7 @@ EUNOE_MPI_TEST()
   contests(lab);
   false_trail();
   calibrations(lab);
+  lookalikes();
   intervals(lab);
   sharpened();
   pairs();

@@ -89,6 +89,22 @@ class PageOfAStudy(InFolder):
         words = " ".join(verdict_text(study))
         self.assertIn("would tell whether it is this effect", words)
         self.assertNotIn("bits that are open", words)
+        self.assertNotIn("would look like it", words)
+
+    def test_a_name_that_an_effect_off_the_catalogue_could_have(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
+                                {"effects": "none of the catalogue", "probability": 0.1}]
+        study.content["amplitudes"] = [{"effect": "cohesion", "unit": "J/m2", "amplitude": 1.1e-4,
+                                        "lower": 0.9e-4, "upper": 1.3e-4}]
+        study.content["calibration"] = {"lookalikes": {"strength": 8., "recognised": 0.7,
+                                                     "taken for": {"cohesion": 0.3}}}
+        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        self.assertIn("If it is cohesion (size of it): 0.00011 J/m2 (95 % interval", words)
+        self.assertIn("left out of it in turn, 30 % are taken for this one", words)
+        study.content["calibration"]["lookalikes"]["taken for"]["cohesion"] = 0.001
+        self.assertNotIn("would look like it", " ".join(verdict_text(study)))
 
     def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
         make_study(self.folder / "tie", "tie")

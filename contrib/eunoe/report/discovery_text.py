@@ -12,6 +12,7 @@ TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
 ONE_OR_NONE = "One effect, or something that the catalogue lacks"
 NONE = "none of the catalogue"
 DOUBTFUL, REFUTED = 0.05, 0.01  # as in the program's DecisionRule
+LOOKALIKES = 0.02  # from here on effects that look like another one are worth a word
 BUT_HELD_OUT = "Nothing is missing in the data of the fit, but the held-out data differ"
 
 
@@ -122,7 +123,7 @@ def _tie(study: Study) -> list[str]:
                          f"(p = {_probability(min(fit, held_out))}), so it may be none of them.")
     breakers = study.content.get("measurements that would break the tie", [])
     if is_one_or_none(study):
-        sentences.append("More repeats, and held-out conditions, would tell whether it is this effect.")
+        sentences += _one_or_none(study)
     elif breakers:
         best = breakers[0]
         what = {"all": "everything", "all else": "everything else"}.get(best["observable"], plain(best["observable"]))
@@ -132,6 +133,19 @@ def _tie(study: Study) -> list[str]:
                          f"{number(best['of'], 2)} bits that are open, and sets the nearest two "
                          f"{number(best['separation'], 2)} standard deviations apart.")
     return sentences
+
+
+def _one_or_none(study: Study) -> list[str]:
+    """What is known of the only effect of an answer, and why it may be another one."""
+    row = next(row for row in study.content["tie"] if row["effects"] != NONE)
+    sentences = [f"If it is {plain(amount['effect'])} ({study.effects[amount['effect']]['parameter']}): "
+                 f"{amplitude_text(amount)}." for amount in study.content["amplitudes"]]
+    lookalikes = study.content.get("calibration", {}).get("lookalikes") or {"taken for": {}}
+    share = lookalikes["taken for"].get(row["effects"], 0.)
+    if share > LOOKALIKES:
+        sentences.append("An effect of its kind that the catalogue lacks would look like it: of the catalogue's own "
+                         f"effects of this strength, left out of it in turn, {percent(share, 0)} are taken for this one.")
+    return [*sentences, "More repeats, and held-out conditions, would tell whether it is this effect."]
 
 
 def _off_catalogue(study: Study) -> list[str]:

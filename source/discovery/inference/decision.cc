@@ -54,6 +54,24 @@ void temper(std::vector<Model> &models, const double temperature)
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
 }
 
+/// "None of the catalogue" gets what effects that look like those of the catalogue give it.
+void allow_for_relatives(const Evidence &evidence, const DecisionRule &rule,
+                         const std::uint32_t seed, Findings &findings)
+{
+  std::vector<Model> &models = findings.models;
+  const auto likeliest = std::find_if(models.begin(), models.end(),
+                                      [](const Model &m) { return m.effects.size() == 1; });
+  if (likeliest == models.end())
+    return;
+  const auto &[effect, amplitude] = *likeliest->best.begin();
+  findings.lookalikes =
+      find_lookalikes(evidence, evidence.place_near(effect, amplitude).strength, rule.twins, seed);
+  const double log_evidence = findings.lookalikes.log_evidence(models);
+  for (Model &model : models)
+    if (model.is_discrepancy)
+      model.log_evidence = log_evidence;
+}
+
 } // namespace
 
 Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule)
@@ -67,6 +85,8 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
   findings.threshold = findings.null_distribution.quantile(options.level);
   findings.calibration = calibrate(evidence, findings.threshold, rule.twins, options.seed);
   findings.models = evidence.models(data);
+  if (findings.detected)
+    allow_for_relatives(evidence, rule, options.seed, findings);
   temper(findings.models, findings.calibration.temperature);
   for (const Model &model : findings.models)
     if (model.is_discrepancy)
@@ -105,7 +125,7 @@ void choose(const DecisionRule &rule, Findings &findings)
       break;
     sum += model.probability;
     if (model.is_discrepancy)
-      findings.none_of_these = true;
+      findings.none_of_these = model.probability > 1. - rule.credible;
     else if (!is_needless(model, findings.answer))
       findings.answer.push_back(model);
   }

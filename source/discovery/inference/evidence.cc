@@ -53,19 +53,15 @@ double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data)
          log_likelihood(best, data);
 }
 
-/// Size of an effect's change at each of its places, in standard deviations of a run, without what
-/// the error of the emulator adds; it does not fall as the amplitude grows.
-std::vector<double> Evidence::strengths(const std::vector<Place> &places) const
+void Evidence::set_strengths(std::vector<Place> &side) const
 {
-  std::vector<double> result;
   double largest = prior.just_visible;
-  for (const Place &place : places) {
+  for (Place &place : side) {
     const Target::Prediction &with = place.hypothesis.prediction;
     const double square =
         (with.mean - nothing().prediction.mean).squaredNorm() - with.leverage.sum();
-    result.push_back(largest = std::max(largest, std::sqrt(std::max(0., square))));
+    place.strength = largest = std::max(largest, std::sqrt(std::max(0., square)));
   }
-  return result;
 }
 
 /// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of
@@ -86,20 +82,20 @@ void Evidence::make_grid(const std::size_t k)
     std::vector<Place> side;
     for (int i = 0; i < n_places; ++i) {
       const double u = first * std::pow(limit / first, i / (n_places - 1.));
-      side.push_back({u, 0., 0., prepare(target().predict({{k, u}}))});
+      side.push_back({u, 0., 0., 0., prepare(target().predict({{k, u}}))});
     }
-    const std::vector<double> strength = strengths(side);
+    set_strengths(side);
     const double step = std::log(limit / first) / (n_places - 1.);
-    const double whole = std::log(strength.back() / prior.just_visible) + share_by_amplitude;
+    const double whole = std::log(side.back().strength / prior.just_visible) + share_by_amplitude;
     for (std::size_t i = 0; i < side.size(); ++i) {
-      const double below = i == 0 ? strength[i] : strength[i - 1],
-                   above = i + 1 == side.size() ? strength[i] : strength[i + 1];
+      const double here = side[i].strength, below = i == 0 ? here : side[i - 1].strength,
+                   above = i + 1 == side.size() ? here : side[i + 1].strength;
       const auto mixed = [&](const double by_strength, const double by_amplitude) {
         return std::log((1. - share_by_amplitude) * by_strength +
                         share_by_amplitude * by_amplitude);
       };
       side[i].log_prior = mixed(0.5 * std::log(above / below), whole / n_places);
-      side[i].log_reference = mixed(0.5 * (above - below), step * strength[i]);
+      side[i].log_reference = mixed(0.5 * (above - below), step * here);
     }
     grid[k].insert(grid[k].end(), side.begin(), side.end());
   }

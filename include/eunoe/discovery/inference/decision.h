@@ -2,6 +2,7 @@
 #define eunoe_discovery_inference_decision_h
 
 #include <eunoe/discovery/inference/calibration.h>
+#include <eunoe/discovery/inference/lookalikes.h>
 #include <eunoe/discovery/study.h>
 
 #include <vector>
@@ -36,6 +37,7 @@ struct Findings
   double threshold = 0.; ///< of the log Bayes factor at the study's level
   bool detected = false;
   Calibration calibration;
+  Lookalikes lookalikes;      ///< if something is detected
   std::vector<Model> models;  ///< with calibrated probabilities, the likeliest first
   std::vector<Model> answer;  ///< those that the data do not tell apart, without "none of these"
   bool none_of_these = false; ///< whether that is among them

@@ -46,6 +46,9 @@ public:
     /// Weight for intervals, uniform in strength: Jeffreys' prior, whose intervals cover a fixed
     /// truth as often as stated where the proper prior would pull them to small amplitudes.
     double log_reference;
+    /// Size of the change in standard deviations of a run, without the emulator's error; it does
+    /// not fall as the amplitude grows.
+    double strength;
     Hypothesis hypothesis;
   };
   const std::vector<Place> &places(std::size_t effect) const { return grid[effect]; }
@@ -84,7 +87,7 @@ public:
 
 private:
   void make_grid(std::size_t effect);
-  std::vector<double> strengths(const std::vector<Place> &places) const;
+  void set_strengths(std::vector<Place> &side) const;
   void make_discrepancy();
   /// Evidence and best amplitudes of a pair on a coarse grid.
   /// @param roughly without the levels of the instrument's noise

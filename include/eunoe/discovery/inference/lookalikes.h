@@ -1,0 +1,34 @@
+#ifndef eunoe_discovery_inference_lookalikes_h
+#define eunoe_discovery_inference_lookalikes_h
+
+#include <eunoe/discovery/inference/evidence.h>
+
+#include <map>
+#include <vector>
+
+namespace eunoe::discovery {
+
+/// What the catalogue says of an effect that it lacks. Each of its effects is left out in turn, and
+/// the others weigh its twins: an effect that none of them resembles looks like no other, and a law
+/// of attraction looks like the other laws of attraction. What the catalogue really lacks is taken
+/// to have as many relatives in it as its own effects have.
+struct Lookalikes
+{
+  double strength = 0.;                    ///< of the twins, in standard deviations of a run
+  std::map<std::size_t, double> taken_for; ///< mean probability that goes to each other effect
+  double recognised = 1.;                  ///< and to "none of the catalogue"
+
+  /// Log evidence of "none of the catalogue" with its share of effects that look like others.
+  /// @param models with the evidence of each single effect and of the discrepancy
+  double log_evidence(const std::vector<Model> &models) const;
+};
+
+/// @param strength of the data: who is confused with whom depends on it. Effects that do not reach
+/// it have twins at the end of their range.
+/// @param draws of all effects together
+Lookalikes find_lookalikes(const Evidence &evidence, double strength, unsigned int draws,
+                           std::uint32_t seed);
+
+} // namespace eunoe::discovery
+
+#endif
