@@ -7,14 +7,6 @@ namespace eunoe {
 
 namespace {
 
-std::vector<std::string> names_of(const std::vector<Solid> &solids)
-{
-  std::vector<std::string> names;
-  for (const Solid &solid : solids)
-    names.push_back(solid.name);
-  return names;
-}
-
 /// Whether a wall stands where the mesh has it, at most turning or sliding in place; then its
 /// centre is the origin or on the axis, and says nothing about its place.
 bool is_in_place(const RigidState &wall)

@@ -48,10 +48,7 @@ SavedLayout::SavedLayout(const Json &head, const ParticleFields &fields, const C
       extras.push_back(goes_on ? static_cast<int>(found->second.first + c) : -1);
   }
   const auto names = head.at("solids").at("names").get<std::vector<std::string>>();
-  std::vector<std::string> present;
-  for (const Solid &solid : solids)
-    present.push_back(solid.name);
-  numbers = numbers_now(names, present);
+  numbers = numbers_now(names, names_of(solids));
   for (std::size_t k = 0; k < names.size(); ++k)
     if (numbers[k] < 0)
       gone += (gone.empty() ? "'" : ", '") + names[k] + "'";

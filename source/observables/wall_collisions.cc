@@ -134,8 +134,8 @@ public:
   {
     if (!section.all_walls)
       section.find_walls(simulation.get_domain());
+    names = names_of(simulation.get_solids());
     for (const Solid &solid : simulation.get_solids()) {
-      names.push_back(solid.name);
       boundary.push_back(solid.boundary);
       counts.push_back(section.counts(solid));
     }

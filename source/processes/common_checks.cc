@@ -32,10 +32,6 @@ void refuse_decisions_of_process(const ParameterCheck &check, const std::string 
        {"mesh", "box refinement", "DEM boundary conditions", "insertion info"})
     check.require(!check.has_changes(section), {section}, "",
                   "is set, but the process makes its own.", "Remove the subsection.");
-  const ParameterCheck::Path first_type = {powder[0], "particle type 0"};
-  check.advise(!check.is_changed(first_type, "number of particles"), first_type,
-               "number of particles", "has no effect, as the process counts its particles itself.",
-               "Remove the entry.");
   for (const char *const entry : {"end control", "time end", "iteration end"})
     check.require(!check.is_changed({"simulation control"}, entry), {"simulation control"}, entry,
                   "is set, but the process ends when " + end + ".",

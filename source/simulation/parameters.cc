@@ -79,6 +79,18 @@ void check_file_names(const std::map<std::string, std::shared_ptr<ObservableSect
   }
 }
 
+/// A process counts its particles itself: all types may be there.
+void ignore_numbers(PhysicalProperties &physics, const ParameterCheck &check)
+{
+  for (std::size_t k = 0; k < physics.types.size(); ++k) {
+    const ParameterCheck::Path type = {"lagrangian physical properties",
+                                       "particle type " + std::to_string(k)};
+    check.advise(!check.is_changed(type, "number of particles"), type, "number of particles",
+                 "has no effect, as the process counts its particles itself.", "Remove the entry.");
+    physics.types[k].number = 0;
+  }
+}
+
 } // namespace
 
 Parameters::Parameters(const SectionCounts &counts)
@@ -180,10 +192,8 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
       section->check(check);
   check_file_names(parameters.observables, check);
   parameters.sparse_contacts.check_with(parameters.physics.gravity, check);
-  // A process counts its particles itself: all types may be there.
   if (process != nullptr)
-    for (ParticleType &type : parameters.physics.types)
-      type.number = 0;
+    ignore_numbers(parameters.physics, check);
   // Sizes and materials make sense only now.
   ControlParameters &control = parameters.control;
   if (!control.given_time_step && problems.empty())

@@ -61,6 +61,14 @@ std::vector<int> numbers_now(const std::vector<std::string> &saved,
   return numbers;
 }
 
+std::vector<std::string> names_of(const std::vector<Solid> &solids)
+{
+  std::vector<std::string> names;
+  for (const Solid &solid : solids)
+    names.push_back(solid.name);
+  return names;
+}
+
 std::vector<RigidState> states_of(const std::vector<Solid> &solids)
 {
   std::vector<RigidState> states;

@@ -191,6 +191,12 @@ PROCESSES = [
     ("too wide for the machine", "prm/spreading/PS1_L4.prm",
      ["powder spreading/depth = 1.2", "powder spreading/layer pictures = false"],
      "Memory: the run needs about", 1),
+    ("numbers that nobody asks for", "prm/spreading/quickstart.prm",
+     ["lagrangian physical properties/number of particle types = 2",
+      *(TYPE.replace("0", "1") + entry for entry in (
+          "number of particles = 5", "diameter = 80e-6", "density particles = 4430",
+          "young modulus particles = 26.25e6"))],
+     "subsection 'particle type 1' / entry 'number of particles' has no effect", 1),
     ("pictures of six layers", "prm/spreading/quickstart.prm", ["powder spreading/number of layers = 6"],
      "Disk: 6 pictures of about", 0),
 ]

@@ -21,6 +21,7 @@ std::vector<RigidState> states_in(const nlohmann::ordered_json &json, std::size_
 ///@}
 
 std::vector<RigidState> states_of(const std::vector<Solid> &solids);
+std::vector<std::string> names_of(const std::vector<Solid> &solids);
 
 /// The present numbers of saved solids by their names, -1 for one that is gone. Flat walls of one
 /// boundary share a name; they have kept their order.
