@@ -157,11 +157,9 @@ Json describe_remainder(const Evidence &evidence, const Findings &findings)
                                       {"cosine", largest}});
   }
   constexpr std::size_t most = 3;
-  // The model that p is of; the first of all may be "none of the catalogue".
-  const Model &closest =
-      findings.answer.empty() ? findings.models.front() : findings.answer.front();
-  return {{"closest model", name_of(closest, evidence.space())},
-          {"p of its fit", findings.p_fit},
+  const Model *const closest = closest_model(findings);
+  return {{"closest model", closest ? Json(name_of(*closest, evidence.space())) : Json(nullptr)},
+          {"p of its fit", closest ? Json(findings.p_fit) : Json(nullptr)},
           {"resembles", largest_first(std::move(rows), most)}};
 }
 
@@ -218,13 +216,10 @@ Json describe_fit(const Round &round, const StudyOptions &options)
   const auto [base, base_nuisances] = fitted({});
   Eigen::VectorXd values = base_nuisances;
   std::optional<Fitted> after, second;
-  if (findings.detected) {
-    const Model &first =
-        findings.answer.empty() ? findings.models.front() : findings.answer.front();
-    if (!first.is_discrepancy)
-      std::tie(after.emplace(), values) = fitted(first.best);
+  if (const Model *const first = closest_model(findings); findings.detected && first) {
+    std::tie(after.emplace(), values) = fitted(first->best);
     for (const Model &model : findings.models)
-      if (!second && model.effects.size() == 1 && model.effects != first.effects)
+      if (!second && model.effects.size() == 1 && model.effects != first->effects)
         second = fitted(model.best).first;
   }
   Json content;

@@ -128,6 +128,10 @@ void not_in_the_catalogue()
   check("off catalogue", d.verdict == Verdict::off_catalogue,
         d.content["verdict"].get<std::string>() + ": " + d.content["models"].dump());
   check("what it resembles is told", !d.content["remainder"]["resembles"].empty());
+  const nlohmann::ordered_json &remainder = d.content["remainder"];
+  check("and which model comes closest, and how badly it fits",
+        remainder["closest model"] != "none of the catalogue" && remainder["p of its fit"] < 0.05,
+        remainder.dump());
   check("no model comes of it", d.model_after.empty());
 }
 

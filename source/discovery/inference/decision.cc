@@ -131,16 +131,28 @@ void choose(const DecisionRule &rule, Findings &findings)
   }
 }
 
+const Model *closest_model(const Findings &findings)
+{
+  if (!findings.answer.empty())
+    return &findings.answer.front();
+  const auto found = std::find_if(findings.models.begin(), findings.models.end(),
+                                  [](const Model &model) { return !model.is_discrepancy; });
+  return found == findings.models.end() ? nullptr : &*found;
+}
+
 void judge(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
            Findings &findings)
 {
   findings.verdict =
       findings.models.front().is_discrepancy ? Verdict::off_catalogue : verdict_of(findings);
+  const Model *const closest = closest_model(findings);
+  if (closest == nullptr)
+    return;
+  findings.p_fit =
+      p_of_fit(evidence, *closest, draw_posterior(evidence, *closest, rule.predictive_draws, seed),
+               seed + 2);
   if (findings.answer.empty())
     return;
-  const Model &model = findings.answer.front();
-  findings.p_fit = p_of_fit(evidence, model,
-                            draw_posterior(evidence, model, rule.predictive_draws, seed), seed + 2);
   findings.none_of_these |= findings.p_fit < rule.doubtful;
   // Nothing of the catalogue describes the data if not even the likeliest model does.
   if (findings.p_fit < rule.refuted)

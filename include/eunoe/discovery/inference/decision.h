@@ -41,7 +41,7 @@ struct Findings
   std::vector<Model> models;  ///< with calibrated probabilities, the likeliest first
   std::vector<Model> answer;  ///< those that the data do not tell apart, without "none of these"
   bool none_of_these = false; ///< whether that is among them
-  double p_fit = 1.;          ///< of the likeliest model's fit
+  double p_fit = 1.;          ///< of the closest model's fit
   double off_catalogue = 0.;  ///< probability of "none of these"
   Verdict verdict = Verdict::none;
 };
@@ -56,6 +56,10 @@ void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t se
 /// Whether the model that leads an answer describes the data, and the verdict that follows.
 void judge(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
            Findings &findings);
+
+/// The model of the catalogue that comes closest: the first of the answer, or the likeliest where
+/// there is none; null if no effect was simulated.
+const Model *closest_model(const Findings &findings);
 
 /// Chooses the answer: the likeliest models, as many as have the probability of one together.
 void choose(const DecisionRule &rule, Findings &findings);
