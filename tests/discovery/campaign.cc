@@ -29,7 +29,7 @@ Numbers numbers(const std::vector<RunResult> &results)
   return rows;
 }
 
-void check_runs(const std::string &name, const Simulator &simulator, const std::uint64_t made)
+void check_runs(const std::string &name, const DemSimulator &simulator, const std::uint64_t made)
 {
   check(name, simulator.n_runs() == made,
         std::to_string(simulator.n_runs()) + " runs instead of " + std::to_string(made));
@@ -67,7 +67,7 @@ const std::vector<RunRequest> requests = {{"box", {}, 1},
                                           {"box", {{"growth", 20.}}, 1}};
 
 /// Runs with effects differ from the plain run as they should.
-void check_effects(const Simulator &simulator, const std::vector<RunResult> &results)
+void check_effects(const DemSimulator &simulator, const std::vector<RunResult> &results)
 {
   const auto value = [&simulator](const std::string &observable) {
     const auto &points = simulator.data_points("box");

@@ -48,8 +48,7 @@ public:
     return memory[experiment];
   }
 
-  std::uint64_t n_runs() const override { return made; }
-  std::uint64_t n_cached() const override { return 0; }
+  std::uint64_t n_runs() const { return made; }
 
   const std::vector<Factor> &factors() const { return all_factors; }
   std::vector<Factor> factors_without(const std::string &name) const

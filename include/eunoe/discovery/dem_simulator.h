@@ -46,8 +46,10 @@ public:
   bool concerns(const std::string &experiment,
                 const std::vector<std::string> &effects) const override;
   std::vector<std::pair<RunRequest, RunResult>> known(const std::string &experiment) override;
-  std::uint64_t n_runs() const override { return made; }
-  std::uint64_t n_cached() const override { return cached; }
+
+  /// Number of simulations that were run so far, and of requests that earlier ones answered.
+  std::uint64_t n_runs() const { return made; }
+  std::uint64_t n_cached() const { return cached; }
 
   /// All runs that were asked for, in the order of first asking: experiment, amplitudes, seed, key
   /// in the table, what it cost, and why it failed, if it did.

@@ -55,10 +55,6 @@ public:
   {
     return {};
   }
-
-  /// Number of simulations that were run so far, and of requests that earlier ones answered.
-  virtual std::uint64_t n_runs() const = 0;
-  virtual std::uint64_t n_cached() const = 0;
 };
 
 /// Thrown when the program was asked to stop; what has been done is kept and the next start goes

@@ -67,16 +67,10 @@ DesignPoint Design::point(const std::size_t effect, const double amplitude)
 void Design::run_base()
 {
   const std::uint64_t needed = options.null_runs * experiments.size();
-  std::vector<DesignPoint> points = {{space.origin(), options.null_runs}};
-  constexpr double step = 2.;
-  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
-    for (const double side : {-step, step}) {
-      points.push_back({space.origin(), options.nuisance_runs});
-      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
-    }
   if (samples.n_known() == 0 && samples.remaining() < needed)
     throw UserError("The budget has no room for the " + std::to_string(needed) +
                     " runs of the base model. Increase 'budget of runs'.");
+  std::vector<DesignPoint> points = points_of_base(space, options.null_runs, options.nuisance_runs);
   for (DesignPoint &point : points)
     point.replicates = samples.n_missing(point, experiments);
   samples.run(points, experiments);

@@ -214,16 +214,9 @@ unsigned int most_runs_near(const unsigned int runs)
 }
 
 /// What run_near needs of the base model.
-std::vector<DesignPoint> points_of_base(const unsigned int runs, const FactorSpace &space)
+std::vector<DesignPoint> base_near(const unsigned int runs, const FactorSpace &space)
 {
-  std::vector<DesignPoint> points = {{space.origin(), 2 * runs}};
-  constexpr double step = 2.;
-  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
-    for (const double side : {-step, step}) {
-      points.push_back({space.origin(), std::max(1u, runs / 2)});
-      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
-    }
-  return points;
+  return points_of_base(space, 2 * runs, std::max(1u, runs / 2));
 }
 
 } // namespace
@@ -233,7 +226,7 @@ std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
                            const Samples &samples)
 {
   std::uint64_t result = experiments.size() * models * most_runs_near(runs);
-  for (const DesignPoint &point : points_of_base(runs, space))
+  for (const DesignPoint &point : base_near(runs, space))
     for (const std::string &experiment : experiments)
       result += samples.n_missing(point, {experiment});
   return result;
@@ -244,7 +237,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
               Samples &samples)
 {
   const unsigned int few = std::max(1u, runs / 2);
-  std::vector<DesignPoint> points = points_of_base(runs, space);
+  std::vector<DesignPoint> points = base_near(runs, space);
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
       const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);

@@ -90,6 +90,19 @@ Eigen::MatrixXd runs_of_base(const std::vector<Sample> &samples,
   return rows;
 }
 
+std::vector<DesignPoint> points_of_base(const FactorSpace &space, const unsigned int at_origin,
+                                        const unsigned int on_each_side)
+{
+  constexpr double step = 2.;
+  std::vector<DesignPoint> points = {{space.origin(), at_origin}};
+  for (std::size_t q = 0; q < space.n_nuisances(); ++q)
+    for (const double side : {-step, step}) {
+      points.push_back({space.origin(), on_each_side});
+      points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
+    }
+  return points;
+}
+
 Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulator &simulator,
                  const std::vector<std::string> &experiments)
     : options(options), space(space), source(simulator), next_seed(100000 * options.seed + 1)
@@ -182,30 +195,23 @@ std::uint64_t Samples::remaining() const
   return asked + reserved < options.budget ? options.budget - asked - reserved : 0;
 }
 
-bool Samples::run(const std::vector<DesignPoint> &points,
+void Samples::run(const std::vector<DesignPoint> &points,
                   const std::vector<std::string> &experiments)
 {
   std::vector<RunRequest> requests;
-  bool complete = true;
   for (const DesignPoint &point : points)
     for (unsigned int r = 0; r < point.replicates; ++r) {
       const Amplitudes amplitudes = space.amplitudes(point.position);
       const std::uint32_t seed = next_seed++;
-      for (const std::string &experiment : experiments) {
-        const bool concerned = source.concerns(experiment, effects_of(space, point.position));
-        if (!concerned)
-          continue;
-        if (requests.size() >= remaining())
-          complete = false;
-        else
+      for (const std::string &experiment : experiments)
+        if (requests.size() < remaining() &&
+            source.concerns(experiment, effects_of(space, point.position)))
           requests.push_back({experiment, amplitudes, seed});
-      }
     }
   asked += requests.size();
   const std::vector<RunResult> results = source.run(requests);
   for (std::size_t k = 0; k < requests.size(); ++k)
     add(requests[k], results[k]);
-  return complete;
 }
 
 } // namespace eunoe::discovery

@@ -58,6 +58,10 @@ struct DesignPoint
   unsigned int replicates = 1;
 };
 
+/// The base model, and each nuisance at two prior deviations on either side.
+std::vector<DesignPoint> points_of_base(const FactorSpace &space, unsigned int at_origin,
+                                        unsigned int on_each_side);
+
 /// The simulations that a study knows, those of its table and those it asks for, within its budget.
 /// All have different seeds: chaos parts runs of equal seeds so soon that nothing is gained by
 /// comparing them.
@@ -68,8 +72,7 @@ public:
           const std::vector<std::string> &experiments);
 
   /// Runs design points, as many as the budget has room for.
-  /// @return whether all could be run
-  bool run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
+  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
 
   const std::vector<Sample> &of(const std::string &experiment) const
   {
