@@ -114,8 +114,9 @@ public:
     if (round.findings.detected ? has_challenger(round) : could_be_detected(round))
       return false;
     // More runs do not tell an effect from one like it that the catalogue lacks.
-    const double of_catalogue = 1. - round.findings.off_catalogue;
-    if (!round.findings.detected || round.findings.models.front().probability > sure * of_catalogue)
+    const Model &first = round.findings.models.front();
+    const double of_all = first.is_discrepancy ? 1. : 1. - round.findings.off_catalogue;
+    if (!round.findings.detected || first.probability > sure * of_all)
       return true;
     double largest = 0.;
     for (const Model &model : round.findings.answer)

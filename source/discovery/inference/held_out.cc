@@ -203,8 +203,8 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
     return fit_to(held_out, model.best, nuisances);
   };
   std::optional<Fitted> after;
-  if (!last.tested.models.empty())
-    after = fitted(findings.answer.empty() ? last.tested.models.front() : findings.answer.front());
+  if (leader)
+    after = fitted(last.tested.models[*leader]);
   const Fitted before = fitted({});
   Json table = describe_gap(held_out, before, after);
   table.update(describe_test(last, by_fit, leader));
