@@ -304,6 +304,40 @@ void false_trail()
   check("runs with an effect make no false alarms of it", alarms <= 8, std::to_string(alarms));
 }
 
+/// An effect of which there are no runs, as no experiment of the fit can have it or all fail, is no
+/// model that changes nothing: it is none.
+void without_runs()
+{
+  SyntheticSimulator simulator(nature());
+  StudyOptions options;
+  const FactorSpace space(simulator.factors());
+  Samples samples(options, space, simulator, both);
+  Design design(options, space, samples, both);
+  design.run_base();
+  const auto evaluate = [&] {
+    std::vector<std::string> notes;
+    return Target(sort_by_experiment(simulator.measure(both, {}, {}, 4, 0.3, 3).fit, samples,
+                                     simulator, notes),
+                  samples, space, 0.);
+  };
+  {
+    const Target target = evaluate();
+    const Evidence evidence(target, space);
+    check("without runs no effect is a model", evidence.usable().empty());
+    const std::vector<Model> models = evidence.models(target.data());
+    check("and 'none of the catalogue' is all that is left",
+          models.size() == 1 && models.front().is_discrepancy);
+    check("which can be weighed", std::isfinite(evidence.log_bayes_factors(target.data())(0)));
+  }
+  constexpr std::size_t c = 2;
+  DesignPoint one{space.origin(), 2};
+  one.position(static_cast<Eigen::Index>(c)) = 1.;
+  samples.run({one}, {"heap"});
+  const Target target = evaluate();
+  check("runs in one experiment make it one",
+        Evidence(target, space).usable() == std::vector<std::size_t>{c});
+}
+
 void calibrations(Laboratory &lab)
 {
   const Target target = lab.target({}, 3);
@@ -575,6 +609,7 @@ EUNOE_MPI_TEST()
   unequal_repeats(lab);
   contests(lab);
   false_trail();
+  without_runs();
   calibrations(lab);
   lookalikes();
   intervals(lab);

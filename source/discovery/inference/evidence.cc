@@ -31,7 +31,8 @@ Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &
     : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
 {
   for (std::size_t k = 0; k < space.n_effects(); ++k)
-    make_grid(k);
+    if (target.knows(k))
+      make_grid(k);
   make_discrepancy();
 }
 

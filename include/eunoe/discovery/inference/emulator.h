@@ -38,6 +38,8 @@ public:
     Eigen::VectorXd scatter; ///< variance of each whitened mode of a run
     double common = 1.;      ///< variance of all modes as a whole
   };
+  /// Whether there are runs of an effect.
+  bool knows(std::size_t effect) const { return processes[effect].n_points() > 0; }
   /// Prediction of a set of effects at their positions.
   Prediction predict(const std::map<std::size_t, double> &effects) const;
   /// Variance of each data point of a run over that of the base model, for one of whitened modes.

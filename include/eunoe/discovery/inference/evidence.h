@@ -61,7 +61,7 @@ public:
                                  double deviations = 0.) const;
   /// The same of a pair of effects at its best amplitudes.
   double optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const;
-  /// Effects with places.
+  /// Effects that were simulated, and so have places.
   std::vector<std::size_t> usable() const;
 
   /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.

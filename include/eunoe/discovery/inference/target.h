@@ -6,6 +6,7 @@
 #include <eunoe/discovery/measured_data.h>
 #include <eunoe/discovery/statistics/data_noise.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,13 @@ public:
   double unknown_share(const Prediction &prediction) const
   {
     return prediction.leverage.cwiseQuotient(variance(prediction)).mean();
+  }
+
+  /// Whether there are runs of an effect in any experiment.
+  bool knows(const std::size_t effect) const
+  {
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](const Part &part) { return part.emulator.knows(effect); });
   }
 
   const Eigen::VectorXd &data() const { return all; }

@@ -78,6 +78,7 @@ public:
   void set_base(const BaseInformation &others);
 
   const Kernel &kernel() const { return best; }
+  std::size_t n_points() const { return all.size(); }
 
 private:
   /// The points in units of their noise, along axes on which they are independent whatever the
