@@ -65,7 +65,7 @@ public:
   /// known better.
   static bool has_challenger(const Round &round)
   {
-    constexpr double behind = 3.; // e^-3 = 5 %
+    const double behind = 3. * round.findings.calibration.temperature; // e^-3 = 5 %
     const Eigen::VectorXd &data = round.target.data();
     const auto &answer = round.findings.answer;
     const Model &first = round.findings.models.front();

@@ -372,11 +372,18 @@ void lookalikes()
     const Target target = lab.target({{name, lab.simulator.amplitude_of(name, strength, both)}}, 3);
     const Evidence evidence(target, lab.space);
     none[has_relative] = weigh(evidence, lab.options, {}).off_catalogue;
-    const Lookalikes found = find_lookalikes(evidence, strength, 400, 1);
+    const Lookalikes found = find_lookalikes(evidence, strength, 0., 400, 1);
     double sum = found.recognised;
     for (const auto &[effect, share] : found.taken_for)
       sum += share;
     check("each twin is taken for something", std::abs(sum - 1.) < 1e-9);
+    std::vector<Model> equal = evidence.models(target.data());
+    for (Model &model : equal)
+      model.log_evidence = -7.;
+    check("evidence is tempered and shares are not",
+          std::abs(found.log_evidence(equal, 2.) + 7.) < 1e-9);
+    check("twins in which nothing is detected do not count",
+          find_lookalikes(evidence, strength, 1e9, 400, 1).recognised == 1.);
     const auto share = [&](const std::size_t k) {
       const auto of = found.taken_for.find(k);
       return of == found.taken_for.end() ? 0. : of->second;

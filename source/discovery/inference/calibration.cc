@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace eunoe::discovery {
 
@@ -13,23 +12,14 @@ namespace {
 
 using Pick = boost::random::discrete_distribution<std::size_t>;
 
-/// A twin in which an effect was detected: log posterior of each model, and which is the truth.
-struct Trial
+/// Mean log probability of the truths of twins.
+/// @param log_posterior of each model, a column for each twin
+double log_score(const Eigen::ArrayXXd &log_posterior, const std::vector<std::size_t> &truths)
 {
-  std::vector<double> log_posterior;
-  std::size_t truth = 0;
-};
-
-double log_score(const std::vector<Trial> &trials, const double temperature)
-{
-  double sum = 0.;
-  for (const Trial &trial : trials) {
-    std::vector<double> tempered = trial.log_posterior;
-    for (double &value : tempered)
-      value /= temperature;
-    sum += tempered[trial.truth] - log_sum(tempered);
-  }
-  return sum;
+  double sum = -log_sums(log_posterior).sum();
+  for (std::size_t i = 0; i < truths.size(); ++i)
+    sum += log_posterior(static_cast<Eigen::Index>(truths[i]), static_cast<Eigen::Index>(i));
+  return sum / static_cast<double>(truths.size());
 }
 
 } // namespace
@@ -56,37 +46,40 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     amplitudes.push_back(place.amplitude);
     data.col(i) = twins.draw(place.hypothesis.prediction);
   }
-  const Eigen::ArrayXXd posterior = evidence.log_posterior_of_singles(data);
-  const Eigen::ArrayXd factors = log_sums(posterior) - evidence.log_nothing(data);
-  std::vector<Trial> trials;
+  Evidence::Singles singles = evidence.singles(data);
+  const Eigen::ArrayXXd posterior = singles.log_posterior();
+  const Eigen::ArrayXd all = log_sums(posterior), factors = all - evidence.log_nothing(data);
+  std::vector<Eigen::Index> detected;
+  std::vector<std::size_t> truths_detected;
   std::vector<double> likelier;
-  for (unsigned int i = 0; i < draws; ++i) {
+  for (Eigen::Index i = 0; i < data.cols(); ++i) {
     if (factors(i) < threshold)
       continue;
-    const std::size_t effect = usable[truths[i]];
-    const Eigen::ArrayXd logs = posterior.col(i);
-    Trial trial{{logs.begin(), logs.end()}, truths[i]};
+    const std::size_t truth = truths[static_cast<std::size_t>(i)], effect = usable[truth];
     Model alone;
     alone.effects = {effect};
     alone.best[effect] = evidence.best_amplitude(effect, data.col(i));
     Eigen::Index first = 0;
-    const double highest = logs.maxCoeff(&first);
-    result.stated += std::exp(highest - log_sum(trial.log_posterior));
-    result.right += first == static_cast<Eigen::Index>(truths[i]) ? 1. : 0.;
-    likelier.push_back(
-        AmplitudePosterior(evidence, alone, data.col(i), effect).likelier_than(amplitudes[i]));
-    trials.push_back(std::move(trial));
+    result.stated += std::exp(posterior.col(i).maxCoeff(&first) - all(i));
+    result.right += first == static_cast<Eigen::Index>(truth) ? 1. : 0.;
+    likelier.push_back(AmplitudePosterior(evidence, alone, data.col(i), effect)
+                           .likelier_than(amplitudes[static_cast<std::size_t>(i)]));
+    detected.push_back(i);
+    truths_detected.push_back(truth);
   }
-  result.twins = static_cast<unsigned int>(trials.size());
-  if (trials.empty())
+  result.twins = static_cast<unsigned int>(detected.size());
+  if (detected.empty())
     return result;
-  const auto n = static_cast<double>(trials.size());
+  const auto n = static_cast<double>(detected.size());
   result.stated /= n;
   result.right /= n;
+  singles.log_evidence = Eigen::ArrayXXd(singles.log_evidence(Eigen::all, detected));
   double highest = -1e300;
   // Never below 1: twins know nothing of what is wrong with the model besides.
   for (double temperature = 1.; temperature < 3.; temperature *= 1.05)
-    if (const double score = log_score(trials, temperature); score > highest) {
+    if (const double score = log_score(singles.log_posterior(temperature), truths_detected);
+        score > highest)
+    {
       highest = score;
       result.temperature = temperature;
     }

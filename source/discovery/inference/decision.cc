@@ -64,9 +64,10 @@ void allow_for_relatives(const Evidence &evidence, const DecisionRule &rule,
   if (likeliest == models.end())
     return;
   const auto &[effect, amplitude] = *likeliest->best.begin();
-  findings.lookalikes =
-      find_lookalikes(evidence, evidence.place_near(effect, amplitude).strength, rule.twins, seed);
-  const double log_evidence = findings.lookalikes.log_evidence(models);
+  findings.lookalikes = find_lookalikes(evidence, evidence.place_near(effect, amplitude).strength,
+                                        findings.threshold, rule.twins, seed);
+  const double log_evidence =
+      findings.lookalikes.log_evidence(models, findings.calibration.temperature);
   for (Model &model : models)
     if (model.is_discrepancy)
       model.log_evidence = log_evidence;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe::discovery {
 
@@ -33,7 +34,7 @@ Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     if (target.knows(k))
       make_grid(k);
-  make_discrepancy();
+  discrepancies = make_discrepancies(std::nullopt);
 }
 
 std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
@@ -110,15 +111,16 @@ void Evidence::make_grid(const std::size_t k)
 
 /// "None of these" is a change of any size, half of it along directions like those of the
 /// catalogue's effects, half along any.
-void Evidence::make_discrepancy()
+std::vector<Evidence::Covariance> Evidence::make_discrepancies(
+    const std::optional<std::size_t> without) const
 {
   const Eigen::Index n = target().data().size();
   Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, n);
-  for (const auto &places : grid)
-    for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
-      const Eigen::VectorXd change =
-          places[i].hypothesis.prediction.mean - nothing().prediction.mean;
-      const double noise = places[i].hypothesis.prediction.leverage.sum();
+  for (std::size_t k = 0; k < grid.size(); ++k)
+    for (std::size_t i = n_places / 2; k != without && i < grid[k].size(); i += n_places) {
+      const Target::Prediction &with = grid[k][i].hypothesis.prediction;
+      const Eigen::VectorXd change = with.mean - nothing().prediction.mean;
+      const double noise = with.leverage.sum();
       const double square = change.squaredNorm();
       if (square > noise)
         along += change * change.transpose() / square * (1. - noise / square);
@@ -127,14 +129,16 @@ void Evidence::make_discrepancy()
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
   if (trace > 0.)
     shape = 0.5 * shape + 0.5 * along / trace;
+  std::vector<Covariance> result;
   for (Eigen::Index l = 0; l < nothing().inverse.cols(); ++l) {
     Eigen::MatrixXd noise =
         nothing().prediction.gradient * nothing().prediction.gradient.transpose();
     noise.diagonal() += nothing().inverse.col(l).cwiseInverse();
     for (double strength = prior.weakest_discrepancy; strength <= prior.strongest_discrepancy;
          strength *= 2.)
-      discrepancies.emplace_back(noise + strength * strength * shape);
+      result.emplace_back(noise + strength * strength * shape);
   }
+  return result;
 }
 
 Eigen::ArrayXXd Evidence::log_of_places(const std::size_t effect,
@@ -166,14 +170,16 @@ double Evidence::likeliest(const std::size_t effect, const Eigen::ArrayXXd &of_p
   return grid[effect][static_cast<std::size_t>(best)].amplitude;
 }
 
-Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
+Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data,
+                                         const std::optional<std::size_t> without) const
 {
+  const std::vector<Covariance> covariances = without ? make_discrepancies(without) : discrepancies;
   const Eigen::MatrixXd deviations = data.colwise() - nothing().prediction.mean;
-  const auto number = static_cast<Eigen::Index>(discrepancies.size());
+  const auto number = static_cast<Eigen::Index>(covariances.size());
   Eigen::ArrayXXd distances(number, data.cols());
   Eigen::ArrayXd constants(number);
   for (Eigen::Index i = 0; i < number; ++i) {
-    const Eigen::LLT<Eigen::MatrixXd> &llt = discrepancies[static_cast<std::size_t>(i)];
+    const Covariance &llt = covariances[static_cast<std::size_t>(i)];
     constants(i) = -half_log_determinant(llt);
     distances.row(i) = llt.matrixL().solve(deviations).colwise().squaredNorm();
   }
@@ -189,24 +195,28 @@ std::vector<std::size_t> Evidence::usable() const
   return result;
 }
 
-Eigen::ArrayXXd Evidence::log_posterior_of_singles(
-    const Eigen::Ref<const Eigen::MatrixXd> &data) const
+Evidence::Singles Evidence::singles(const Eigen::Ref<const Eigen::MatrixXd> &data,
+                                    const std::optional<std::size_t> without) const
 {
   const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<Eigen::Index>(effects.size());
-  Eigen::ArrayXXd result(n + 1, data.cols());
+  const double total = prior.one_effect + prior.none_of_these;
+  const double of_each = prior.one_effect / static_cast<double>(without ? n - 1 : n) / total;
+  Singles result{Eigen::ArrayXd::Constant(n + 1, std::log(of_each)),
+                 Eigen::ArrayXXd::Zero(n + 1, data.cols())};
   for (Eigen::Index i = 0; i < n; ++i)
-    result.row(i) = (std::log(prior.one_effect / static_cast<double>(n)) +
-                     log_single(effects[static_cast<std::size_t>(i)], data))
-                        .transpose();
-  result.row(n) = (std::log(prior.none_of_these) + log_discrepancy(data)).transpose();
+    if (const std::size_t k = effects[static_cast<std::size_t>(i)]; k == without)
+      result.log_prior(i) = -std::numeric_limits<double>::infinity();
+    else
+      result.log_evidence.row(i) = log_single(k, data).transpose();
+  result.log_prior(n) = std::log(prior.none_of_these / total);
+  result.log_evidence.row(n) = log_discrepancy(data, without).transpose();
   return result;
 }
 
 Eigen::ArrayXd Evidence::log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  return log_sums(log_posterior_of_singles(data)) - log_nothing(data) -
-         std::log(prior.one_effect + prior.none_of_these);
+  return log_sums(singles(data).log_posterior()) - log_nothing(data);
 }
 
 void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool roughly) const

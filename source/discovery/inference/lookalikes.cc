@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace eunoe::discovery {
 
 namespace {
 
-/// On each side of an effect's null value the place whose change is nearest to a strength.
+/// On each side of an effect's null value the place whose change is nearest to a strength, the last
+/// of several.
 std::vector<const Evidence::Place *> places_of(const std::vector<Evidence::Place> &places,
                                                const double strength)
 {
@@ -19,7 +19,7 @@ std::vector<const Evidence::Place *> places_of(const std::vector<Evidence::Place
     for (const Evidence::Place &place : places)
       if ((place.amplitude > 0.) == above &&
           (!nearest ||
-           std::abs(place.strength - strength) < std::abs(nearest->strength - strength)))
+           std::abs(place.strength - strength) <= std::abs(nearest->strength - strength)))
         nearest = &place;
     if (nearest)
       result.push_back(nearest);
@@ -29,19 +29,19 @@ std::vector<const Evidence::Place *> places_of(const std::vector<Evidence::Place
 
 } // namespace
 
-double Lookalikes::log_evidence(const std::vector<Model> &models) const
+double Lookalikes::log_evidence(const std::vector<Model> &models, const double temperature) const
 {
   std::vector<double> logs;
   for (const Model &model : models)
     if (model.is_discrepancy)
-      logs.push_back(std::log(recognised) + model.log_evidence);
+      logs.push_back(std::log(recognised) + model.log_evidence / temperature);
     else if (model.effects.size() == 1)
       if (const auto share = taken_for.find(model.effects.front()); share != taken_for.end())
-        logs.push_back(std::log(share->second) + model.log_evidence);
-  return log_sum(logs);
+        logs.push_back(std::log(share->second) + model.log_evidence / temperature);
+  return temperature * log_sum(logs);
 }
 
-Lookalikes find_lookalikes(const Evidence &evidence, const double strength,
+Lookalikes find_lookalikes(const Evidence &evidence, const double strength, const double threshold,
                            const unsigned int draws, const std::uint32_t seed)
 {
   Lookalikes result;
@@ -52,20 +52,24 @@ Lookalikes find_lookalikes(const Evidence &evidence, const double strength,
   const auto n = static_cast<Eigen::Index>(effects.size());
   Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(n + 1);
   Twins twins(evidence, seed + 3);
-  for (Eigen::Index left_out = 0; left_out < n; ++left_out) {
-    const auto places =
-        places_of(evidence.places(effects[static_cast<std::size_t>(left_out)]), strength);
+  for (const std::size_t left_out : effects) {
+    const auto places = places_of(evidence.places(left_out), strength);
     const auto of_each = std::max<std::size_t>(1, draws / (effects.size() * places.size()));
     for (const Evidence::Place *place : places) {
-      Eigen::ArrayXXd logs = evidence.log_posterior_of_singles(
-          twins.draw(place->hypothesis.prediction, static_cast<unsigned int>(of_each)));
-      logs.row(left_out) = -std::numeric_limits<double>::infinity();
+      const Eigen::MatrixXd data =
+          twins.draw(place->hypothesis.prediction, static_cast<unsigned int>(of_each));
+      const Eigen::ArrayXXd logs = evidence.singles(data, left_out).log_posterior();
       const Eigen::ArrayXd sums = log_sums(logs);
-      shares += (logs.rowwise() - sums.transpose()).exp().rowwise().mean() /
+      const Eigen::ArrayXd detected =
+          (sums - evidence.log_nothing(data) >= threshold).cast<double>();
+      const Eigen::ArrayXXd probabilities = (logs.rowwise() - sums.transpose()).exp();
+      shares += (probabilities.rowwise() * detected.transpose()).rowwise().mean() /
                 static_cast<double>(places.size());
     }
   }
-  shares /= static_cast<double>(n);
+  if (shares.sum() <= 0.)
+    return result;
+  shares /= shares.sum();
   for (Eigen::Index k = 0; k < n; ++k)
     if (shares(k) > 0.)
       result.taken_for[effects[static_cast<std::size_t>(k)]] = shares(k);

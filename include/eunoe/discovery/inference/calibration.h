@@ -13,7 +13,7 @@ namespace eunoe::discovery {
 struct Calibration
 {
   unsigned int twins = 0;         ///< in which something was detected
-  double temperature = 1.;        ///< probabilities are raised to its inverse
+  double temperature = 1.;        ///< evidence is raised to its inverse
   double stated = 0., right = 0.; ///< mean probability of the first name; how often it was right
   double interval = 0.95;         ///< probability that an interval must hold for 95 % coverage
   double coverage = 0.;           ///< of intervals that hold 95 %

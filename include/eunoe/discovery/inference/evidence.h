@@ -4,6 +4,7 @@
 #include <eunoe/discovery/inference/likelihood.h>
 
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace eunoe::discovery {
@@ -71,15 +72,32 @@ public:
   }
   Eigen::ArrayXd log_single(std::size_t effect,
                             const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// @param without an effect that the catalogue is to lack: the shape of what is not catalogued
+  /// then knows nothing of it
+  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data,
+                                 std::optional<std::size_t> without = std::nullopt) const;
   /// The likeliest amplitude of an effect.
   double best_amplitude(std::size_t effect, const Eigen::VectorXd &data) const;
 
   /// Log Bayes factors of "an effect is missing, or something else" against nothing.
   Eigen::ArrayXd log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
-  /// Log of prior and evidence: a row for each effect that can be seen, and last the discrepancy.
-  Eigen::ArrayXXd log_posterior_of_singles(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  /// Models that lack one thing, for data in columns: a row for each usable effect, and last the
+  /// discrepancy.
+  struct Singles
+  {
+    Eigen::ArrayXd log_prior; ///< of the models, which share all probability
+    Eigen::ArrayXXd log_evidence;
+
+    /// Log of prior and evidence.
+    Eigen::ArrayXXd log_posterior(const double temperature = 1.) const
+    {
+      return (log_evidence / temperature).colwise() + log_prior;
+    }
+  };
+  /// @param without a usable effect that the catalogue is to lack: its row has no probability
+  Singles singles(const Eigen::Ref<const Eigen::MatrixXd> &data,
+                  std::optional<std::size_t> without = std::nullopt) const;
 
   /// Models of one and two effects and the discrepancy with posterior probabilities, the likeliest
   /// first.
@@ -88,7 +106,9 @@ public:
 private:
   void make_grid(std::size_t effect);
   void set_strengths(std::vector<Place> &side) const;
-  void make_discrepancy();
+  using Covariance = Eigen::LLT<Eigen::MatrixXd>;
+  /// Of data by a change that is not catalogued, for each size of it and level of noise.
+  std::vector<Covariance> make_discrepancies(std::optional<std::size_t> without) const;
   /// Evidence and best amplitudes of a pair on a coarse grid.
   /// @param roughly without the levels of the instrument's noise
   void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
@@ -106,7 +126,7 @@ private:
   const FactorSpace &factors;
   const Prior prior;
   std::vector<std::vector<Place>> grid;
-  std::vector<Eigen::LLT<Eigen::MatrixXd>> discrepancies;
+  std::vector<Covariance> discrepancies;
 };
 
 } // namespace eunoe::discovery
