@@ -212,7 +212,7 @@ Json describe_fit(const Round &round, const StudyOptions &options)
   const auto fitted = [&](const std::map<std::size_t, double> &effects) {
     const Eigen::VectorXd best =
         best_nuisances(evidence, evidence.prepare(round.target.predict(effects)));
-    return std::pair(fit_to(evidence, effects, best), best);
+    return std::pair(fit_to(round.target, effects, best), best);
   };
   const auto [base, base_nuisances] = fitted({});
   Eigen::VectorXd values = base_nuisances;
@@ -225,10 +225,10 @@ Json describe_fit(const Round &round, const StudyOptions &options)
   }
   Json content;
   content["nuisances"] = describe_nuisances(evidence.space(), values);
-  content["gap"] = describe_gap(evidence, base, after);
-  content["envelopes"] = describe_envelopes(evidence, base, after, options.level);
-  content["decisive"] = after && second ? decisive_points(evidence, *after, *second)
-                        : after         ? decisive_points(evidence, *after, base)
+  content["gap"] = describe_gap(round.target, base, after);
+  content["envelopes"] = describe_envelopes(round.target, base, after, options.level);
+  content["decisive"] = after && second ? decisive_points(round.target, *after, *second)
+                        : after         ? decisive_points(round.target, *after, base)
                                         : Json::array();
   return content;
 }

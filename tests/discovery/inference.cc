@@ -67,7 +67,7 @@ void tolerances(Laboratory &lab)
     const Target target = lab.target({}, 3, with ? 0.1 : 0.);
     const Evidence evidence(target, lab.space);
     const Target::Prediction &nothing = evidence.nothing().prediction;
-    Twins twins(evidence, 1);
+    Twins twins(target, 1);
     const double of_twins =
         (twins.draw(nothing, draws).colwise() - nothing.mean).squaredNorm() / draws;
     with_out[with] = target.variance(nothing).sum() + nothing.gradient.squaredNorm();
@@ -123,8 +123,8 @@ void levels(Laboratory &lab)
   const Evidence evidence(target, lab.space);
   const Tail null = null_distribution(evidence, 400, 1);
   Model nothing;
-  const Predictive predictive(evidence, draw_posterior(evidence, nothing, 400, 1), 2);
-  Twins twins(evidence, 3);
+  const Predictive predictive(target, draw_posterior(evidence, nothing, 400, 1), 2);
+  Twins twins(target, 3);
   const PosteriorDraws draws = draw_posterior(evidence, nothing, number, 4);
   for (int k = 0; k < number; ++k) {
     alarms +=
@@ -176,7 +176,7 @@ void distances_of_twins(Laboratory &lab)
   truth.gradient.resize(truth.mean.size(), 0);
   truth.leverage.setZero();
   const auto distance = [&](const Twins::Scatter scatter) {
-    const Eigen::MatrixXd drawn = Twins(evidence, 4, scatter).draw(truth, number);
+    const Eigen::MatrixXd drawn = Twins(target, 4, scatter).draw(truth, number);
     return (drawn.colwise() - truth.mean).colwise().squaredNorm().mean();
   };
   const double weighed = distance(Twins::Scatter::as_weighed),
@@ -243,7 +243,7 @@ void contests(Laboratory &lab)
     });
   };
   const auto predict = [&](const bool is_right, const std::uint32_t seed) {
-    return Predictive(evidence, draw_posterior(evidence, likeliest(is_right), 400, seed), seed);
+    return Predictive(target, draw_posterior(evidence, likeliest(is_right), 400, seed), seed);
   };
   const Predictive fresh = predict(true, 7), right = predict(true, 2), wrong = predict(false, 2);
   const Contest contest({right, wrong});

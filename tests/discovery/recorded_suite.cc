@@ -258,7 +258,7 @@ void observe_tail(const RecordedTable &table, const StudyOptions &options, const
   std::vector<Tail> tails;
   for (unsigned int k = 0; k < n_tails; ++k) {
     const Eigen::ArrayXd factors = evidence.log_bayes_factors(
-        Twins(evidence, 1000 + k).draw(evidence.nothing().prediction, n_draws));
+        Twins(target, 1000 + k).draw(evidence.nothing().prediction, n_draws));
     all.insert(all.end(), factors.begin(), factors.end());
     tails.emplace_back(std::vector<double>(factors.begin(), factors.end()));
   }

@@ -27,7 +27,7 @@ double log_score(const Eigen::ArrayXXd &log_posterior, const std::vector<std::si
 Calibration calibrate(const Evidence &evidence, const double threshold, const unsigned int draws,
                       const std::uint32_t seed)
 {
-  Twins twins(evidence, seed + 1);
+  Twins twins(evidence.target(), seed + 1);
   RandomStream random(seed, 29);
   const std::vector<std::size_t> usable = evidence.usable();
   Calibration result;
@@ -102,7 +102,7 @@ std::optional<double> detectable(const Evidence &evidence, const std::size_t eff
     if ((place.amplitude > 0.) == above)
       side.push_back(&place);
   const auto is_seen = [&](const Evidence::Place &place) {
-    Twins twins(evidence, seed);
+    Twins twins(evidence.target(), seed);
     const Eigen::ArrayXd factors =
         evidence.log_bayes_factors(twins.draw(place.hypothesis.prediction, draws));
     return static_cast<double>((factors >= threshold).count()) >= power * draws;

@@ -220,18 +220,17 @@ Json describe_fingerprints(const Evidence &evidence)
           {"similarity", {{"effects", names}, {"cosines", cosines}}}};
 }
 
-Fitted fit_to(const Evidence &evidence, const std::map<std::size_t, double> &effects,
+Fitted fit_to(const Target &target, const std::map<std::size_t, double> &effects,
               const Eigen::VectorXd &nuisances)
 {
-  const Target::Prediction prediction = evidence.target().predict(effects);
+  const Target::Prediction prediction = target.predict(effects);
   return {prediction.mean + prediction.gradient * nuisances, prediction};
 }
 
-Json describe_envelopes(const Evidence &evidence, const Fitted &before,
+Json describe_envelopes(const Target &target, const Fitted &before,
                         const std::optional<Fitted> &after, const double level)
 {
   Json rows = Json::array();
-  const Target &target = evidence.target();
   std::size_t n_points = 0;
   for (const Target::Part &part : target.experiments())
     n_points += part.measured.points.size();
@@ -266,10 +265,9 @@ Json describe_envelopes(const Evidence &evidence, const Fitted &before,
   return rows;
 }
 
-double gap(const Evidence &evidence, const Fitted &model)
+double gap(const Target &target, const Fitted &model)
 {
   double square = 0., number = 0.;
-  const Target &target = evidence.target();
   for (const Target::Part &part : target.experiments()) {
     const Eigen::VectorXd deviation = (part.measured.value - values_of(part, model.mean))
                                           .cwiseQuotient(part.emulator.base_deviation());
@@ -279,15 +277,14 @@ double gap(const Evidence &evidence, const Fitted &model)
   return std::copysign(std::sqrt(std::abs(square) / number), square);
 }
 
-Json describe_gap(const Evidence &evidence, const Fitted &before,
-                  const std::optional<Fitted> &after)
+Json describe_gap(const Target &target, const Fitted &before, const std::optional<Fitted> &after)
 {
   std::size_t cells = 0;
-  for (const Target::Part &part : evidence.target().experiments())
+  for (const Target::Part &part : target.experiments())
     cells += part.measured.points.size();
-  Json table = {{"cells", cells}, {"gap before", gap(evidence, before)}};
+  Json table = {{"cells", cells}, {"gap before", gap(target, before)}};
   if (after) {
-    const double left = gap(evidence, *after);
+    const double left = gap(target, *after);
     table["gap after"] = left;
     const double first = table["gap before"];
     table["shrink"] = first > 0. ? Json(1. - left / first) : Json(nullptr);
@@ -295,11 +292,10 @@ Json describe_gap(const Evidence &evidence, const Fitted &before,
   return table;
 }
 
-Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted &second)
+Json decisive_points(const Target &target, const Fitted &first, const Fitted &second)
 {
   constexpr std::size_t most = 12;
   std::vector<std::pair<double, Json>> rows;
-  const Target &target = evidence.target();
   for (const Target::Part &part : target.experiments()) {
     const Eigen::VectorXd unit = part.emulator.base_deviation();
     const Eigen::VectorXd variance = point_variance(part, first.prediction);

@@ -52,27 +52,22 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &mo
   const auto measured = sort_by_experiment(data.held_out, samples, samples.simulator(), notes);
   if (measured.empty())
     return {};
-  Test test;
-  test.comparison = std::make_unique<Comparison>(
-      Target(measured, samples, space, options.model_tolerance), space,
-      [&](const Evidence &held_out) {
-        std::vector<Predictive> all;
-        const auto add = [&](const Model &model) {
-          all.emplace_back(held_out,
-                           draw_posterior(fit, model, rule.predictive_draws, options.seed),
-                           options.seed + 3);
-        };
-        add({});
-        for (const Model &model : models)
-          add(model);
-        return Contest(std::move(all));
-      });
-  const auto p = [&](const std::size_t place) {
-    return test.comparison->contest.p(place, test.comparison->target.data());
+  Target target(measured, samples, space, options.model_tolerance);
+  std::vector<Predictive> all;
+  const auto add = [&](const Model &model) {
+    all.emplace_back(target, draw_posterior(fit, model, rule.predictive_draws, options.seed),
+                     options.seed + 3);
   };
+  add({});
+  for (const Model &model : models)
+    add(model);
+  Contest contest(std::move(all));
+  const auto p = [&](const std::size_t place) { return contest.p(place, target.data()); };
+  Test test;
   test.tested = {models, {}, p(base)};
   for (std::size_t m = 0; m < models.size(); ++m)
     test.tested.p.push_back(p(first + m));
+  test.comparison = Comparison{std::move(target), std::move(contest)};
   return test;
 }
 
@@ -196,7 +191,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   const std::optional<std::size_t> leader =
       refute(last.tested, Untested::fall, rule, judge_anew, findings);
 
-  const Evidence &held_out = last.comparison->evidence;
+  const Target &held_out = last.comparison->target;
   const auto fitted = [&](const Model &model) {
     const Eigen::VectorXd nuisances =
         best_nuisances(evidence, evidence.prepare(evidence.target().predict(model.best)));

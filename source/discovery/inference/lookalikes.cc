@@ -51,7 +51,7 @@ Lookalikes find_lookalikes(const Evidence &evidence, const double strength, cons
     return result;
   const auto n = static_cast<Eigen::Index>(effects.size());
   Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(n + 1);
-  Twins twins(evidence, seed + 3);
+  Twins twins(evidence.target(), seed + 3);
   for (const std::size_t left_out : effects) {
     const auto places = places_of(evidence.places(left_out), strength);
     const auto of_each = std::max<std::size_t>(1, draws / (effects.size() * places.size()));

@@ -128,7 +128,7 @@ std::vector<Model> normalised(std::vector<Model> models)
 /// Ranks the observables of experiments, and whole experiments, by the information that measuring
 /// them is expected to give about which model is true: the mean fall of the entropy of the models'
 /// probabilities over twins of each model (bit). The best come first.
-Json rank_measurements(const Evidence &evidence, const std::vector<Model> &models,
+Json rank_measurements(const Likelihood &likelihood, const std::vector<Model> &models,
                        const std::vector<Expectation> &expectations)
 {
   const std::vector<Model> candidates = normalised(models);
@@ -136,8 +136,9 @@ Json rank_measurements(const Evidence &evidence, const std::vector<Model> &model
   for (const Model &model : candidates)
     entropy -= model.probability * std::log2(model.probability);
   std::vector<std::pair<double, Json>> rows;
-  for (const Measurable &what : measurables(evidence.target())) {
-    const double bits = information(what, candidates, expectations, evidence.degrees_of_freedom());
+  for (const Measurable &what : measurables(likelihood.target())) {
+    const double bits =
+        information(what, candidates, expectations, likelihood.degrees_of_freedom());
     double least = 1e300;
     for (std::size_t m = 1; m < expectations.size(); ++m)
       least = std::min(least, separation(what, expectations[0].twins, expectations[m].twins));
@@ -265,16 +266,16 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
     return Json::array();
   if (models.size() > most_models)
     models.resize(most_models);
-  const auto rank = [&](const Evidence &where, const unsigned int seed) {
+  const auto rank = [&](const Target &where, const unsigned int seed) {
     std::vector<Expectation> expectations;
     for (const Model &model : models)
       expectations.push_back(
           {{where, draw_posterior(evidence, model, draws, options.seed), seed},
            {where, draw_posterior(evidence, model, draws, options.seed + 1), seed},
            {}});
-    return rank_measurements(where, models, expectations);
+    return rank_measurements(Likelihood(where), models, expectations);
   };
-  Json rows = rank(evidence, options.seed + 5);
+  Json rows = rank(evidence.target(), options.seed + 5);
   for (Json &row : rows)
     row["again"] = true;
   if (!options.further_experiments.empty())
@@ -290,8 +291,8 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   try {
     const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
     if (!measured.empty()) {
-      const Target target(measured, samples, space, options.model_tolerance);
-      for (Json row : rank(Evidence(target, space), options.seed + 6)) {
+      for (Json row :
+           rank(Target(measured, samples, space, options.model_tolerance), options.seed + 6)) {
         row["again"] = false;
         if (row["observable"] == "all" &&
             std::find(made.begin(), made.end(), row["experiment"]) != made.end())
@@ -327,8 +328,8 @@ nlohmann::ordered_json plan(const StudyOptions &options,
     if (evidence.places(k).empty())
       continue;
     const PriorAmplitudes prior(evidence, k);
-    expectations.push_back({{evidence, prior.draw(draws, random), options.seed + 7},
-                            {evidence, prior.all(), options.seed + 8},
+    expectations.push_back({{target, prior.draw(draws, random), options.seed + 7},
+                            {target, prior.all(), options.seed + 8},
                             prior.log_weights()});
     Model model;
     model.effects = {k};

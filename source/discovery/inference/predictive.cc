@@ -22,7 +22,7 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
       highest = highest.max(evidence.log_likelihoods(one, values));
     return Eigen::ArrayXd(-highest);
   };
-  Twins source(evidence, seed, Twins::Scatter::as_a_distance);
+  Twins source(evidence.target(), seed, Twins::Scatter::as_a_distance);
   Eigen::MatrixXd drawn(data.size(), static_cast<Eigen::Index>(posterior.effects.size()));
   for (std::size_t i = 0; i < posterior.effects.size(); ++i) {
     Target::Prediction truth = evidence.target().predict(posterior.effects[i]);
@@ -80,11 +80,10 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
   return result;
 }
 
-Predictive::Predictive(const Evidence &evidence, const PosteriorDraws &posterior,
+Predictive::Predictive(const Target &target, const PosteriorDraws &posterior,
                        const std::uint32_t seed)
 {
-  Twins source(evidence, seed), by_distance(evidence, seed, Twins::Scatter::as_a_distance);
-  const Target &target = evidence.target();
+  Twins source(target, seed), by_distance(target, seed, Twins::Scatter::as_a_distance);
   const Eigen::Index n = target.data().size();
   const auto draws = static_cast<Eigen::Index>(posterior.effects.size());
   Eigen::MatrixXd means(n, draws), likely(n, draws); // a column for each draw

@@ -27,7 +27,7 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
   for (Eigen::Index q = 0; q < truth.gradient.cols(); ++q)
     result += random.normal() * truth.gradient.col(q);
   const double quantile = random.uniform();
-  const auto &parts = evidence.target().experiments();
+  const auto &parts = target.experiments();
   for (std::size_t e = 0; e < parts.size(); ++e) {
     const Target::Part &part = parts[e];
     const Eigen::MatrixXd &rows = part.emulator.deviations();
@@ -95,7 +95,7 @@ double Tail::quantile(const double p) const
 
 Tail null_distribution(const Evidence &evidence, const unsigned int draws, const std::uint32_t seed)
 {
-  Twins twins(evidence, seed);
+  Twins twins(evidence.target(), seed);
   const Eigen::ArrayXd values =
       evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction, draws));
   return Tail({values.begin(), values.end()});

@@ -41,23 +41,22 @@ struct Fitted
   Eigen::VectorXd mean; ///< in the target's coordinates
   Target::Prediction prediction;
 };
-Fitted fit_to(const Evidence &evidence, const std::map<std::size_t, double> &effects,
+Fitted fit_to(const Target &target, const std::map<std::size_t, double> &effects,
               const Eigen::VectorXd &nuisances);
 
 /// Measured values beside those of the models, a row for each data point.
-Json describe_envelopes(const Evidence &evidence, const Fitted &before,
+Json describe_envelopes(const Target &target, const Fitted &before,
                         const std::optional<Fitted> &after, double level);
 
 /// Root mean square deviation between data and model over the data points, in standard deviations
 /// of a run, less what noise explains; negative if noise explains more than there is.
-double gap(const Evidence &evidence, const Fitted &model);
+double gap(const Target &target, const Fitted &model);
 
 /// The gap before and after.
-Json describe_gap(const Evidence &evidence, const Fitted &before,
-                  const std::optional<Fitted> &after);
+Json describe_gap(const Target &target, const Fitted &before, const std::optional<Fitted> &after);
 
 /// Data points by how much they speak for one model against another, the most first.
-Json decisive_points(const Evidence &evidence, const Fitted &first, const Fitted &second);
+Json decisive_points(const Target &target, const Fitted &first, const Fitted &second);
 
 } // namespace eunoe::discovery
 

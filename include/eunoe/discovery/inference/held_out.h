@@ -5,8 +5,7 @@
 #include <eunoe/discovery/inference/predictive.h>
 #include <eunoe/discovery/inference/refutation.h>
 
-#include <functional>
-#include <memory>
+#include <optional>
 
 namespace eunoe::discovery {
 
@@ -32,20 +31,13 @@ private:
   /// The held-out data beside the predictions of the base model and, after it, of others.
   struct Comparison
   {
-    Comparison(Target of_data, const FactorSpace &space,
-               const std::function<Contest(const Evidence &)> &predict)
-        : target(std::move(of_data)), evidence(target, space), contest(predict(evidence))
-    {
-    }
-
-    const Target target;
-    const Evidence evidence;
-    const Contest contest;
+    Target target;
+    Contest contest;
   };
   /// What a comparison says of the models; without one, the data do not vary.
   struct Test
   {
-    std::unique_ptr<Comparison> comparison;
+    std::optional<Comparison> comparison;
     TestedModels tested;
   };
   /// Models of the answer, and others that held-out data might speak for.

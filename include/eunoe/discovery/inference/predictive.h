@@ -35,11 +35,11 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
 
 /// How well a model predicts measured data: the probability of data that are as unlikely as these
 /// if the model is true, by twins of the prediction. There is no least value.
-/// @param evidence of the data that are predicted, with emulators of their experiments
+/// @param target the data that are predicted, with emulators of their experiments
 class Predictive
 {
 public:
-  Predictive(const Evidence &evidence, const PosteriorDraws &posterior, std::uint32_t seed);
+  Predictive(const Target &target, const PosteriorDraws &posterior, std::uint32_t seed);
 
   double p(const Eigen::VectorXd &data) const { return p(log_density(data)(0)); }
   double p(double log_density) const { return tail.p(-log_density); }

@@ -22,8 +22,8 @@ public:
     as_a_distance, ///< for the distance of data from one model
   };
 
-  Twins(const Evidence &evidence, std::uint32_t seed, Scatter scatter = Scatter::as_weighed)
-      : evidence(evidence), random(seed, 17), kind(scatter)
+  Twins(const Target &target, std::uint32_t seed, Scatter scatter = Scatter::as_weighed)
+      : target(target), random(seed, 17), kind(scatter)
   {
   }
 
@@ -35,7 +35,7 @@ public:
 private:
   Eigen::VectorXd instrument(const Target::Part &part, double scatter, double quantile);
 
-  const Evidence &evidence;
+  const Target &target;
   RandomStream random;
   const Scatter kind;
 };
