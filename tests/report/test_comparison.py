@@ -55,6 +55,17 @@ class Maps(unittest.TestCase):
         np.testing.assert_allclose(found[:, :5], sample_bed.FRACTION)
         self.assertEqual(found[:, 5:].max(), 0.)
 
+    def test_a_bed_in_a_deep_first_layer_is_counted_to_its_top(self) -> None:
+        height = APPARATUS.layer_thickness
+        for changes in ({"first_thickness": 9. * height}, {"clearance": 12. * height}, {"plate_stroke": 2. * height}):
+            deep = replace(APPARATUS, **changes)
+            bed = sample_bed.bed(8)
+            top = deep.clearance - 0.5 * bed["diameter"][0]  # below the spreader
+            bed["points"] = np.full_like(bed["points"], 0.) + (0.5 * (deep.x_plate + deep.x_plate_end), top, 0.)
+            found = maps_of([(8, bed)], deep)
+            cell = np.outer(np.diff(found.x), np.diff(found.y)) * deep.depth
+            np.testing.assert_allclose((found.fraction[0] * cell).sum(), np.pi / 6. * (bed["diameter"]**3).sum())
+
     def test_a_sphere_on_a_corner_belongs_to_four_cells(self) -> None:
         bed = {name: values[:1] for name, values in sample_bed.bed(0).items()}
         bed["points"] = np.array([[APPARATUS.x_plate + 0.3e-3, APPARATUS.plate_height(0) + 0.2e-3, 0.]])

@@ -30,10 +30,13 @@ def n_bins_of(apparatus: Apparatus) -> int:
 
 
 def edges_of(apparatus: Apparatus, n_bins: int | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """The bounds of the bins in x and in height (m)."""
+    """The bounds of the bins in x and in height (m), for all that can lie below the spreader in the last pass,
+    and a layer more."""
     height = apparatus.layer_thickness
+    highest = apparatus.clearance - apparatus.plate_height(apparatus.n_layers - 1)
+    n_rows = max(apparatus.n_layers + 3, int(np.ceil(highest / height)) + 1)
     return (np.linspace(0., apparatus.plate_length, (n_bins or n_bins_of(apparatus)) + 1),
-            height * np.arange(apparatus.n_layers + 4))
+            height * np.arange(n_rows + 1))
 
 
 def points_of_sphere() -> np.ndarray:
