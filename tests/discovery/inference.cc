@@ -389,8 +389,10 @@ void lookalikes()
       return of == found.taken_for.end() ? 0. : of->second;
     };
     constexpr double of_four = 0.25, error = 0.06;
+    // Some twins of those that resemble none are taken for it, too.
     for (const std::size_t alike : {b, c})
-      check("an effect is taken for the one like it", std::abs(share(alike) - of_four) < error,
+      check("an effect is taken for the one like it",
+            share(alike) > of_four - error && share(alike) < of_four + 2. * error,
             std::to_string(share(alike)));
     check("and not for another one", share(a) < error, std::to_string(share(a)));
     check("what resembles none is recognised", std::abs(found.recognised - 0.5) < 2. * error,
