@@ -109,10 +109,8 @@ std::vector<std::string> check_base_models(StudyInput &study, DemSimulator &simu
 }
 
 /// Refuses a study whose folders cannot be written to, before it spends hours on runs.
-void refuse_folders(const StudyParameters &p, const bool makes_data, MPI_Comm comm)
+void refuse_folders(const StudyParameters &p, MPI_Comm comm)
 {
-  if (makes_data)
-    return;
   Problems problems;
   int rank;
   MPI_Comm_rank(comm, &rank);
@@ -295,7 +293,8 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
     if (!makes_data && !needs_no_data)
       read_data(study, comm, problems);
     refuse_if_any(problems);
-    refuse_folders(study.parameters, makes_data, comm);
+    if (!makes_data)
+      refuse_folders(study.parameters, comm);
     const std::size_t n_warnings = print_doubts(study, problems, log);
     if (line.check) {
       print_check(study, n_warnings, log);

@@ -25,8 +25,10 @@ struct Round
   void look(const DecisionRule &rule)
   {
     findings = weigh(evidence, options, rule);
-    if (findings.detected)
-      decide(evidence, rule, options.seed, findings);
+    if (!findings.detected)
+      return;
+    choose(rule, findings);
+    judge(evidence, rule, options.seed, findings);
   }
 
   Target target;
@@ -193,15 +195,6 @@ Json describe_calibration(const Findings &findings, const FactorSpace &space)
       {"lookalikes", lookalikes}, {"twins", c.twins}, {"temperature", c.temperature},
       {"mean stated", c.stated},  {"right", c.right}, {"coverage of plain intervals", c.coverage},
       {"interval", c.interval}};
-}
-
-std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points)
-{
-  std::vector<std::string> names;
-  for (const MeasuredPoint &point : points)
-    if (std::find(names.begin(), names.end(), point.point.experiment) == names.end())
-      names.push_back(point.point.experiment);
-  return names;
 }
 
 /// Everything that the page says of the data of the fit.

@@ -3,6 +3,7 @@
 
 #include <eunoe/discovery/data_point.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -25,6 +26,16 @@ struct MeasuredData
   std::vector<MeasuredPoint> fit, held_out;
   std::map<std::string, std::string> header; ///< lines "# key: value" of the file
 };
+
+/// Names of the experiments of data points, in the order of their first ones.
+inline std::vector<std::string> experiments_of(const std::vector<MeasuredPoint> &points)
+{
+  std::vector<std::string> names;
+  for (const MeasuredPoint &point : points)
+    if (std::find(names.begin(), names.end(), point.point.experiment) == names.end())
+      names.push_back(point.point.experiment);
+  return names;
+}
 
 } // namespace eunoe::discovery
 

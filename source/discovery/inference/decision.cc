@@ -79,11 +79,11 @@ Findings weigh(const Evidence &evidence, const StudyOptions &options, const Deci
 {
   Findings findings;
   const Eigen::VectorXd &data = evidence.target().data();
-  findings.null_distribution = null_distribution(evidence, rule.null_draws, options.seed);
+  const Tail null = null_distribution(evidence, rule.null_draws, options.seed);
   findings.log_bayes_factor = evidence.log_bayes_factors(data)(0);
-  findings.p_nothing = findings.null_distribution.p(findings.log_bayes_factor);
+  findings.p_nothing = null.p(findings.log_bayes_factor);
   findings.detected = findings.p_nothing <= options.level;
-  findings.threshold = findings.null_distribution.quantile(options.level);
+  findings.threshold = null.quantile(options.level);
   findings.calibration = calibrate(evidence, findings.threshold, rule.twins, options.seed);
   findings.models = evidence.models(data);
   if (findings.detected)
@@ -160,13 +160,6 @@ void judge(const Evidence &evidence, const DecisionRule &rule, const std::uint32
     findings.verdict = Verdict::off_catalogue;
   else if (findings.verdict != Verdict::off_catalogue)
     findings.verdict = verdict_of(findings);
-}
-
-void decide(const Evidence &evidence, const DecisionRule &rule, const std::uint32_t seed,
-            Findings &findings)
-{
-  choose(rule, findings);
-  judge(evidence, rule, seed, findings);
 }
 
 } // namespace eunoe::discovery

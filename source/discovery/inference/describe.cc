@@ -190,8 +190,7 @@ Json describe_fingerprints(const Evidence &evidence)
                                         (place.hypothesis.prediction.mean - base).norm()});
     const Evidence::Place &last = places.back();
     Json change = Json::array(), error = Json::array();
-    for (std::size_t e = 0; e < evidence.target().n_experiments(); ++e) {
-      const Target::Part &part = evidence.target().experiments()[e];
+    for (const Target::Part &part : evidence.target().experiments()) {
       const Eigen::VectorXd moved =
           (values_of(part, last.hypothesis.prediction.mean) - part.emulator.base_mean())
               .cwiseQuotient(part.emulator.base_deviation());

@@ -31,12 +31,9 @@ std::string sentence(const double p_before, const double p_after, const double l
 
 HeldOut::HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
                  const FactorSpace &space, Samples &samples)
-    : options(options), rule(rule), data(data), space(space), samples(samples)
+    : options(options), rule(rule), data(data), space(space), samples(samples),
+      experiments(experiments_of(data.held_out))
 {
-  for (const MeasuredPoint &point : data.held_out)
-    if (std::find(experiments.begin(), experiments.end(), point.point.experiment) ==
-        experiments.end())
-      experiments.push_back(point.point.experiment);
 }
 
 std::uint64_t HeldOut::n_runs() const

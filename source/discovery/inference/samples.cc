@@ -130,10 +130,8 @@ void Samples::add(const RunRequest &request, const RunResult &result)
     return;
   }
   samples.at(request.experiment)
-      .push_back({position,
-                  Eigen::Map<const Eigen::VectorXd>(result->data(),
-                                                    static_cast<Eigen::Index>(result->size())),
-                  request.seed});
+      .push_back({position, Eigen::Map<const Eigen::VectorXd>(
+                                result->data(), static_cast<Eigen::Index>(result->size()))});
 }
 
 unsigned int Samples::n_missing(const DesignPoint &point,

@@ -44,11 +44,6 @@ Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all
   }
 }
 
-double Scatter::exponent(const std::size_t effect, const double amplitude) const
-{
-  return growth[effect] * std::sqrt(std::abs(amplitude) / largest[effect]);
-}
-
 double Scatter::common(const std::size_t effect, const double amplitude) const
 {
   constexpr double most = 10.;
@@ -64,7 +59,7 @@ Eigen::VectorXd Scatter::of_modes(const std::size_t effect, const double amplitu
 
 double Scatter::likeliest(const std::size_t effect, const double amplitude) const
 {
-  return std::exp(exponent(effect, amplitude));
+  return std::exp(growth[effect] * std::sqrt(std::abs(amplitude) / largest[effect]));
 }
 
 /// A prior keeps the growth near that of the base model where few replicates tell.

@@ -32,7 +32,6 @@ struct DecisionRule
 /// What a study has found so far.
 struct Findings
 {
-  Tail null_distribution;
   double log_bayes_factor = 0., p_nothing = 1.;
   double threshold = 0.; ///< of the log Bayes factor at the study's level
   bool detected = false;
@@ -48,10 +47,6 @@ struct Findings
 
 /// Tests whether anything is missing, weighs the models and calibrates.
 Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule);
-
-/// Chooses the answer and the verdict from the models' probabilities.
-void decide(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,
-            Findings &findings);
 
 /// Whether the model that leads an answer describes the data, and the verdict that follows.
 void judge(const Evidence &evidence, const DecisionRule &rule, std::uint32_t seed,

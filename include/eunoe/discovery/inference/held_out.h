@@ -58,7 +58,7 @@ private:
   const MeasuredData &data;
   const FactorSpace &space;
   Samples &samples;
-  std::vector<std::string> experiments;
+  const std::vector<std::string> experiments;
 };
 
 } // namespace eunoe::discovery

@@ -44,7 +44,6 @@ private:
 struct Sample
 {
   Eigen::VectorXd position, values;
-  std::uint32_t seed = 1;
 };
 
 /// Some values of the runs of the base model, a row for each run.

@@ -42,7 +42,6 @@ public:
   double likeliest(std::size_t effect, double amplitude) const;
 
 private:
-  double exponent(std::size_t effect, double amplitude) const;
   void fit_growth(std::size_t effect, const std::vector<const Replicates *> &groups);
   void fit_shares(std::size_t effect, const std::vector<const Replicates *> &groups);
 

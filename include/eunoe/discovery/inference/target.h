@@ -77,7 +77,6 @@ public:
   }
 
   const Eigen::VectorXd &data() const { return all; }
-  std::size_t n_experiments() const { return parts.size(); }
   double degrees_of_freedom() const;
 
   struct Part
