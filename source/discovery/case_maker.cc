@@ -6,6 +6,8 @@
 #include <eunoe/discovery/case_maker.h>
 #include <eunoe/discovery/work_queue.h>
 
+#include <boost/algorithm/string/trim.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -23,8 +25,8 @@ std::string named_files(const std::string &input)
     std::error_code failure;
     std::istringstream parts(value);
     for (std::string name; std::getline(parts, name, ',');) {
-      name.erase(0, name.find_first_not_of(' '));
-      if (name.find('.') == std::string::npos || !std::filesystem::is_regular_file(name, failure))
+      boost::trim(name);
+      if (!std::filesystem::is_regular_file(name, failure))
         continue;
       std::ifstream stream(name, std::ios::binary);
       std::ostringstream all;
