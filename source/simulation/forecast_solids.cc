@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace eunoe {
 
@@ -52,6 +53,7 @@ struct Path
 {
   bool meets_mesh = false;
   double largest_speed = 0., when = 0.; ///< of a corner of its box (m/s, s)
+  std::optional<double> ends;           ///< when its motion is no number any more (s)
 };
 
 /// The box around the mesh, which may move.
@@ -78,6 +80,8 @@ Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, con
     path.meets_mesh = path.meets_mesh || overlap(box_at(own, state), mesh.at(k * interval));
     for (const Vec3 &corner : corners_at(own, state)) {
       const double speed = norm(state.velocity_at(corner));
+      if (!path.ends && !std::isfinite(speed + norm(corner)))
+        path.ends = k * interval;
       if (speed > path.largest_speed) {
         path.largest_speed = speed;
         path.when = k * interval;
@@ -127,6 +131,12 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
         "':";
     const bool fits = judge_size(where, box, space, forecast.problems);
     const Path path = follow(parameters.solids.objects[*solid.object], own, mesh, duration);
+    if (path.ends)
+      forecast.problems.add(where,
+                            "from t = " + format(*path.ends) +
+                                " s on its velocity or place is no finite number.",
+                            "Correct its 'translational velocity' or 'angular velocity', so that "
+                            "they are numbers until the end of the run.");
     if (!path.meets_mesh)
       forecast.problems.warn(where,
                              "the solid lies outside the mesh during the whole run: at the "

@@ -196,6 +196,12 @@ public:
     for (const std::vector<double> *const list : {&lists.y, &lists.z})
       fits(*list, list->size() == n);
     fits(lists.diameters, lists.diameters.size() == n || lists.diameters.size() <= 1);
+    // A single -1 is Lethe's default: sizes of the type.
+    const auto wrong = std::find_if(lists.diameters.begin(), lists.diameters.end(),
+                                    [](const double diameter) { return !(diameter > 0.); });
+    if (wrong != lists.diameters.end() && lists.diameters != std::vector<double>{-1.})
+      check.require(false, section, "list diameters", "holds " + format(*wrong) + " m.",
+                    "Give positive diameters, or leave the list empty for sizes of the type.");
     for (const std::vector<double> *const list :
          {&lists.vx, &lists.vy, &lists.vz, &lists.wx, &lists.wy, &lists.wz})
     {

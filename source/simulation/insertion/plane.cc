@@ -42,7 +42,15 @@ public:
 
   void check(const Domain &domain, Problems &problems) const override
   {
-    const std::size_t n_cells = all_of_ranks(find_cells(domain)).size();
+    const std::vector<Cell> cut = all_of_ranks(find_cells(domain));
+    const std::size_t n_cells = cut.size();
+    const double distance = closest(cut);
+    if (distance < largest_diameter())
+      problems.add("subsection 'insertion info' / entry 'insertion method':",
+                   "is plane, and the centres of two cells that the plane cuts are " +
+                       format(distance) + " m apart, less than the largest diameter of " +
+                       format(largest_diameter()) + " m: particles of one event would overlap.",
+                   "Take a coarser mesh, smaller particles, or another method.");
     if (n_cells == 0)
       problems.add("subsection 'insertion info' / entry 'insertion plane point':",
                    "the plane cuts no cell of the mesh.",
@@ -129,6 +137,25 @@ private:
       found.push_back(cut);
     }
     return found;
+  }
+
+  /// Distance of the two closest centres (m), or the largest diameter where none are closer.
+  double closest(const std::vector<Cell> &cut) const
+  {
+    double least = largest_diameter();
+    const Vec3 reach = {least, least, least};
+    std::vector<std::pair<Box, std::int32_t>> centres;
+    for (const Cell &cell : cut)
+      centres.push_back({{cell.centre, cell.centre}, static_cast<std::int32_t>(centres.size())});
+    const BoxTree tree(centres);
+    for (std::size_t c = 0; c < cut.size(); ++c)
+      tree.for_each_meeting({cut[c].centre - reach, cut[c].centre + reach},
+                            [&](const std::int32_t other) {
+                              const auto o = static_cast<std::size_t>(other);
+                              if (o != c)
+                                least = std::min(least, norm(cut[o].centre - cut[c].centre));
+                            });
+    return least;
   }
 
   /// Those of all ranks, in an order that does not depend on their number.

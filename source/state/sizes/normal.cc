@@ -39,8 +39,9 @@ Range range_of(const SizeDistributionParameters &p, const Range &where_none_is_g
           p.largest > 0. ? p.largest : where_none_is_given.to};
 }
 
-void check_spread(const SizeDistributionParameters &p, const Range &range,
-                  const ParameterCheck &check, const ParameterCheck::Path &path)
+void check_spread(const SizeDistributionSection &section, const SizeDistributionParameters &p,
+                  const Range &range, const ParameterCheck &check,
+                  const ParameterCheck::Path &path)
 {
   p.check_average(check, path);
   check.require(p.standard_deviation > 0., path, "standard deviation",
@@ -55,6 +56,12 @@ void check_spread(const SizeDistributionParameters &p, const Range &range,
                     " m.",
                 "Correct the cut-offs; one that is not given lies 2.5 standard deviations from the "
                 "mean.");
+  if (has_range && range.from > 0. && range.from < range.to)
+    check.require(std::isfinite(section.make(p)->mean_cube()), path, "average diameter",
+                  "is " + format(p.average_diameter) +
+                      " m, so many standard deviations from the cut-offs " + format(range.from) +
+                      " and " + format(range.to) + " m that no particle is between them.",
+                  "Give the mean of the sizes that are wanted, or a larger deviation.");
 }
 
 class Normal : public SizeDistributionSection
@@ -63,7 +70,7 @@ public:
   void check(const SizeDistributionParameters &p, const ParameterCheck &check,
              const ParameterCheck::Path &path) const override
   {
-    check_spread(p, range(p), check, path);
+    check_spread(*this, p, range(p), check, path);
     check.require(p.smallest > 0. || p.average_diameter > default_cut * p.standard_deviation, path,
                   "standard deviation",
                   "is so large that 2.5 deviations below the mean no diameter is left.",
@@ -93,7 +100,7 @@ public:
   void check(const SizeDistributionParameters &p, const ParameterCheck &check,
              const ParameterCheck::Path &path) const override
   {
-    check_spread(p, range(p), check, path);
+    check_spread(*this, p, range(p), check, path);
   }
 
   std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &p) const override
