@@ -258,6 +258,14 @@ InputEntry parse_override(const std::string &text, Problems &problems)
     problems.add(entry.where + ":", "it has no '='.", "Write --set \"subsection/entry = value\".");
     return entry;
   }
+  // In a file the first begins a comment, the second goes on in the next line: used.prm could not
+  // hold the value.
+  if (text.find('#') != std::string::npos || boost::ends_with(entry.value, "\\")) {
+    problems.add(entry.where + ":", "a value has no '#' and does not end with '\\'.",
+                 "Choose another value.");
+    entry.name.clear();
+    return entry;
+  }
   std::vector<std::string> names;
   boost::split(names, text.substr(0, equals), boost::is_any_of("/"));
   for (std::string &name : names) {

@@ -67,6 +67,8 @@ expect "unknown option" 2 "Command line:" "$program" --fast
 expect "broken case" 2 "Did you mean 'scale'?" "$program" broken.prm
 expect "broken override" 2 "entry 'time stop' is unknown" \
   "$program" fine.prm --set "simulation control/time stop = 1"
+expect "override that no file can hold" 2 "a value has no '#'" \
+  "$program" fine.prm --set "simulation control/output path = run#1"
 expect "check" 0 "The case is in order" "$program" fine.prm --check
 if [ -e results ]; then
   echo "a run that only checks or refuses has written something"
