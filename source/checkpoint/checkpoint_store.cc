@@ -144,8 +144,11 @@ void CheckpointStore::keep_opened()
     const std::string beside = to + ".new";
     fs::remove(beside, failure);
     fs::create_hard_link(from, beside, failure);
-    if (failure)
+    if (failure) {
       fs::copy_file(from, beside, failure);
+      if (!failure)
+        sync_file(beside);
+    }
     if (!failure)
       fs::rename(beside, to, failure);
     if (failure) {

@@ -105,13 +105,13 @@ void Simulation::open_output()
   else
     checkpoints.understand(
         [this](const nlohmann::ordered_json &head) { outputs.begin_series(&head.at("outputs")); });
+  make_observables(); // may refuse to go on in a table that was changed
   int rank;
   MPI_Comm_rank(communicator(), &rank);
   if (rank == 0)
     // Those of an earlier run would make this run look finished.
     for (const char *const result : {"summary.json", "measurements.csv"})
       remove_file(outputs.folder.file(result));
-  make_observables();
 }
 
 void Simulation::make_observables()
