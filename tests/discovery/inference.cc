@@ -382,6 +382,8 @@ void lookalikes()
       model.log_evidence = -7.;
     check("evidence is tempered and shares are not",
           std::abs(found.log_evidence(equal, 2.) + 7.) < 1e-9);
+    check("effects that are never so strong have no twins",
+          find_lookalikes(evidence, 1e3, 0., 400, 1).taken_for.empty());
     check("twins in which nothing is detected do not count",
           find_lookalikes(evidence, strength, 1e9, 400, 1).recognised == 1.);
     const auto share = [&](const std::size_t k) {

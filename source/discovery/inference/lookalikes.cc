@@ -8,16 +8,17 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// On each side of an effect's null value the place whose change is nearest to a strength, the last
-/// of several.
+/// On each side of an effect's null value the place whose change is nearest to a strength, unless
+/// its range ends clearly before that.
 std::vector<const Evidence::Place *> places_of(const std::vector<Evidence::Place> &places,
                                                const double strength)
 {
+  constexpr double clearly = 2.; // a strength is known to one standard deviation, its unit
   std::vector<const Evidence::Place *> result;
   for (const bool above : {false, true}) {
     const Evidence::Place *nearest = nullptr;
     for (const Evidence::Place &place : places)
-      if ((place.amplitude > 0.) == above &&
+      if ((place.amplitude > 0.) == above && place.strength > strength - clearly &&
           (!nearest ||
            std::abs(place.strength - strength) <= std::abs(nearest->strength - strength)))
         nearest = &place;
@@ -49,23 +50,25 @@ Lookalikes find_lookalikes(const Evidence &evidence, const double strength, cons
   const std::vector<std::size_t> effects = evidence.usable();
   if (effects.size() < 2)
     return result;
+  std::vector<std::pair<std::size_t, const Evidence::Place *>> truths;
+  std::map<std::size_t, double> sides;
+  for (const std::size_t effect : effects)
+    for (const Evidence::Place *place : places_of(evidence.places(effect), strength)) {
+      truths.emplace_back(effect, place);
+      ++sides[effect];
+    }
   const auto n = static_cast<Eigen::Index>(effects.size());
   Eigen::ArrayXd shares = Eigen::ArrayXd::Zero(n + 1);
   Twins twins(evidence.target(), seed + 3);
-  for (const std::size_t left_out : effects) {
-    const auto places = places_of(evidence.places(left_out), strength);
-    const auto of_each = std::max<std::size_t>(1, draws / (effects.size() * places.size()));
-    for (const Evidence::Place *place : places) {
-      const Eigen::MatrixXd data =
-          twins.draw(place->hypothesis.prediction, static_cast<unsigned int>(of_each));
-      const Eigen::ArrayXXd logs = evidence.singles(data, left_out).log_posterior();
-      const Eigen::ArrayXd sums = log_sums(logs);
-      const Eigen::ArrayXd detected =
-          (sums - evidence.log_nothing(data) >= threshold).cast<double>();
-      const Eigen::ArrayXXd probabilities = (logs.rowwise() - sums.transpose()).exp();
-      shares += (probabilities.rowwise() * detected.transpose()).rowwise().mean() /
-                static_cast<double>(places.size());
-    }
+  for (const auto &[left_out, place] : truths) {
+    const Eigen::MatrixXd data =
+        twins.draw(place->hypothesis.prediction,
+                   std::max(1u, draws / static_cast<unsigned int>(truths.size())));
+    const Eigen::ArrayXXd logs = evidence.singles(data, left_out).log_posterior();
+    const Eigen::ArrayXd sums = log_sums(logs);
+    const Eigen::ArrayXd detected = (sums - evidence.log_nothing(data) >= threshold).cast<double>();
+    const Eigen::ArrayXXd probabilities = (logs.rowwise() - sums.transpose()).exp();
+    shares += (probabilities.rowwise() * detected.transpose()).rowwise().mean() / sides[left_out];
   }
   if (shares.sum() <= 0.)
     return result;

@@ -26,7 +26,7 @@ struct Lookalikes
 };
 
 /// @param strength of the data: who is confused with whom depends on it. Effects that do not reach
-/// it have twins at the end of their range.
+/// it cannot be what was measured, and have no twins.
 /// @param threshold of the log Bayes factor for a detection
 /// @param draws of all effects together
 Lookalikes find_lookalikes(const Evidence &evidence, double strength, double threshold,
