@@ -82,9 +82,8 @@ def run(name: str, words: list[str]) -> int:
         print(failure, file=sys.stderr)
         return 1
     except OSError as error:
-        if error.filename is None:
-            raise
-        print(f"{error.filename} cannot be used: {error.strerror}.", file=sys.stderr)
+        # A full disk does not say in which file.
+        print(f"{error.filename or 'A file'} cannot be used: {error.strerror}.", file=sys.stderr)
         return 2
 
 

@@ -5,10 +5,33 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import json
+import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from eunoe.launch import Failure
+
+
+def write_whole(file: Path, text: str) -> None:
+    """Writes a file beside the old one and puts it in its place when it is complete. One that holds the text already
+    is left alone."""
+    if file.exists() and file.read_text(encoding="utf-8") == text:
+        return
+    beside = file.with_name(file.name + ".new")
+    try:
+        beside.write_text(text, encoding="utf-8")
+        os.replace(beside, file)
+    except OSError as error:
+        beside.unlink(missing_ok=True)
+        raise Failure(f"{file} cannot be written: {error.strerror}.") from error
+
+
+def read_json(file: Path) -> Any:
+    try:
+        return json.loads(file.read_text(encoding="utf-8"))
+    except json.JSONDecodeError as error:
+        raise Failure(f"{file} is damaged: {error}. Remove it or put it back.") from error
 
 
 def occupy(folder: Path, what: dict[str, object], note: str) -> None:
@@ -17,11 +40,11 @@ def occupy(folder: Path, what: dict[str, object], note: str) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / note
     if file.exists():
-        old = json.loads(file.read_text(encoding="utf-8"))
+        old = read_json(file)
         other = [name for name, value in what.items() if old.get(name) != value]
         if other:
             raise Failure(f"{folder} has runs with another {', '.join(other)}. Give another folder.")
-    file.write_text(json.dumps(what, indent=2) + "\n", encoding="utf-8")
+    write_whole(file, json.dumps(what, indent=2) + "\n")
 
 
 @contextlib.contextmanager

@@ -221,6 +221,23 @@ class Campaign(unittest.TestCase):
         self.assertEqual(self.run_it("--collect", *only)[0], 0)
         self.assertEqual(record.read_text(), before)
 
+    def test_results_that_cannot_be_read_change_nothing(self) -> None:
+        only = ("--only", "PS1_L0.25_seed1")
+        kept = self.folder / "data" / "PS1_L0.25_seed1"
+        (self.states / "die").write_text("5")
+        self.assertEqual(self.run_it(*only)[0], 1)
+        before = {file.name: file.read_bytes() for file in kept.iterdir()}
+        self.assertEqual(len(before["layers.csv"].splitlines()), 6)
+        elsewhere = [word.replace("/data", "/elsewhere") for word in self.words(*only)]
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            self.assertEqual(commands.run("reproduction", elsewhere), 0)
+        picture = next((self.states / "PS1_L0.25_seed1").glob("*_layers_*3.vtu"))
+        picture.write_bytes(picture.read_bytes()[:200])
+        code, _, errors = self.run_it("--collect", *only)
+        self.assertEqual(code, 1)
+        self.assertIn("PS1_L0.25_seed1: ", errors)
+        self.assertEqual({file.name: file.read_bytes() for file in kept.iterdir()}, before)
+
     def test_a_run_of_another_process_is_left_alone(self) -> None:
         with open(self.states / "PS1_L0.25_seed1.lock", "w", encoding="utf-8") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
@@ -238,6 +255,8 @@ class Campaign(unittest.TestCase):
             code, _, errors = self.run_it(*only)
             self.assertEqual(code, 1)
             self.assertIn("Move it away.", errors)
+        note.write_text("")
+        self.assertIn("case.json is damaged", self.run_it(*only)[2])
         self.assertEqual(self.starts(), 1)
 
     def test_runs_are_asked_to_stop(self) -> None:

@@ -143,7 +143,7 @@ def main(words: list[str]) -> int:
     options.pictures.mkdir(parents=True, exist_ok=True)
     for rule in rules:
         print(f"{rule.name} ({rule.cost})", flush=True)
-        record = read_record(options.pictures)
-        record.update(follow(rule, options, revision))
-        write_record(options.pictures, record)
+        entries = follow(rule, options, revision)
+        # Read behind the hours that this may take, in which others write the record, too.
+        write_record(options.pictures, {**read_record(options.pictures), **entries})
     return 0

@@ -7,6 +7,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from eunoe.folders import write_whole
+
 NAME = "README.md"
 HEAD = """# Pictures of the documentation
 
@@ -49,4 +51,4 @@ def read_record(pictures: Path) -> dict[str, Entry]:
 def write_record(pictures: Path, record: dict[str, Entry]) -> None:
     lines = (f"| {name} | {entry.rule} | {entry.revision} | {entry.digest} |\n"
              for name, entry in sorted(record.items()))
-    (pictures / NAME).write_text(HEAD + "".join(lines), encoding="utf-8")
+    write_whole(pictures / NAME, HEAD + "".join(lines))

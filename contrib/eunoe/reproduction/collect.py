@@ -7,11 +7,13 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+from eunoe.folders import read_json, write_whole
 from eunoe.launch import Failure
 from eunoe.report.apparatus import Apparatus, ApparatusError
 from eunoe.report.bed_maps import n_bins_of, read_maps, write_table
-from eunoe.report.run_folder import Run, read_run
+from eunoe.report.run_folder import read_run
 from eunoe.studies.series import summary_of
+from eunoe.vtk_files import VtkError
 
 from .cases import Case
 from .places import DATA
@@ -34,16 +36,10 @@ def record_of(case: Case, folder: Path, layers: int, n_bins: int) -> dict[str, A
             **{key: summary[key] for key in KEPT if key in summary}}
 
 
-def _maps(run: Run, apparatus: Apparatus, file: Path) -> None:
-    pictures = run.layer_pictures()
-    if pictures:
-        write_table(file, read_maps(pictures, apparatus))
-
-
 def is_kept(case: Case, data: Path) -> bool:
     """Whether the results of a run that finished, perhaps elsewhere, are there."""
     record = data / case.name / RECORD
-    return record.exists() and bool(json.loads(record.read_text(encoding="utf-8"))["finished"])
+    return record.exists() and bool(read_json(record)["finished"])
 
 
 def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
@@ -53,7 +49,7 @@ def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:
         return is_finished
     if not (target / RECORD).exists():
         return True
-    kept = json.loads((target / RECORD).read_text(encoding="utf-8"))
+    kept = read_json(target / RECORD)
     return not kept["finished"] and (kept["settings"] != settings_of(case) or layers > kept["layers"])
 
 
@@ -64,18 +60,21 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
     if not _is_new(case, campaign.is_finished(case), layers_weighed(folder), target):
         return None
     campaign.check(case)
+    run = read_run(folder)
+    try:
+        apparatus = Apparatus.read(folder / "apparatus.json")
+        # Maps are for the questions of the mechanism; other variants are compared by their densities alone.
+        pictures = run.layer_pictures() if case.is_seen_closely else {}
+        maps = read_maps(pictures, apparatus) if pictures else None
+    except (ApparatusError, VtkError) as error:
+        raise Failure(f"{case.name}: {error}") from error
+    # From here on all that is read is in order, so that old and new results are not mixed.
     target.mkdir(parents=True, exist_ok=True)
     for name in TABLES:
         if (folder / name).exists():
             shutil.copyfile(folder / name, target / name)
-    run = read_run(folder)
-    try:
-        apparatus = Apparatus.read(folder / "apparatus.json")
-    except ApparatusError as error:
-        raise Failure(f"{case.name}: {error}") from error
-    # Maps are for the questions of the mechanism; other variants are compared by their densities alone.
-    if case.is_seen_closely:
-        _maps(run, apparatus, target / BED)
+    if maps is not None:
+        write_table(target / BED, maps)
     record = record_of(case, folder, len(run.layers), n_bins_of(apparatus))
-    (target / RECORD).write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    write_whole(target / RECORD, json.dumps(record, indent=1) + "\n")
     return target

@@ -7,6 +7,7 @@ import statistics
 from collections.abc import Sequence
 from pathlib import Path
 
+from eunoe.folders import write_whole
 from eunoe.intervals import mean_of
 from eunoe.launch import Failure
 from eunoe.report.comparison_text import (change_sentence, densities_table, differences_table, measured_group, rest_table,
@@ -245,4 +246,4 @@ def renewed(text: str, findings: Findings, pictures: Path) -> str:
 
 
 def renew(file: Path, findings: Findings, pictures: Path) -> None:
-    file.write_text(renewed(file.read_text(encoding="utf-8"), findings, pictures), encoding="utf-8")
+    write_whole(file, renewed(file.read_text(encoding="utf-8"), findings, pictures))

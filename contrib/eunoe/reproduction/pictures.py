@@ -102,7 +102,7 @@ def _of_states(campaign: Campaign, groups: Iterable[Group], prefix: str = "") ->
 def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
     """Draws what can be drawn, and records what made it."""
     folder.mkdir(parents=True, exist_ok=True)
-    record = read_record(folder)
+    entries = {}
     todo = _of_results(findings)
     if campaign:
         todo.update(_of_states(campaign, findings.lengths("PS1")))
@@ -110,8 +110,8 @@ def draw(findings: Findings, campaign: Campaign | None, folder: Path) -> None:
         todo.update(_of_states(campaign, findings.of_variants(OPEN), "open_"))
     for name, (make, results) in todo.items():
         make().savefig(folder / name, dpi=RESOLUTION)
-        record[name] = Entry(RULE, ", ".join(sorted({result.revision for result in results})), digest(folder / name))
-    write_record(folder, record)
+        entries[name] = Entry(RULE, ", ".join(sorted({result.revision for result in results})), digest(folder / name))
+    write_record(folder, {**read_record(folder), **entries})
 
 
 def draw_movies(campaign: Campaign, findings: Findings) -> list[Path]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from eunoe.folders import read_json
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_maps import read_table
 from eunoe.report.run_folder import read_layers
@@ -31,7 +31,7 @@ class Result(SpreadRun):
     @classmethod
     def read(cls, case: Case, folder: Path) -> Result:
         apparatus = Apparatus.read(folder / "apparatus.json")
-        record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
+        record = read_json(folder / RECORD)
         maps = read_table(folder / BED, apparatus, record.get("x_bins")) if (folder / BED).exists() else None
         return cls(case.name, read_layers(folder / "layers.csv"), apparatus, maps, case, record)
 

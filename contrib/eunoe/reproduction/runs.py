@@ -14,7 +14,7 @@ from functools import cached_property
 from pathlib import Path
 
 from eunoe.benchmarks.machine import processor
-from eunoe.folders import alone_with
+from eunoe.folders import alone_with, read_json, write_whole
 from eunoe.launch import Failure, beside, mpirun, output_of, overrides
 from eunoe.studies.series import CONTINUED, summary_of
 
@@ -110,10 +110,10 @@ class Campaign:
         end, if at all. A folder of the same name with other settings, as the cases were once, is refused."""
         self.check(case)
         self.of(case).mkdir(parents=True, exist_ok=True)
-        (self.of(case) / NOTE).write_text(json.dumps(settings_of(case), indent=1) + "\n", encoding="utf-8")
+        write_whole(self.of(case) / NOTE, json.dumps(settings_of(case), indent=1) + "\n")
         for name, new in ((PROCESSORS, processor()), (REVISIONS, self.revision)):
             others = [known for known in _listed(self.of(case) / name) if known != new]
-            (self.of(case) / name).write_text(json.dumps([*others, new]), encoding="utf-8")
+            write_whole(self.of(case) / name, json.dumps([*others, new]))
 
     def check(self, case: Case) -> None:
         """Refuses a folder with a run of other settings."""
@@ -121,7 +121,7 @@ class Campaign:
         file = folder / NOTE
         if not file.exists() and (folder / LAYERS).exists():
             raise Failure(f"{folder} has a run, but no {NOTE} that says of which settings. Move it away.")
-        if file.exists() and json.loads(file.read_text(encoding="utf-8")) != settings_of(case):
+        if file.exists() and read_json(file) != settings_of(case):
             raise Failure(f"{folder} has a run with other settings than the case of this name: see its {NOTE}. Move it "
                           "away.")
 
@@ -159,7 +159,7 @@ def layers_weighed(folder: Path) -> int:
 
 
 def _listed(file: Path) -> list[str]:
-    return json.loads(file.read_text(encoding="utf-8")) if os.path.exists(file) else []
+    return read_json(file) if os.path.exists(file) else []
 
 
 def processor_of(folder: Path) -> str:

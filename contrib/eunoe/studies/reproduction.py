@@ -30,6 +30,7 @@ from eunoe.reproduction.places import DATA, PAGE
 from eunoe.reproduction.plan import measured_speed, plan_of
 from eunoe.reproduction.runs import STOPPED, Campaign
 from eunoe.repository import DOC
+from eunoe.studies.series import at_least
 from eunoe.tables import as_text
 
 
@@ -42,7 +43,7 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("program", nargs="?")
     arguments.add_argument("folder", type=Path, nargs="?")
     arguments.add_argument("--only", nargs="+", default=[], metavar="CASE")
-    arguments.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    arguments.add_argument("--jobs", type=at_least(1), default=1, help="runs at the same time")
     arguments.add_argument("--ranks", type=int, default=1, help="of each run")
     arguments.add_argument("--speed", type=float, help="million particle-steps per second and core, for --plan")
     for name, default in (("data", DATA), ("page", PAGE), ("pictures", DOC / "pictures")):
@@ -78,14 +79,18 @@ def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
 
 
 def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
-    """Runs, takes over the results of each run when it has finished, and rebuilds; false if a run failed."""
+    """Runs, takes over the results of each run when it has finished, and rebuilds; false if one of that failed."""
     from eunoe.reproduction.collect import collect, is_kept
+
+    untaken = set()
 
     def take(case: Case) -> None:
         try:
             with alone_with(lock, wait=True):
                 collect(campaign, case, options.data)
+            untaken.discard(case.name)
         except Failure as failure:  # the other runs go on
+            untaken.add(case.name)
             print(failure, file=sys.stderr, flush=True)
 
     lock = campaign.folder / "results.lock"  # of commands that work in one folder
@@ -106,7 +111,7 @@ def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) ->
                 take(case)
     with alone_with(lock, wait=True):
         rebuild(options, campaign)
-    return good
+    return good and not untaken
 
 
 def main(words: list[str]) -> int:
