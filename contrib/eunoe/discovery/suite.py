@@ -20,6 +20,7 @@ from __future__ import annotations
 import argparse
 import math
 import shutil
+import sys
 from pathlib import Path
 
 from eunoe.folders import alone_with
@@ -77,6 +78,7 @@ class Suite:
         self.program = Program(options.program, options.ranks)
         self.folder = options.folder.resolve()
         self.study = options.study.resolve()
+        self.failed: list[str] = []
 
     def make_data(self, case: Case, lock: int) -> Path:
         folder = self.folder / case.name
@@ -95,6 +97,10 @@ class Suite:
 
     def make_study(self, case: Case, folder: Path, label: str, settings: list[str], lock: int) -> None:
         target = folder / label
+        # The study must not be able to read the truth.
+        sealed, away = folder / "sealed", self.folder / f".sealed_{case.name}"
+        if away.exists() and not sealed.exists():  # the last command was killed
+            away.rename(sealed)
         if (target / "discovery.json").exists():
             return
         entries = [f"discovery/measured data = {folder / 'measured.csv'}",
@@ -104,14 +110,13 @@ class Suite:
                    "discovery/write page = false", *settings]
         if case.excluded:
             entries.append(f"discovery/excluded effects = {', '.join(case.excluded)}")
-        # The study must not be able to read the truth.
-        sealed, away = folder / "sealed", self.folder / f".sealed_{case.name}"
         if sealed.exists():
             sealed.rename(away)
         try:
             self.program.run([str(self.study), *overrides(entries)], folder / f"{label}.log", lock)
         except Failure as error:
             print(f"  {error}")
+            self.failed.append(case.name)
             shutil.rmtree(target, ignore_errors=True)
         finally:
             if away.exists():
@@ -168,5 +173,7 @@ def main(words: list[str]) -> int:
     except (KeyboardInterrupt, Stopped):
         print("Stopped; the same command goes on.")
         return 3
-    return 0
+    if suite.failed:
+        print(f"{len(suite.failed)} studies failed: {', '.join(suite.failed)}", file=sys.stderr)
+    return 1 if suite.failed else 0
 
