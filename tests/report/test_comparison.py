@@ -97,10 +97,12 @@ class Maps(unittest.TestCase):
     def test_what_is_pressed_together_far_below(self) -> None:
         found = maps(range(8))
         np.testing.assert_allclose(found.compaction()[1:], 0., atol=1e-12)
-        # The lowest row becomes denser from weighing 6 to 7; in that of weighing 4 what lies at most four rows below.
-        found.fraction[7:, :, 0] += 0.03
-        found.fraction[4:, :, 1:] += 0.03
-        np.testing.assert_allclose(found.compaction()[[4, 7]], [0., 0.03], atol=1e-12)
+        # The new layer of weighing 7 lies in row 7, or in row 8 where the plate has fallen by a layer before layer 0.
+        for first_row in (0, 1):
+            deep = replace(found, fraction=found.fraction.copy(), first_row=first_row)
+            deep.fraction[7:, :, 2 + first_row] += 0.03  # five rows below
+            deep.fraction[7:, :, 3 + first_row:] += 0.3
+            np.testing.assert_allclose(deep.compaction()[[4, 7]], [0., 0.03], atol=1e-12)
         self.assertTrue(np.isnan(maps([0, 2]).compaction()[1]))
 
     def test_density_of_the_middle_half(self) -> None:

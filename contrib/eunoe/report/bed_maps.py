@@ -39,6 +39,10 @@ def edges_of(apparatus: Apparatus, n_bins: int | None = None) -> tuple[np.ndarra
             height * np.arange(n_rows + 1))
 
 
+def _first_row(apparatus: Apparatus) -> int:
+    return int(apparatus.first_thickness / apparatus.layer_thickness + 1e-6)
+
+
 def points_of_sphere() -> np.ndarray:
     """Points of equal volume of a sphere of radius 1 seen from the side: the share of the volume within the
     distance r of its axis is 1 - (1 - r^2)^(3/2)."""
@@ -58,6 +62,7 @@ class BedMaps:
     tracked: np.ndarray  # number of the particles that were on the plate at the weighing before
     moved: np.ndarray  # mean of their displacements; 0 where there are none
     resting: np.ndarray  # share of them that moved by less than RESTS_BELOW
+    first_row: int = 0  # of height in which layer 0 ends: the plate has fallen before the first pass
 
     def _mean(self, values: np.ndarray, axes: tuple[int, ...]) -> np.ndarray:
         """Mean over the tracked particles; NaN where there are none."""
@@ -102,12 +107,12 @@ class BedMaps:
 
     def compaction(self) -> np.ndarray:
         """What the rows of height that lie `DEEP` and more below the new layer gained since the weighing before, as
-        density of a layer, by weighing; NaN where that is not known. A new layer lies in the row of its number and
-        one, above those of layer 0 and the bed that the plate's first fall has room for."""
+        density of a layer, by weighing; NaN where that is not known."""
         found = np.full(len(self.layers), np.nan)
         for k in range(1, len(self.layers)):
             if self.layers[k] == self.layers[k - 1] + 1:
-                rows = max(int(self.layers[k]) + 2 - DEEP, 0)
+                new = self.first_row + int(self.layers[k])
+                rows = max(new + 1 - DEEP, 0)
                 found[k] = (self.fraction[k, :, :rows] - self.fraction[k - 1, :, :rows]).mean(axis=0).sum()
         return found
 
@@ -146,7 +151,7 @@ def maps_of(pictures: Iterable[tuple[int, Fields]], apparatus: Apparatus) -> Bed
         layers.append(layer)
         arrays.append(map_of(particles, apparatus, layer))
     stacks = [np.array([found[k] for found in arrays]) for k in range(4)]
-    return BedMaps(np.array(layers), x, y, *stacks)
+    return BedMaps(np.array(layers), x, y, *stacks, _first_row(apparatus))
 
 
 COLUMNS = ("layer", "x_bin", "y_bin", "solid_fraction", "tracked", "displacement_um", "static_share")
@@ -180,4 +185,4 @@ def read_table(file: Path, apparatus: Apparatus, n_bins: int | None = None) -> B
         rows = (np.searchsorted(layers, columns["layer"]), columns["x_bin"].astype(int), columns["y_bin"].astype(int))
         for array, name, size in zip(arrays, COLUMNS[3:], (1., 1., 1e-6, 1.)):
             array[rows] = size * columns[name]
-    return BedMaps(layers, x, y, *arrays)
+    return BedMaps(layers, x, y, *arrays, _first_row(apparatus))
