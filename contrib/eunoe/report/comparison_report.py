@@ -30,7 +30,10 @@ def spread_run(run: Run, problems: list[str]) -> SpreadRun:
     try:
         apparatus = Apparatus.read(run.folder / "apparatus.json")
         pictures = run.layer_pictures()
-        if pictures:
+        lacking = set(range(max(pictures, default=-1) + 1)) - set(pictures)
+        if lacking:
+            problems.append(f"{run.name} has no maps, as the picture of layer {min(lacking)} is missing.")
+        elif pictures:
             maps = read_maps(pictures, apparatus)
         else:
             problems.append(f"{run.name} has no pictures of its layers, so it has no maps.")
@@ -69,6 +72,10 @@ def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str
         if len({run.plate_length for run in found}) > 1:
             raise ReportError(f"The runs of '{label}' have plates of different lengths, which cannot be pooled: give each "
                               "length a --label of its own.")
+        for name in ("layer_thickness", "depth", "n_layers"):
+            if len({getattr(run.apparatus, name) for run in found if run.apparatus}) > 1:
+                raise ReportError(f"The runs of '{label}' differ in {name.replace('_', ' ')}, so they cannot be pooled: "
+                                  "give each a --label of its own.")
     if len(runs) > MOST_GROUPS:
         raise ReportError(f"{len(runs)} labels are too many for one page: give at most {MOST_GROUPS}.")
     return [Group(label, found) for label, found in runs.items()]
@@ -105,8 +112,9 @@ def _add_densities(page: Page, groups: Sequence[Group]) -> None:
     if len(groups) > 1:
         head, *rows = _unmarked(differences_table(groups))
         page.table(head, rows)
-        page.paragraph("Differences of the means with their 95 % intervals: of the pairs with one seed where both have all "
-                       "seeds and one length, as these spread the same grains, else by Welch's t. Where 0 lies within, "
+        page.paragraph("Differences of the means with their 95 % intervals: of pairs with one seed where every run "
+                       "of the smaller group has a partner on a plate of its length, as these spread the same grains, else by "
+                       "Welch's t. Where 0 lies within, "
                        "the runs do not show a difference.")
 
 

@@ -174,8 +174,12 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
     page.figure(maps_figure(group), "By place and layer: (a) mean displacement in the pass of what lay on the plate; "
                 f"grey: less than {length(RESTS_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
                 "added, as density of its layer.")
-    write_for_others(run.folder / "bed.csv", maps)
-    page.paragraph("bed.csv in the run's folder has the maps in numbers.")
+    try:
+        write_for_others(run.folder / "bed.csv", maps)
+    except OSError as error:
+        page.notice(f"The maps are not in numbers in bed.csv: {error.strerror}.")
+    else:
+        page.paragraph("bed.csv in the run's folder has the maps in numbers.")
 
 
 def add_movie(page: Page, run: Run, layers: Layers, layer: int | None) -> None:
