@@ -25,8 +25,8 @@ from eunoe.powder import Powder, powder_of
 from eunoe.repository import CASES
 from eunoe.tables import Table, write_csv
 
-from .series import (SeededVariant, arguments, at_least, compute, layers_of, mean_and_spread, plus_minus, publish,
-                     spreading_command)
+from .series import (SeededVariant, arguments, at_least, compute, layers_of, mean_and_spread, mean_of_whole, plus_minus,
+                     publish, spreading_command)
 
 SLEEP = "model parameters/adaptive sparse contacts/enable adaptive sparse contacts"
 REFERENCE = "step15"
@@ -80,7 +80,7 @@ def table_of(found: dict[str, list[dict]]) -> Table:
             cells.append(mean_and_spread(values, ".4f", ".4f"))
             change = difference_of(values, others)
             cells.append("" if name == REFERENCE else plus_minus(change.value, change.half, "+.4f", ".4f"))
-        rows.append([*cells, f"{statistics.mean(run['seconds'] for run in runs):.0f}"])
+        rows.append([*cells, mean_of_whole(runs, "seconds", ".0f")])
     return rows
 
 

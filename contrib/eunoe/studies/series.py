@@ -64,7 +64,7 @@ def arguments(documentation: str, seeds: Sequence[int]) -> argparse.ArgumentPars
     found.add_argument("program")
     found.add_argument("folder", type=Path)
     found.add_argument("--seeds", type=int, nargs="+", default=list(seeds))
-    found.add_argument("--jobs", type=int, default=1, help="runs at the same time")
+    found.add_argument("--jobs", type=at_least(1), default=1, help="runs at the same time")
     found.add_argument("--table-only", action="store_true", help="runs nothing")
     return found
 
@@ -88,15 +88,24 @@ def spreading_command(options: argparse.Namespace, run: Run, seed: int, settings
 
 def layers_of(folder: Path) -> dict | None:
     """Densities of the layers from 1 on (CRD is NaN before its first), seconds of the loop and share of
-    sleepers; None if the run has not finished."""
+    sleepers, which are NaN where a restart began their count anew; None if the run has not finished."""
     summary = summary_of(folder)
     try:
         rows = [row for row in read_rows(folder / "layers.csv") if row["layer"] >= 1]
     except (OSError, ValueError):
         return None
-    return None if summary is None else {
-        **{key: [row[key] for row in rows] for key in ("LRD", "CRD")},
-        "seconds": summary["loop_seconds"], "asleep": summary.get("share_asleep", 0.)}
+    if summary is None:
+        return None
+    is_whole = summary.get("first_step", 0) == 0
+    return {**{key: [row[key] for row in rows] for key in ("LRD", "CRD")},
+            "seconds": summary["loop_seconds"] if is_whole else math.nan,
+            "asleep": summary.get("share_asleep", 0.) if is_whole else math.nan}
+
+
+def mean_of_whole(runs: Sequence[dict], key: str, pattern: str, factor: float = 1.) -> str:
+    """Mean of seconds or shares of sleepers over the runs that were not restarted."""
+    values = [run[key] for run in runs if not math.isnan(run[key])]
+    return format(factor * statistics.mean(values), pattern) if values else "restarted"
 
 
 def compute(runs: Sequence[Run], options: argparse.Namespace,

@@ -22,7 +22,8 @@ from eunoe.launch import Failure
 from eunoe.repository import CASES
 from eunoe.tables import Table
 
-from .series import arguments, compute, in_errors, layers_of, mean_and_spread, publish, spreading_command
+from .series import (arguments, at_least, compute, in_errors, layers_of, mean_and_spread, mean_of_whole, publish,
+                     spreading_command)
 
 SLEEP = "model parameters/adaptive sparse contacts"
 
@@ -75,18 +76,17 @@ def table_of(runs: dict[bool, list[dict]]) -> tuple[Table, float]:
 def sentence(runs: dict[bool, list[dict]], worst: float) -> str:
     first = min(5, len(runs[False][0]["LRD"]))
     means = [[statistics.mean(run["LRD"][first - 1:]) for run in runs[sleep]] for sleep in (False, True)]
-    seconds = [statistics.mean(run["seconds"] for run in runs[sleep]) for sleep in (False, True)]
-    asleep = statistics.mean(run["asleep"] for run in runs[True])
+    seconds = [mean_of_whole(runs[sleep], "seconds", ".0f") for sleep in (False, True)]
     return (f"{len(runs[False])} and {len(runs[True])} seeds. Largest difference: {worst:.1f} standard errors. "
             f"Mean LRD from layer {first} on (awake, with sleep, difference in standard errors): "
-            f"{', '.join(cells_of(*means))}. Loop: {seconds[0]:.0f} s awake, {seconds[1]:.0f} s with sleep, "
-            f"{100. * asleep:.0f} % of all particle steps slept.")
+            f"{', '.join(cells_of(*means))}. Loop (s): {seconds[0]} awake, {seconds[1]} with sleep; "
+            f"{mean_of_whole(runs[True], 'asleep', '.0f', 100.)} % of all particle steps slept.")
 
 
 def main(words: list[str]) -> int:
     parser = arguments(__doc__, [1, 2, 3, 4])
     parser.add_argument("--case", type=Path, default=CASES / "spreading" / "quickstart.prm")
-    parser.add_argument("--layers", type=int, default=21)
+    parser.add_argument("--layers", type=at_least(2), default=21)
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--set", action="append", default=[])
     options = parser.parse_args(words)
