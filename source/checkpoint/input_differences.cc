@@ -46,28 +46,43 @@ bool are_equal(const std::string &a, const std::string &b)
                     });
 }
 
+/// Notes what differs in an entry, unless it may.
+void note(const std::pair<Path, std::string> &place, const std::string &what, Problems &problems)
+{
+  if (!is_harmless(place.first, place.second))
+    problems.add(describe(place.first, place.second), what,
+                 "Set it back, or start anew with 'restart = false' in subsection 'restart'.");
+}
+
 } // namespace
 
 void find_input_differences(const std::string &now, const std::string &then,
                             const std::string &checkpoint, Problems &problems)
 {
   const EntryValues entries_now = values_in(now), entries_then = values_in(then);
-  const auto note = [&](const auto &place, const std::string &what) {
-    if (!is_harmless(place.first, place.second))
-      problems.add(describe(place.first, place.second), what,
-                   "Set it back, or start anew with 'restart = false' in subsection 'restart'.");
-  };
   for (const auto &[place, value] : entries_now) {
     const auto before = entries_then.find(place);
     if (before == entries_then.end())
-      note(place, "is set, and was not known in the run that wrote " + checkpoint + ".");
+      note(place, "is set, and was not known in the run that wrote " + checkpoint + ".", problems);
     else if (!are_equal(value, before->second))
-      note(place, "is '" + shortened(value) + "', and was '" + shortened(before->second) +
-                      "' in the run that wrote " + checkpoint + ".");
+      note(place,
+           "is '" + shortened(value) + "', and was '" + shortened(before->second) +
+               "' in the run that wrote " + checkpoint + ".",
+           problems);
   }
   for (const auto &[place, value] : entries_then)
     if (entries_now.count(place) == 0)
-      note(place, "is missing, and was '" + value + "' in the run that wrote " + checkpoint + ".");
+      note(place, "is missing, and was '" + value + "' in the run that wrote " + checkpoint + ".",
+           problems);
+}
+
+void find_file_differences(const EntryValues &now, const EntryValues &then,
+                           const std::string &checkpoint, Problems &problems)
+{
+  for (const auto &[place, digest] : now)
+    if (const auto before = then.find(place); before != then.end() && before->second != digest)
+      note(place, "names a file that had other contents in the run that wrote " + checkpoint + ".",
+           problems);
 }
 
 } // namespace eunoe

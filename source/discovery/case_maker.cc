@@ -1,43 +1,14 @@
 #include <eunoe/core/files.h>
-#include <eunoe/core/first_rank.h>
+#include <eunoe/core/named_files.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/case_maker.h>
 #include <eunoe/discovery/work_queue.h>
 
-#include <boost/algorithm/string/trim.hpp>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 namespace eunoe::discovery {
-
-namespace {
-
-/// Contents of the files that a case names in its entries, as they are not part of its text.
-std::string named_files(const std::string &input)
-{
-  std::string contents;
-  for (const auto &[place, value] : values_in(input)) {
-    std::error_code failure;
-    std::istringstream parts(value);
-    for (std::string name; std::getline(parts, name, ',');) {
-      boost::trim(name);
-      if (!std::filesystem::is_regular_file(name, failure))
-        continue;
-      std::ifstream stream(name, std::ios::binary);
-      std::ostringstream all;
-      all << stream.rdbuf();
-      contents += sha256(all.str());
-    }
-  }
-  return contents;
-}
-
-} // namespace
 
 std::string text_of(const RunRequest &request)
 {
@@ -85,7 +56,9 @@ StudyCase CaseMaker::make(const RunRequest &request) const
   const std::string of_first = broadcast(one.problem, comm);
   one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
   if (one.problem.empty()) {
-    const std::string files = broadcast(is_first_rank(comm) ? named_files(input) : "", comm);
+    std::string files;
+    for (const auto &[place, digest] : named_files(input, comm))
+      files += digest;
     one.names_files = !files.empty();
     one.key = sha256(files + input);
   } else

@@ -5,6 +5,7 @@
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/input_file.h>
 #include <eunoe/core/log.h>
+#include <eunoe/core/named_files.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/simulation/checkpoints.h>
@@ -30,8 +31,8 @@ void tell_differences(const Problems &differences, const std::string &path, Log 
   std::size_t n_one_sided = 0;
   for (const Problem &difference : differences.all()) {
     // Of a section that only one of them has, there would be many.
-    if (difference.what.find("', and was '") == std::string::npos ||
-        difference.what.size() < end.size())
+    if (difference.what.compare(0, 7, "is set,") == 0 ||
+        difference.what.compare(0, 11, "is missing,") == 0 || difference.what.size() < end.size())
       ++n_one_sided;
     else
       lines.push_back("  " + difference.where + " " +
@@ -138,6 +139,8 @@ void Checkpoints::open(Log &log)
 void Checkpoints::find(const std::string &input, const ControlParameters &control,
                        const PhaseJudge &judge, Log &log, Problems &problems)
 {
+  if (parameters.checkpoint || parameters.restart != "false")
+    files = named_files(input, comm);
   if (parameters.restart == "false")
     return;
   open(log);
@@ -156,6 +159,12 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
     throw checkpoint->damaged("it does not hold the input of its run.");
   Problems differences;
   find_input_differences(input, head["input"], checkpoint->path, differences);
+  // Those of older versions do not know the files of their run.
+  if (head.contains("files"))
+    understand([&](const nlohmann::ordered_json &of_run) {
+      find_file_differences(files, of_run.at("files").get<EntryValues>(), checkpoint->path,
+                            differences);
+    });
   // Where checkpoints have a path of their own, the results may lie elsewhere.
   EntryValues entries = values_in(head["input"]);
   has_own_results =
@@ -250,6 +259,7 @@ bool Checkpoints::is_due(const unsigned long long step)
 
 void Checkpoints::write(CheckpointWriter &writer, const unsigned long long step, Log &log)
 {
+  writer.head["files"] = files;
   const std::string path = store.write(writer, step);
   last_step = step;
   last_time = MPI_Wtime();

@@ -324,6 +324,26 @@ def turns_in_place(program: Program) -> None:
         raise Failure(said)
 
 
+def other_contents(program: Program) -> None:
+    """What a file holds that the input names belongs to the input."""
+    grains = program.folder / "grains.csv"
+    grains.write_text("p_x; p_y; p_z; diameters\n5e-3; 4e-3; 2e-3; 1e-3\n", encoding="utf-8")
+    text = (program.folder / "one_type.prm").read_text(encoding="utf-8")
+    begin = text.index("subsection insertion info")
+    (program.folder / "file.prm").write_text(
+        text[:begin] + "subsection insertion info\n  set insertion method = file\n"
+        "  set list of input files = grains.csv\nend\n" + text[text.index("subsection model parameters"):],
+        encoding="utf-8")
+    start = (*LOAD[1:2], "restart/frequency = 100", OUTPUT + "file")
+    program.run("file.prm", *start, END + "100")
+    program.run("file.prm", *start, END + "200", "restart/restart = auto", ranks=2)
+    grains.write_text("p_x; p_y; p_z; diameters\n6e-3; 4e-3; 2e-3; 1e-3\n", encoding="utf-8")
+    expect(program.run("file.prm", *start, END + "300", "restart/restart = auto", code=2),
+           "entry 'list of input files' names a file that had other contents in the run that wrote")
+    expect(program.run("file.prm", *start, END + "300", CONTINUE),
+           "with another input. What differs:", "entry 'list of input files' names a file that had other contents")
+
+
 def jumps(program: Program) -> None:
     """A motion that would have begun before the phase is told of."""
     said = program.run("case.prm", *LOAD[1:], END + "6010", CONTINUE, "restart/restart folder = load", OUTPUT + "jumps",
@@ -336,7 +356,8 @@ def main() -> int:
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
     for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving,
-                    refused, loads_at_the_beginning, jumps, walls_of_one_name, only_the_balance, turns_in_place):
+                    refused, loads_at_the_beginning, jumps, walls_of_one_name, only_the_balance, turns_in_place,
+                    other_contents):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)
     return attempts.exit_code()
 

@@ -1,6 +1,7 @@
 #ifndef eunoe_checkpoint_input_differences_h
 #define eunoe_checkpoint_input_differences_h
 
+#include <eunoe/core/input_file.h>
 #include <eunoe/core/problems.h>
 
 #include <string>
@@ -14,6 +15,10 @@ namespace eunoe {
 /// @param checkpoint its path, for messages
 void find_input_differences(const std::string &now, const std::string &then,
                             const std::string &checkpoint, Problems &problems);
+
+/// The same of the contents of files that both name (`named_files`).
+void find_file_differences(const EntryValues &now, const EntryValues &then,
+                           const std::string &checkpoint, Problems &problems);
 
 } // namespace eunoe
 

@@ -3,6 +3,7 @@
 
 #include <eunoe/checkpoint/checkpoint_store.h>
 #include <eunoe/checkpoint/restart_parameters.h>
+#include <eunoe/core/input_file.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/run_lock.h>
 
@@ -91,6 +92,7 @@ private:
   CheckpointStore store;
   std::unique_ptr<Checkpoint> checkpoint;
   std::unique_ptr<RunLock> lock;
+  EntryValues files; ///< digests of those that the input names
   bool is_other_input = false, is_own_folder = true, has_own_results = true;
   double last_time = 0.; ///< by the wall clock (s)
   /// Of the one that was opened or written last.

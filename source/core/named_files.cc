@@ -1,0 +1,45 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/named_files.h>
+#include <eunoe/core/sha256.h>
+
+#include <boost/algorithm/string/trim.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace eunoe {
+namespace {
+
+EntryValues on_this_rank(const std::string &input)
+{
+  EntryValues digests;
+  for (const auto &[place, value] : values_in(input)) {
+    std::error_code failure;
+    std::istringstream parts(value);
+    for (std::string name; std::getline(parts, name, ',');) {
+      boost::trim(name);
+      if (!std::filesystem::is_regular_file(name, failure))
+        continue;
+      std::ifstream stream(name, std::ios::binary);
+      std::ostringstream all;
+      all << stream.rdbuf();
+      digests[place] += sha256(all.str());
+    }
+  }
+  return digests;
+}
+
+} // namespace
+
+EntryValues named_files(const std::string &input, MPI_Comm comm)
+{
+  nlohmann::json json;
+  if (is_first_rank(comm))
+    json = on_this_rank(input);
+  return nlohmann::json::parse(broadcast(json.dump(), comm)).get<EntryValues>();
+}
+
+} // namespace eunoe
