@@ -6,6 +6,8 @@
 #include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/simulation/simulation.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -42,56 +44,85 @@ DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
       records[row.key] = row.record;
 }
 
-/// Whether simulations that another engine has made have the same results now.
-bool DemSimulator::gives_the_same(const std::vector<const RunTable::Row *> &samples)
+namespace {
+
+/// The parts of a study that a run uses: its experiment and the factors that it moves.
+std::vector<std::string> parts_of(const RunRequest &request)
+{
+  std::vector<std::string> parts = {"experiment " + request.experiment};
+  for (const auto &[name, amplitude] : request.amplitudes)
+    parts.push_back(name);
+  return parts;
+}
+
+} // namespace
+
+/// Runs simulations of another engine again, as far as this one has not made them.
+/// @return parts of the study in whose simulations a result has changed
+std::set<std::string> DemSimulator::find_changes(
+    const std::map<std::string, const RunTable::Row *> &samples)
 {
   std::vector<StudyCase> cases;
-  for (const RunTable::Row *const row : samples)
-    if (records.count(row->key) == 0)
+  std::set<std::string> begun;
+  for (const auto &[part, row] : samples)
+    if (records.count(row->key) == 0 && begun.insert(row->key).second)
       cases.push_back(maker.make(row->request));
   if (!cases.empty())
     simulate_all(cases);
-  return std::all_of(samples.begin(), samples.end(), [this](const RunTable::Row *row) {
-    return text_of(records.at(row->key).measurements) == text_of(row->record.measurements);
-  });
+  std::set<std::string> changed;
+  for (const auto &[part, row] : samples)
+    if (text_of(records.at(row->key).measurements) != text_of(row->record.measurements))
+      changed.insert(part);
+  return changed;
+}
+
+/// A sample of each experiment and each factor is run again, with as few other factors as there
+/// are. What uses a part with other results is not adopted.
+void DemSimulator::adopt(const std::vector<const RunTable::Row *> &rows)
+{
+  const auto is_known = [this](const RunTable::Row *row) { return records.count(row->key) > 0; };
+  const auto n_unknown =
+      static_cast<std::ptrdiff_t>(rows.size()) - std::count_if(rows.begin(), rows.end(), is_known);
+  if (n_unknown == 0)
+    return;
+  // What this engine has made is not made again, so that a study that goes on finds the same.
+  const auto cost = [&](const RunTable::Row *row) {
+    return std::pair(!is_known(row), row->request.amplitudes.size());
+  };
+  std::map<std::string, const RunTable::Row *> samples;
+  for (const RunTable::Row *const row : rows)
+    for (const std::string &part : parts_of(row->request))
+      if (const auto [sample, is_first] = samples.emplace(part, row);
+          !is_first && cost(row) < cost(sample->second))
+        sample->second = row;
+  const std::set<std::string> changed = find_changes(samples);
+  std::vector<std::int64_t> adopted;
+  for (const RunTable::Row *const row : rows) {
+    const std::vector<std::string> parts = parts_of(row->request);
+    if (std::any_of(parts.begin(), parts.end(),
+                    [&](const std::string &part) { return changed.count(part) > 0; }))
+      continue;
+    adopted.push_back(row->number);
+    records.emplace(row->key, row->record);
+  }
+  table.adopt(adopted, engine_digest());
+  log.line("Of " + std::to_string(n_unknown) +
+           " runs of an earlier version of the engine, those are used of whose experiments and "
+           "factors a sample, run again, gave the same bits" +
+           (changed.empty() ? ": all." : "; not those with: " + boost::join(changed, ", ") + "."));
 }
 
 void DemSimulator::adopt_earlier_runs()
 {
-  constexpr std::size_t n_samples = 3;
   std::map<std::string, std::vector<const RunTable::Row *>> others;
   for (const RunTable::Row &row : earlier)
-    if (row.engine != engine_digest() && row.record.failure.empty())
+    // A failure may have been the engine's. The case may have changed since, or belong to another
+    // study.
+    if (row.engine != engine_digest() && row.record.failure.empty() &&
+        maker.is_of_study(row.request) && maker.key(row.request) == row.key)
       others[row.engine].push_back(&row);
-  for (auto &[engine, rows] : others) {
-    const auto is_known = [this](const RunTable::Row *row) { return records.count(row->key) > 0; };
-    const auto n_unknown = rows.size() - std::count_if(rows.begin(), rows.end(), is_known);
-    if (n_unknown == 0)
-      continue;
-    // What this engine has made is not made again, so that a study that goes on finds the same.
-    // Then runs with effects: they use more of the engine.
-    std::stable_sort(rows.begin(), rows.end(), [&](const auto *a, const auto *b) {
-      return std::make_pair(is_known(a), a->request.amplitudes.size()) >
-             std::make_pair(is_known(b), b->request.amplitudes.size());
-    });
-    std::vector<const RunTable::Row *> samples;
-    for (const RunTable::Row *const row : rows)
-      if (samples.size() < n_samples && maker.is_of_study(row->request) &&
-          maker.make(row->request).key == row->key)
-        samples.push_back(row);
-    if (samples.empty())
-      continue;
-    const bool same = gives_the_same(samples);
-    log.line(std::to_string(n_unknown) + " runs of an earlier version of the engine are " +
-             (same ? "used: " : "not used: ") + std::to_string(samples.size()) +
-             " of them, run again, gave " + (same ? "the same bits." : "other results."));
-    if (!same)
-      continue;
-    table.adopt(engine, engine_digest());
-    for (const RunTable::Row &row : earlier)
-      if (row.engine == engine)
-        records.emplace(row.key, row.record);
-  }
+  for (const auto &[engine, rows] : others)
+    adopt(rows);
 }
 
 bool DemSimulator::concerns(const std::string &experiment,

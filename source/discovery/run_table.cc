@@ -180,11 +180,15 @@ void RunTable::store_keys(const std::map<std::string, std::string> &keys) const
   });
 }
 
-void RunTable::adopt(const std::string &old_engine, const std::string &engine) const
+void RunTable::adopt(const std::vector<std::int64_t> &rows, const std::string &engine) const
 {
   on_first_rank(comm, [&] {
-    Connection(file).run("UPDATE OR IGNORE runs SET engine = ? WHERE engine = ?",
-                         {engine, old_engine});
+    Connection connection(file);
+    connection.run("BEGIN IMMEDIATE");
+    for (const std::int64_t row : rows)
+      connection.run("UPDATE OR IGNORE runs SET engine = ? WHERE number = ?",
+                     {engine, std::to_string(row)});
+    connection.run("COMMIT");
   });
 }
 

@@ -18,7 +18,8 @@ using namespace test;
 using namespace eunoe::discovery;
 
 const std::string folder = DISCOVERY_TESTS;
-const std::string table = "campaign.sqlite", table_alone = "campaign_alone.sqlite";
+const std::string table = "campaign.sqlite", table_alone = "campaign_alone.sqlite",
+                  table_changed = "campaign_changed.sqlite";
 
 /// One row per run; the row of a failed run is empty.
 Numbers numbers(const std::vector<RunResult> &results)
@@ -159,18 +160,30 @@ void run_from_table(const Setting &setting, const std::vector<RunResult> &first,
   check("an effect that the process can have", simulator.concerns("box", {"tilt"}));
 }
 
+/// Gives all rows to another engine.
+void rename_engine(const RunTable &rows, const std::string &engine)
+{
+  std::vector<std::int64_t> numbers;
+  for (const RunTable::Row &row : rows.rows())
+    if (row.engine == engine_digest())
+      numbers.push_back(row.number);
+  rows.adopt(numbers, engine);
+}
+
 /// Rows of another engine are used if samples of them give the same bits.
 void run_after_a_change(const Setting &setting, const std::vector<RunResult> &first, Log &log)
 {
   RunTable rows(table, setting.comm);
-  rows.adopt(engine_digest(), "another engine");
+  rename_engine(rows, "another engine");
   {
     DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
     simulator.find_data_points(1);
-    check_runs("samples are run again", simulator, 3);
-    check("the rest is adopted", simulator.run(requests) == first && simulator.n_runs() == 3);
+    // Two experiments and two effects; one of them, alone of its experiment, is sample of both.
+    check_runs("samples are run again", simulator, 4);
+    // Runs that failed may fail no more.
+    check("the rest is adopted", simulator.run(requests) == first && simulator.n_runs() == 6);
   }
-  rows.adopt(engine_digest(), "another engine");
+  rename_engine(rows, "another engine");
   for (RunTable::Row row : rows.rows()) {
     row.engine = "an engine with other results";
     for (Measurement &m : row.record.measurements)
@@ -189,6 +202,30 @@ void run_after_a_change(const Setting &setting, const std::vector<RunResult> &fi
   check("and a study is told of each run once", known.size() == 5, std::to_string(known.size()));
 }
 
+/// Where an engine has changed one effect, the runs with that effect are made again.
+void run_after_a_change_of_an_effect(const Setting &setting, const std::vector<RunResult> &first,
+                                     Log &log)
+{
+  const RunTable before(table, setting.comm);
+  RunTable changed(table_changed, setting.comm);
+  changed.open();
+  for (RunTable::Row row : before.rows()) {
+    if (row.engine != engine_digest())
+      continue;
+    row.engine = "an engine with another tilt";
+    if (row.request.amplitudes.count("tilt") > 0)
+      for (Measurement &m : row.record.measurements)
+        m.value *= 1. + 1e-15;
+    if (is_first_rank())
+      changed.store(row);
+  }
+  MPI_Barrier(setting.comm);
+  DemSimulator simulator(setting.experiments, setting.effects, table_changed, 1, setting.comm, log);
+  simulator.find_data_points(1);
+  check("what has changed is not adopted", simulator.run(requests) == first);
+  check_runs("and the rest is", simulator, 6);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -196,7 +233,7 @@ EUNOE_MPI_TEST()
   const MPI_Comm comm = MPI_COMM_WORLD;
   Log log(comm, true);
   if (is_first_rank())
-    for (const std::string &old : {table, table_alone})
+    for (const std::string &old : {table, table_alone, table_changed})
       std::filesystem::remove(old);
   MPI_Barrier(comm);
 
@@ -204,5 +241,6 @@ EUNOE_MPI_TEST()
   const std::vector<RunResult> first = run_first(setting, log);
   run_from_table(setting, first, log);
   run_after_a_change(setting, first, log);
+  run_after_a_change_of_an_effect(setting, first, log);
   find_rare_points(setting, log);
 }

@@ -60,7 +60,8 @@ private:
   void serve_and_check_stop(unsigned long long step);
   void simulate_all(const std::vector<StudyCase> &cases);
   void adopt_earlier_runs();
-  bool gives_the_same(const std::vector<const RunTable::Row *> &samples);
+  void adopt(const std::vector<const RunTable::Row *> &rows);
+  std::set<std::string> find_changes(const std::map<std::string, const RunTable::Row *> &samples);
   RunResult result(const RunRequest &request, const RunRecord &record) const;
   void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 

@@ -54,8 +54,9 @@ public:
   /// Adds keys by recipe; collective.
   void store_keys(const std::map<std::string, std::string> &keys) const;
 
-  /// Gives all rows of one engine to another that was found to give the same results; collective.
-  void adopt(const std::string &old_engine, const std::string &engine) const;
+  /// Gives rows, by their numbers, to an engine that was found to give the same results;
+  /// collective.
+  void adopt(const std::vector<std::int64_t> &rows, const std::string &engine) const;
 
 private:
   const std::string file;
