@@ -303,6 +303,11 @@ void modes_and_noise()
   const InstrumentNoise declared(modes, replicate_covariance,
                                  {deviation, Eigen::VectorXd::Ones(21)});
   check("declared deviations are believed", std::abs(declared.at(0.5)(0) - 9999.) < 1e-6);
+  constexpr double coarse = 1e12;
+  const double mean_of_coarse = ExcessVariance(coarse, 10., coarse).mean();
+  check("an instrument far coarser than the runs scatter",
+        mean_of_coarse > 0.5 * coarse && mean_of_coarse < 3. * coarse,
+        std::to_string(mean_of_coarse));
 }
 
 } // namespace

@@ -46,7 +46,8 @@ ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freed
     average = values[0];
     return;
   }
-  constexpr double first = 0.003, last = 1e8, step = 1.3;
+  constexpr double first = 0.003, step = 1.3;
+  const double last = std::max(1e8, 1e3 * ratio);
   double sum = 0., prior = 0., highest = -1e300, before = 0.;
   std::vector<double> logs;
   for (double value = first; value < last; value *= step) {
