@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -22,6 +23,11 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
   base = values_in(read.as_input_file());
   process = read.process_name;
+  // Every run begins from nothing.
+  if (base.at({{"restart"}, "restart"}) == "true")
+    problems.add(file + ": subsection 'restart' / entry 'restart'",
+                 "is true, and a study simulates a case from its beginning, without checkpoints.",
+                 "Make a case of it that needs none, and set it to false.");
   if (problems.all().size() != n_before)
     return;
   try {
@@ -111,7 +117,7 @@ Parameters Experiment::make(const std::vector<std::string> &overrides, Problems 
                           [this](const std::string &path) { return texts.at(path); });
 }
 
-Effect make_nuisance(const NuisanceParameters &parameters)
+Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems)
 {
   Effect effect;
   Factor &factor = effect.factor;
@@ -122,10 +128,14 @@ Effect make_nuisance(const NuisanceParameters &parameters)
   factor.upper = 3. * parameters.standard_deviation;
   factor.sign = Factor::Sign::both;
   factor.mechanism = "uncertain number of the base model";
-  Problems none;
+  const std::string where = "Nuisance '" + parameters.name + "'";
   for (const std::string &entry : parameters.entries) {
-    effect.patch.entries.push_back(parse_override(entry + " = " + parameters.value, none));
-    effect.patch.entries.back().where = "Nuisance '" + parameters.name + "'";
+    Problems found;
+    effect.patch.entries.push_back(parse_override(entry + " = " + parameters.value, found));
+    effect.patch.entries.back().where = where;
+    for (const Problem &problem : found.all())
+      problems.add(where + " / entry 'entries': '" + shortened(entry) + "':", problem.what,
+                   "Write 'subsection/entry', and ';' between several.");
   }
   return effect;
 }

@@ -1,4 +1,5 @@
 #include <eunoe/core/input_file.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/discovery/measured_csv.h>
 
 #include <boost/algorithm/string.hpp>
@@ -30,7 +31,8 @@ public:
     std::istringstream stream(text);
     bool has_heading = false;
     for (std::string line; std::getline(stream, line);) {
-      ++number;
+      if (++number == 1 && boost::starts_with(line, byte_order_mark))
+        line.erase(0, byte_order_mark.size());
       boost::trim(line);
       if (line.empty())
         continue;

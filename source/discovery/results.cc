@@ -115,6 +115,16 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
     folder.write_csv(boost::replace_all_copy(name, " ", "_") + ".csv", answer[name]);
 }
 
+namespace {
+
+/// As one word of a shell's command.
+std::string quoted(const std::string &text)
+{
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
+}
+
+} // namespace
+
 std::string page_command(const std::string &folder)
 {
   std::error_code failure;
@@ -123,8 +133,8 @@ std::string page_command(const std::string &folder)
                                  fs::path(source_folder()) / "contrib/tools"})
     if (fs::is_regular_file(script, failure)) {
       const bool has_own = fs::exists("/usr/bin/python3", failure);
-      return std::string(has_own ? "/usr/bin/python3" : "python3") + " '" + script.string() +
-             "' discovery-report '" + folder + "'";
+      return std::string(has_own ? "/usr/bin/python3" : "python3") + " " + quoted(script.string()) +
+             " discovery-report " + quoted(folder);
     }
   return "";
 }

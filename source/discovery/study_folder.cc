@@ -75,6 +75,8 @@ void StudyFolder::write_csv(const std::string &name, const nlohmann::ordered_jso
   const std::string csv = as_csv(list);
   if (!csv.empty())
     write(name, csv);
+  else if (is_first_rank(comm))
+    remove_file(file(name)); // that of an earlier answer
 }
 
 void StudyFolder::write(const std::string &name, const std::string &text) const

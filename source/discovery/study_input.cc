@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/named_files.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
@@ -41,6 +42,8 @@ std::map<std::string, std::string> StudyInput::identity() const
   for (const Experiment &experiment : experiments)
     parts["case of " + experiment.name()] =
         experiment.make(experiment.overrides({}, {}), none).as_input_file();
+  for (const auto &[name, digest] : digests)
+    parts["files of " + name] = digest;
   for (const Effect &effect : factors)
     if (effect.factor.kind == Factor::Kind::effect) {
       std::string &text = parts["effect " + effect.factor.name];
@@ -105,10 +108,15 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
                     [&](const Effect &e) { return e.factor.name == nuisance.name; }))
       problems.add(file + ": nuisance '" + nuisance.name + "'", "has the name of an effect.",
                    "Rename it, or exclude the effect.");
-    study.factors.push_back(make_nuisance(nuisance));
+    study.factors.push_back(make_nuisance(nuisance, problems));
   }
   if (problems.empty())
     check_patches(study, problems);
+  if (problems.empty())
+    for (const Experiment &experiment : study.experiments)
+      for (const auto &[place, digest] : named_files(
+               experiment.make(experiment.overrides({}, {}), problems).as_input_file(), comm))
+        study.digests[experiment.name()] += digest;
   return study;
 }
 

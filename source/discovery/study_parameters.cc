@@ -246,6 +246,8 @@ void StudyParameters::check(const ParameterCheck &check) const
     check_name(check, path, nuisances[k].name, names);
     check.require(!nuisances[k].entries.empty(), path, "entries", "is empty.",
                   "Name the entries of the case that are uncertain.");
+    check.require(nuisances[k].value.find("amplitude") != std::string::npos, path, "value",
+                  "does not depend on the amplitude.", "Use 'amplitude' in '${...}'.");
     check.require(nuisances[k].standard_deviation > 0., path, "standard deviation", "is 0.",
                   "Give a positive one, or remove the nuisance.");
   }

@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
@@ -89,7 +90,8 @@ Effect make_time_step_change()
   p.name = time_step_change;
   p.entries = {"simulation control/time step"};
   p.value = "${base * (1 + amplitude)}";
-  return make_nuisance(p);
+  Problems none;
+  return make_nuisance(p, none);
 }
 
 /// Readings of an instrument with noise, from simulated repeats.
@@ -126,8 +128,9 @@ std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
         takes_all ||
         std::any_of(synthetic.observables.begin(), synthetic.observables.end(),
                     [&](const std::string &words) {
-                      return words == points[c].observable ||
-                             words == points[c].observable + ":" + std::to_string(points[c].index);
+                      const std::string wanted = boost::erase_all_copy(words, " ");
+                      return wanted == points[c].observable ||
+                             wanted == points[c].observable + ":" + std::to_string(points[c].index);
                     });
     // A data point without a value, such as a loss that never happened, is not measured.
     if (is_wanted && std::isfinite(row.value) && row.standard_deviation > 0.)
@@ -143,6 +146,26 @@ void refuse_existing(const std::string &file, MPI_Comm comm)
   std::error_code failure;
   if (!broadcast(rank == 0 && std::filesystem::exists(file, failure) ? "yes" : "", comm).empty())
     throw UserError(file + " is there already. Remove it, or name another file.");
+}
+
+/// Refuses observables that no experiment has, before any run is made.
+void check_observables(const std::vector<std::string> &wanted,
+                       const std::vector<Experiment> &experiments)
+{
+  Problems problems;
+  for (const std::string &words : wanted) {
+    const std::string name = boost::trim_copy(words.substr(0, words.find(':')));
+    const bool is_there = std::any_of(experiments.begin(), experiments.end(), [&](const auto &e) {
+      const auto &all = e.observables();
+      return std::any_of(all.begin(), all.end(), [&](const auto &o) { return o.name == name; });
+    });
+    if (!is_there && words != "all")
+      problems.add("subsection 'twin' / entry 'observables':",
+                   "no experiment measures '" + shortened(name) + "'.",
+                   "Give 'all', or names that eunoe-discovery --list-observables gives.");
+  }
+  if (!problems.empty())
+    throw UserError(problems);
 }
 
 /// What is sealed: the hidden truth, and how the data were made of it.
@@ -222,6 +245,9 @@ void make_synthetic_data(const StudyParameters &study, const std::vector<Effect>
   std::vector<Effect> changes = factors;
   changes.push_back(make_time_step_change());
   const std::vector<Experiment> experiments = experiments_of(study, comm);
+  check_observables(synthetic.observables, experiments);
+  for (const std::string &file : {data_file, sealed_file})
+    create_folder((std::filesystem::path(".") / file).parent_path().string(), comm);
   DemSimulator simulator(experiments, changes, sealed_file + ".runs.sqlite", study.ranks_per_run,
                          comm, log);
   MeasuredData data = measure_truth(synthetic, experiments, truth.amplitudes, simulator, normal);

@@ -70,11 +70,14 @@ def make_data(program: Program) -> None:
     assert json.loads(sealed)["effects"] == {"tilt": 0.7}
     assert "tilt" not in data and ",held-out\n" in data and ",fit\n" in data
     expect(program.run("--make-twin", "truth.prm"), FAILED, "is there already")
-    few = ("twin/observables = drift, height:2", "discovery/measured data = few.csv", "twin/sealed file = few.json")
+    expect(program.run("--make-twin", "truth.prm", "--set", "twin/observables = drift, heigth", "--set",
+                       "discovery/measured data = few/few.csv", "--set", "twin/sealed file = few.json"), FAILED,
+           "no experiment measures 'heigth'")
+    few = ("twin/observables = drift, height: 2", "discovery/measured data = few/few.csv", "twin/sealed file = few.json")
     expect(program.run("--make-twin", "truth.prm", *(word for entry in few for word in ("--set", entry))), 0)
-    rows = [line.split(",") for line in (folder / "few.csv").read_text().splitlines() if line[0] != "#"]
+    rows = [line.split(",") for line in (folder / "few" / "few.csv").read_text().splitlines() if line[0] != "#"]
     assert {tuple(row[1:3]) for row in rows[1:]} == {("drift", "0"), ("height", "2")}, rows
-    for name in ("few.csv", "few.json", "few.json.runs.sqlite"):
+    for name in ("few/few.csv", "few.json", "few.json.runs.sqlite"):
         (folder / name).unlink()
     # What only some runs of the model give is left out of a study, with a note.
     (folder / "measured.csv").write_text(data + "box,height,4,0.02,0.001,4,fit\n")
@@ -92,6 +95,12 @@ def check_refusals(program: Program) -> None:
     expect(program.run("study.prm", "--set", "discovery/measured data = no.csv"), BAD_INPUT,
            "no.csv cannot be read")
     expect(program.run("study.prm", "--set", "twin/seed = 1"), BAD_INPUT, "subsection 'twin' is unknown")
+    expect(program.run("study.prm", "--set", "discovery/nuisance 0/entries = /lagrangian physical properties/g"), BAD_INPUT,
+           "Nuisance 'density' / entry 'entries': '/lagrangian physical properties/g': its path has an empty part")
+    expect(program.run("study.prm", "--set", "discovery/nuisance 0/value = ${base * 1.1}"), BAD_INPUT,
+           "does not depend on the amplitude")
+    expect(program.run("study.prm", "--set", "discovery/experiment 0/overrides = restart/restart = true"), BAD_INPUT,
+           "entry 'restart' is true, and a study simulates a case from its beginning")
     expect(program.run("no.prm"), BAD_INPUT, "no.prm cannot be read")
     expect(program.run(), BAD_INPUT, "An input file is missing")
     (folder / "effects" / "bad.prm").write_text(

@@ -108,6 +108,7 @@ void measurements()
 {
   const std::string row = "box,height,0,1e-3,1e-4,3,fit\n";
   measured("in order", heading + row);
+  measured("with a byte-order mark", "\xEF\xBB\xBF" + heading + row);
   measured("empty", "");
   measured("only a heading", heading);
   measured("another heading", "experiment,observable\n" + row);

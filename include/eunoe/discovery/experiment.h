@@ -56,8 +56,8 @@ private:
   EntryValues base;                         ///< all entries of the base case
 };
 
-/// Makes the factor for a nuisance of the study.
-Effect make_nuisance(const NuisanceParameters &parameters);
+/// Makes the factor for a nuisance of the study. Entries that are none go to @p problems.
+Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems);
 
 } // namespace eunoe::discovery
 
