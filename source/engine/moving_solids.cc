@@ -1,7 +1,10 @@
+#include <eunoe/core/parameter_section.h>
+#include <eunoe/core/problems.h>
 #include <eunoe/engine/moving_solids.h>
 #include <eunoe/solids/saved_states.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace eunoe {
 
@@ -27,8 +30,14 @@ void MovingSolids::take(std::vector<Solid> &&all, const std::size_t number_of_gi
 
 void MovingSolids::move_to(const double time)
 {
-  for (Solid &solid : solids)
+  for (Solid &solid : solids) {
     solid.state = solid.motion->at(time);
+    const RigidState &state = solid.state;
+    if (!std::isfinite(norm(state.centre) + norm(state.velocity) + norm(state.angular_velocity)))
+      throw UserError("'" + solid.name + "' has no place or velocity at t = " + format(time) +
+                      " s: its motion is no finite number there. Correct its velocity, so that it "
+                      "is one until the end of the run.");
+  }
 }
 
 void MovingSolids::note_search()

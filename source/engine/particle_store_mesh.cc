@@ -102,8 +102,10 @@ void ParticleStore::repartition(const LoadBalancingParameters &parameters)
 {
   Implementation &impl = *implementation;
   const auto connection = compat::connect_weight(impl.forest.mesh(), [&](const auto &cell) {
-    return static_cast<unsigned int>(impl.cell_weight(to_vec3(cell->center()), parameters) +
-                                     impl.weight(impl.handler.particles_in_cell(cell), parameters));
+    constexpr double most = 1e9; // p4est's weights are int
+    return static_cast<unsigned int>(
+        std::min(most, impl.cell_weight(to_vec3(cell->center()), parameters) +
+                           impl.weight(impl.handler.particles_in_cell(cell), parameters)));
   });
   impl.change_mesh([](Forest::Triangulation &mesh) { mesh.repartition(); });
   connection.disconnect();

@@ -13,7 +13,9 @@ void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "contact detection method", method, "constant|dynamic",
                   "Search for pairs every so many steps, or when a particle has moved too far.");
   declare::count(prm, "frequency", frequency,
-                 "constant: steps between searches. dynamic looks at every step.", 1);
+                 "constant: steps between searches, of which there are more where a solid has "
+                 "moved too far. dynamic looks at every step.",
+                 1);
   declare::at_least(prm, "dynamic contact search size coefficient", displacement_share, 1e-3,
                     "Share of the safe displacement after which the search is repeated; more than "
                     "1 is as 1.");
@@ -48,8 +50,10 @@ void SearchCriterion::ask(const unsigned long long step, const Travel &travel,
 
 bool SearchCriterion::is_due(const MovingSolids &solids)
 {
+  // Between the searches of "constant" particles are watched by the guard; solids are here, as
+  // powder at rest would not see them come.
   if (answer == MPI_REQUEST_NULL)
-    return false;
+    return solids.moved_since_search() > 0.5 * allowed;
   MPI_Wait(&answer, MPI_STATUS_IGNORE);
   return !(largest[0] + std::max(largest[0], solids.moved_since_search()) <= allowed);
 }

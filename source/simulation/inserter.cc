@@ -33,7 +33,9 @@ Inserter::Event Inserter::next_event(const Domain &domain, const ParticleArrays 
   const InsertionParameters &p = parameters;
   if (p.removes)
     for (std::size_t row = 0; row < particles.size(); ++row)
-      if (is_in_box(particles.position[row].vec(), p.removal_lower, p.removal_upper)) {
+      if (is_in_box(domain.periods().wrap(particles.position[row].vec()), p.removal_lower,
+                    p.removal_upper))
+      {
         leaving[row] = true;
         if (row < particles.n_owned)
           event.removed.push_back(row);

@@ -1,10 +1,19 @@
+#include <eunoe/core/problems.h>
 #include <eunoe/state/particle_arrays.h>
+
+#include <string>
 
 namespace eunoe {
 
 void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
                             const unsigned int n_extra)
 {
+  // Kernels have places in bytes, in 32 bits.
+  constexpr std::size_t most = (std::size_t(1) << 32) / sizeof(Quad);
+  if (owned + ghosts > most)
+    throw UserError("A rank has " + std::to_string(owned + ghosts) +
+                    " particles with those that it sees of others, and can have " +
+                    std::to_string(most) + ". Use more ranks.");
   n_owned = owned;
   n_ghosts = ghosts;
   for (auto *array : {&position, &velocity, &spin, &force, &torque})

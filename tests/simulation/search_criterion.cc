@@ -65,5 +65,6 @@ EUNOE_MPI_TEST()
   parameters.frequency = 10;
   check("dynamic looks at every step", is_due(parameters, 1., 1., 9));
   parameters.method = "constant";
-  check("constant: then always", !is_due(parameters, 1., 1., 9) && is_due(parameters, 0., 0., 10));
+  check("constant: then always", !is_due(parameters, 1., 0., 9) && is_due(parameters, 0., 0., 10));
+  check("and when a solid has come near", is_due(parameters, 0., 1., 9));
 }
