@@ -40,8 +40,7 @@ Range range_of(const SizeDistributionParameters &p, const Range &where_none_is_g
 }
 
 void check_spread(const SizeDistributionSection &section, const SizeDistributionParameters &p,
-                  const Range &range, const ParameterCheck &check,
-                  const ParameterCheck::Path &path)
+                  const Range &range, const ParameterCheck &check, const ParameterCheck::Path &path)
 {
   p.check_average(check, path);
   check.require(p.standard_deviation > 0., path, "standard deviation",
