@@ -34,7 +34,7 @@ Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     if (target.knows(k))
       make_grid(k);
-  discrepancies = make_discrepancies(std::nullopt);
+  discrepancies = make_discrepancies();
 }
 
 std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
@@ -111,14 +111,13 @@ void Evidence::make_grid(const std::size_t k)
 
 /// "None of these" is a change of any size, half of it along directions like those of the
 /// catalogue's effects, half along any.
-std::vector<Evidence::Covariance> Evidence::make_discrepancies(
-    const std::optional<std::size_t> without) const
+std::vector<Evidence::Covariance> Evidence::make_discrepancies() const
 {
   const Eigen::Index n = target().data().size();
   Eigen::MatrixXd along = Eigen::MatrixXd::Zero(n, n);
-  for (std::size_t k = 0; k < grid.size(); ++k)
-    for (std::size_t i = n_places / 2; k != without && i < grid[k].size(); i += n_places) {
-      const Target::Prediction &with = grid[k][i].hypothesis.prediction;
+  for (const auto &places : grid)
+    for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
+      const Target::Prediction &with = places[i].hypothesis.prediction;
       const Eigen::VectorXd change = with.mean - nothing().prediction.mean;
       const double noise = with.leverage.sum();
       const double square = change.squaredNorm();
@@ -170,16 +169,14 @@ double Evidence::likeliest(const std::size_t effect, const Eigen::ArrayXXd &of_p
   return grid[effect][static_cast<std::size_t>(best)].amplitude;
 }
 
-Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data,
-                                         const std::optional<std::size_t> without) const
+Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
 {
-  const std::vector<Covariance> covariances = without ? make_discrepancies(without) : discrepancies;
   const Eigen::MatrixXd deviations = data.colwise() - nothing().prediction.mean;
-  const auto number = static_cast<Eigen::Index>(covariances.size());
+  const auto number = static_cast<Eigen::Index>(discrepancies.size());
   Eigen::ArrayXXd distances(number, data.cols());
   Eigen::ArrayXd constants(number);
   for (Eigen::Index i = 0; i < number; ++i) {
-    const Covariance &llt = covariances[static_cast<std::size_t>(i)];
+    const Covariance &llt = discrepancies[static_cast<std::size_t>(i)];
     constants(i) = -half_log_determinant(llt);
     distances.row(i) = llt.matrixL().solve(deviations).colwise().squaredNorm();
   }
@@ -210,7 +207,7 @@ Evidence::Singles Evidence::singles(const Eigen::Ref<const Eigen::MatrixXd> &dat
     else
       result.log_evidence.row(i) = log_single(k, data).transpose();
   result.log_prior(n) = std::log(prior.none_of_these / total);
-  result.log_evidence.row(n) = log_discrepancy(data, without).transpose();
+  result.log_evidence.row(n) = log_discrepancy(data).transpose();
   return result;
 }
 

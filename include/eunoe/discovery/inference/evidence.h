@@ -72,10 +72,7 @@ public:
   }
   Eigen::ArrayXd log_single(std::size_t effect,
                             const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  /// @param without an effect that the catalogue is to lack: the shape of what is not catalogued
-  /// then knows nothing of it
-  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data,
-                                 std::optional<std::size_t> without = std::nullopt) const;
+  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   /// The likeliest amplitude of an effect.
   double best_amplitude(std::size_t effect, const Eigen::VectorXd &data) const;
 
@@ -108,7 +105,7 @@ private:
   void set_strengths(std::vector<Place> &side) const;
   using Covariance = Eigen::LLT<Eigen::MatrixXd>;
   /// Of data by a change that is not catalogued, for each size of it and level of noise.
-  std::vector<Covariance> make_discrepancies(std::optional<std::size_t> without) const;
+  std::vector<Covariance> make_discrepancies() const;
   /// Evidence and best amplitudes of a pair on a coarse grid.
   /// @param roughly without the levels of the instrument's noise
   void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
