@@ -97,7 +97,6 @@ class Suite:
 
     def make_study(self, case: Case, folder: Path, label: str, settings: list[str], lock: int) -> None:
         target = folder / label
-        # The study must not be able to read the truth.
         sealed, away = folder / "sealed", self.folder / f".sealed_{case.name}"
         if away.exists() and not sealed.exists():  # the last command was killed
             away.rename(sealed)
@@ -110,6 +109,7 @@ class Suite:
                    "discovery/write page = false", *settings]
         if case.excluded:
             entries.append(f"discovery/excluded effects = {', '.join(case.excluded)}")
+        # The study must not be able to read the truth.
         if sealed.exists():
             sealed.rename(away)
         try:
