@@ -138,6 +138,16 @@ void Halo::update_all(ParticleArrays &particles)
   update(particles);
 }
 
+void Halo::leave_out(const Remaining &remaining)
+{
+  for (auto *list : {&neighbours, &everyone})
+    for (Neighbour &neighbour : *list) {
+      remaining.renumber(neighbour.sent);
+      remaining.renumber(neighbour.received);
+    }
+  include_sleepers();
+}
+
 void Halo::leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs)
 {
   if (neighbours.empty())

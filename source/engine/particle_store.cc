@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <stdexcept>
 
 namespace eunoe {
@@ -16,7 +17,7 @@ ParticleStore::~ParticleStore() = default;
 
 std::uint64_t ParticleStore::n_global() const
 {
-  return implementation->handler.n_global_particles();
+  return implementation->handler.n_global_particles() - implementation->n_left_out;
 }
 
 std::uint64_t ParticleStore::n_cells() const
@@ -38,10 +39,30 @@ void ParticleStore::write(const ParticleArrays &particles, const std::vector<dou
   impl.written = &particles;
   for (auto &particle : impl.handler) {
     const auto properties = particle.get_properties();
-    const std::int32_t row = decode(properties[property::origin]).row;
+    std::int32_t row = decode(properties[property::origin]).row;
+    if (!impl.rows_now.empty()) {
+      row = impl.rows_now[row];
+      properties[property::origin] =
+          row == Remaining::none ? encode({}) : encode({static_cast<int>(impl.rank), row});
+      if (row == Remaining::none)
+        continue;
+    }
     properties[property::work] = work[row];
     properties[property::asleep] = impl.asleep ? particles.extra[impl.asleep->first][row] : 0.;
   }
+}
+
+void ParticleStore::leave_out(const Remaining &remaining, const std::uint64_t n)
+{
+  Implementation &impl = *implementation;
+  if (impl.rows_now.empty()) {
+    impl.rows_now.resize(impl.handler.n_locally_owned_particles());
+    std::iota(impl.rows_now.begin(), impl.rows_now.end(), 0);
+  }
+  for (std::int32_t &row : impl.rows_now)
+    if (row != Remaining::none)
+      row = remaining[row];
+  impl.n_left_out += n;
 }
 
 void ParticleStore::remove(const std::vector<std::size_t> &rows)
@@ -51,11 +72,15 @@ void ParticleStore::remove(const std::vector<std::size_t> &rows)
   for (const std::size_t row : rows)
     leaves[row] = true;
   std::vector<Implementation::Handler::particle_iterator> leaving;
-  if (!rows.empty())
-    for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle)
-      if (leaves[decode(particle->get_properties()[property::origin]).row])
+  if (!rows.empty() || !impl.rows_now.empty())
+    for (auto particle = impl.handler.begin(); particle != impl.handler.end(); ++particle) {
+      const Origin origin = decode(particle->get_properties()[property::origin]);
+      if (origin.rank < 0 || leaves[origin.row])
         leaving.push_back(particle);
+    }
   impl.handler.remove_particles(leaving);
+  impl.rows_now.clear();
+  impl.n_left_out = 0;
 }
 
 namespace {

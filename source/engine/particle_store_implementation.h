@@ -68,6 +68,10 @@ struct ParticleStore::Implementation
   std::size_t n_written() const { return written != nullptr ? written->n_owned : 0; }
   bool is_new(std::int32_t row) const { return static_cast<std::size_t>(row) >= n_written(); }
   const NewParticle &new_one(std::int32_t row) const { return incoming[row - n_written()]; }
+  /// Rows of those that the handler has, by their rows in the last `read`; empty if none has been
+  /// left out since.
+  std::vector<std::int32_t> rows_now;
+  std::uint64_t n_left_out = 0; ///< by all ranks
   /// Position and radius, wrapped at periods.
   Quad position(std::int32_t row) const;
   ///@}

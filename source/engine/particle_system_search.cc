@@ -153,6 +153,29 @@ void ParticleSystem::search(const std::vector<Solid> &solids,
   rebuild(solids, balance);
 }
 
+std::vector<std::uint8_t> ParticleSystem::cut_off(const std::vector<std::size_t> &leaving)
+{
+  std::vector<std::uint8_t> leaves(particles.size(), 0);
+  for (const std::size_t row : leaving)
+    leaves[row] = 1;
+  halo.update(leaves);
+  pairs.end_contacts(leaves);
+  for (std::size_t row = 0; row < particles.size(); ++row)
+    if (leaves[row] != 0)
+      particles.position[row].x = std::numeric_limits<double>::quiet_NaN();
+  return leaves;
+}
+
+void ParticleSystem::leave_out(const Remaining &remaining, const std::uint64_t n)
+{
+  particles.leave_out(remaining);
+  pairs.leave_out(remaining);
+  found.leave_out(remaining);
+  halo.leave_out(remaining);
+  solid_contacts.leave_out(remaining);
+  store.leave_out(remaining, n);
+}
+
 bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double moved,
                                   const std::vector<std::size_t> &lost)
 {
@@ -164,10 +187,9 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   drift += moved;
   if (!(drift <= (n_ranks > 1 ? largest_drift : diameters_on_one_rank * largest_diameter)))
     return false;
-  int some_leave = !lost.empty() || !beyond_outlets().empty() ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &some_leave, 1, MPI_INT, MPI_MAX, domain.communicator());
-  if (some_leave != 0)
-    return false;
+  const std::vector<std::size_t> leaving = count_leaving(lost);
+  std::uint64_t n_leaving = leaving.size();
+  MPI_Allreduce(MPI_IN_PLACE, &n_leaving, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
 
   std::vector<std::uint8_t> has_moved(particles.size(), 1);
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
@@ -181,8 +203,13 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   halo.update_all(particles);
   if (physics.asleep)
     halo.update(has_moved);
+  std::vector<std::uint8_t> leaves;
+  if (n_leaving > 0)
+    leaves = cut_off(leaving);
   grid.move_to(domain.centre());
   grid.find_pairs_again(particles, skin + model.range(), has_moved, pairs, found_if_any_sleeps());
+  if (n_leaving > 0)
+    leave_out(Remaining(leaves), n_leaving);
   use_pairs();
   solid_contacts.search_again(particles, solids, skin + physics.wall_model.range());
   ++searches;

@@ -61,6 +61,17 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
     }
 }
 
+void SolidContacts::leave_out(const Remaining &remaining)
+{
+  for (Candidate &candidate : candidates)
+    candidate.particle = remaining[candidate.particle];
+  candidates.erase(std::remove_if(candidates.begin(), candidates.end(),
+                                  [](const Candidate &candidate) {
+                                    return candidate.particle == Remaining::none;
+                                  }),
+                   candidates.end());
+}
+
 void SolidContacts::search_again(const ParticleArrays &particles, const std::vector<Solid> &solids,
                                  const double reach)
 {

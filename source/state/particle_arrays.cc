@@ -28,6 +28,21 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
     component.resize(owned);
 }
 
+void ParticleArrays::leave_out(const Remaining &remaining)
+{
+  for (auto *array : {&position, &velocity, &spin, &force, &torque})
+    remaining.keep(*array);
+  remaining.keep(id);
+  remaining.keep(type);
+  remaining.keep(pace);
+  remaining.keep(reference);
+  for (auto &component : extra)
+    remaining.keep(component);
+  n_owned = reference.size();
+  n_ghosts = id.size() - n_owned;
+  wake_all();
+}
+
 void ParticleArrays::wake_all()
 {
   awake.clear();

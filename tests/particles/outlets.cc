@@ -71,6 +71,13 @@ EUNOE_MPI_TEST()
   sum += outside.mass;
   check("masses add up exactly", sum == inserted.mass);
 
+  // Most leave at searches after which the others are in the same order as before.
+  const ParticleSystem &system = rain->get_system();
+  check("the store counts those inside", system.n_global() == inside.number);
+  check("searches in place", 2 * system.n_searches_in_place() > system.n_searches(),
+        std::to_string(system.n_searches_in_place()) + " of " +
+            std::to_string(system.n_searches()));
+
   bool in_domain = true;
   for (std::size_t k = 0; k < p.n_owned; ++k)
     in_domain = in_domain && p.position[k].y > -0.0105 && p.position[k].x < 0.0105;

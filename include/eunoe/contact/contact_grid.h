@@ -41,11 +41,18 @@ public:
       std::size_t begin, end;
     };
     std::vector<Group> groups; ///< by row
+
+    /// Of particles that have no pairs.
+    void leave_out(const Remaining &remaining)
+    {
+      remaining.keep(cells);
+      remaining.keep(groups);
+    }
   };
 
   /// Lists all pairs with at least one owned particle and a separation of at most @p reach (m).
   /// The positions are those of the search; owned and ghost particles must each be ordered by
-  /// (key, id).
+  /// (key, id). A particle whose x is not a number has no pairs.
   /// @param found where to leave what find_pairs_again needs, or null
   void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs,
                   Found *found = nullptr) const;

@@ -3,6 +3,7 @@
 
 #include <eunoe/contact/near_pairs.h>
 #include <eunoe/contact/pair_memory.h>
+#include <eunoe/state/remaining.h>
 
 #include <cstdint>
 #include <vector>
@@ -56,6 +57,26 @@ struct PairList
     taken.record.swap(record);
     clear_pairs();
     return taken;
+  }
+
+  /// Lets the contacts of some particles end.
+  /// @param leaves a flag for each row
+  template <typename Flags>
+  void end_contacts(const Flags &leaves)
+  {
+    for (std::size_t k = 0; k < size(); ++k)
+      if (record[k] != ContactMemory::none && (leaves[i[k]] || leaves[j[k]])) {
+        memory.release(record[k]);
+        record[k] = ContactMemory::none;
+      }
+  }
+
+  /// Gives the particles their new rows, of which those that were taken out have no pairs.
+  void leave_out(const Remaining &remaining)
+  {
+    for (auto *rows : {&i, &j})
+      for (std::int32_t &row : *rows)
+        row = remaining[row];
   }
 
   /// Gives back room beyond a tenth more than there is, which vectors take when they grow.

@@ -26,6 +26,9 @@ public:
   /// collective.
   void update_all(ParticleArrays &particles);
 
+  /// Takes particles out, of which all ranks that have a copy know.
+  void leave_out(const Remaining &remaining);
+
   /// From now on receives only ghosts of pairs, about half of them; collective.
   void leave_out_unpaired(const ParticleArrays &particles, const PairList &pairs);
 

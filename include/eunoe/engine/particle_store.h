@@ -34,7 +34,8 @@ public:
   std::uint64_t n_cells() const;
   ///@}
 
-  /// Takes the state of the owned particles, which must be those of the last `read`, from these
+  /// Takes the state of the owned particles, which must be those of the last `read` that have not
+  /// been left out, from these
   /// arrays, which must stay as they are until the next `read`. Their contacts are kept in row k of
   /// this rank.
   /// @param work cost of each in a step, about 1; new particles count 1
@@ -48,8 +49,13 @@ public:
   void insert(std::vector<NewParticle> &&particles, const std::vector<double> &extra,
               std::vector<Origin> &&contacts = {});
 
-  /// Removes owned particles by their rows in the last `read`; collective. To be called between
-  /// `write` and `migrate`.
+  /// Takes owned particles out of the rows, in which they are from now on those of the arrays that
+  /// the next `write` has; the handler keeps them until then.
+  /// @param n of all ranks
+  void leave_out(const Remaining &remaining, std::uint64_t n);
+
+  /// Removes owned particles by their rows in the arrays that were written, and those that have
+  /// been left out; collective. To be called between `write` and `migrate`.
   void remove(const std::vector<std::size_t> &rows);
 
   /// Hands every particle to the rank that owns its cell; collective.

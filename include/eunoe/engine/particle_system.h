@@ -59,8 +59,8 @@ public:
   void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
               const std::vector<std::size_t> &lost = {});
 
-  /// Rebuilds the lists of the particles on the ranks and in the rows that they have, which costs
-  /// half as much and gives the same bits. Collective.
+  /// Rebuilds the lists of the particles on the ranks and in the order that they have, which costs
+  /// less and gives the same bits. Particles beyond an outlet leave. Collective.
   /// @param moved largest displacement of a particle since the last search (m)
   /// @param lost as for `search`
   /// @return false if only `search` will do; nothing has been done then
@@ -186,6 +186,13 @@ private:
   /// Counts particles that leave through outlets, and lost particles.
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
+  /// Parts particles that leave from all others: their contacts end, and a search finds no pairs of
+  /// them; collective.
+  /// @return a flag for each row, ghosts too
+  std::vector<std::uint8_t> cut_off(const std::vector<std::size_t> &leaving);
+  /// Takes particles that have been cut off out of all that knows them by their rows.
+  /// @param n owned ones of all ranks
+  void leave_out(const Remaining &remaining, std::uint64_t n);
   /// Adds what the loads alone do to the particles of some rows.
   void add_loads(const std::vector<std::size_t> &rows, double time);
   /// Sorts out the pairs of two sleepers and the ghosts that sleep.

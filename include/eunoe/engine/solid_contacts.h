@@ -34,6 +34,9 @@ public:
   /// ordered by particle and solid. All contacts are forgotten.
   void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
 
+  /// Takes particles out. To be called before `search_again`.
+  void leave_out(const Remaining &remaining);
+
   /// Likewise for the same particles in the same rows; every contact keeps its memory.
   void search_again(const ParticleArrays &particles, const std::vector<Solid> &solids,
                     double reach);

@@ -3,6 +3,7 @@
 
 #include <eunoe/core/vec3.h>
 #include <eunoe/state/particle_field.h>
+#include <eunoe/state/remaining.h>
 
 #include <cstdint>
 #include <limits>
@@ -84,6 +85,9 @@ struct ParticleArrays
 
   /// All are awake afterwards.
   void resize(std::size_t owned, std::size_t ghosts, unsigned int n_extra);
+
+  /// Takes particles out; all are awake afterwards.
+  void leave_out(const Remaining &remaining);
 
   void wake_all();
 
