@@ -74,7 +74,7 @@ EUNOE_MPI_TEST()
   // Most leave at searches after which the others are in the same order as before.
   const ParticleSystem &system = rain->get_system();
   check("the store counts those inside", system.n_global() == inside.number);
-  check("searches in place", 2 * system.n_searches_in_place() > system.n_searches(),
+  check("searches in place", 4 * system.n_searches_in_place() > 3 * system.n_searches(),
         std::to_string(system.n_searches_in_place()) + " of " +
             std::to_string(system.n_searches()));
 
