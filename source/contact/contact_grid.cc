@@ -1,5 +1,4 @@
 #include <eunoe/contact/contact_grid.h>
-#include <eunoe/contact/living_contacts.h>
 #include <eunoe/core/simd.h>
 
 #include "cell_order.h"
@@ -8,6 +7,9 @@
 
 namespace eunoe {
 namespace {
+
+/// From this share of particles on that have moved (one over it), a list is made as if all had.
+constexpr std::size_t most_moved = 3;
 
 /// What decides which particles are pairs, in the order of cells, one array per component.
 class Spheres
@@ -23,11 +25,11 @@ public:
       component->assign(rows.size() + batch, 0.);
     id.resize(rows.size());
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Quad &q = p.position[rows[k]];
-      x[k] = q.x;
-      y[k] = q.y;
-      z[k] = q.z;
-      radius[k] = q.w;
+      const Vec3 &place = p.reference[rows[k]];
+      x[k] = place.x;
+      y[k] = place.y;
+      z[k] = place.z;
+      radius[k] = p.radius(rows[k]);
       id[k] = p.id[rows[k]];
     }
   }
@@ -130,6 +132,36 @@ private:
   std::vector<std::int32_t> i, j;
 };
 
+/// The pairs of the last search and their groups.
+class FormerPairs
+{
+public:
+  FormerPairs(PairList &&pairs, const ContactGrid::Found &found)
+      : pairs(std::move(pairs)), groups(found.groups)
+  {
+  }
+
+  void append_group(const std::int32_t row, PairList &to) const
+  {
+    to.append(pairs, groups[row].begin, groups[row].end);
+  }
+
+  /// Gives the records of contacts to the same pairs of a new list, from @p begin on.
+  void give_records(PairList &to, const std::size_t begin) const
+  {
+    // Either may have come first in the order of cells.
+    for (std::size_t k = begin; k < to.size(); ++k)
+      for (const std::int32_t row : {to.i[k], to.j[k]})
+        for (std::uint32_t f = groups[row].begin; f < groups[row].end; ++f)
+          if (pairs.i[f] == to.i[k] && pairs.j[f] == to.j[k])
+            to.record[k] = pairs.record[f];
+  }
+
+private:
+  const PairList pairs;
+  const std::vector<ContactGrid::Found::Group> groups;
+};
+
 /// Lists all pairs and notes their groups.
 void list_all(PairFinder &finder, const std::vector<std::int32_t> &rows, PairList &pairs,
               ContactGrid::Found *const found)
@@ -140,7 +172,8 @@ void list_all(PairFinder &finder, const std::vector<std::int32_t> &rows, PairLis
     const std::size_t begin = pairs.size();
     finder.append(place, pairs);
     if (found != nullptr)
-      found->groups[rows[place]] = {begin, pairs.size()};
+      found->groups[rows[place]] = {static_cast<std::uint32_t>(begin),
+                                    static_cast<std::uint32_t>(pairs.size())};
   }
 }
 
@@ -180,7 +213,7 @@ std::vector<ContactGrid::Cell> ContactGrid::cells_of(const ParticleArrays &p) co
 {
   std::vector<Cell> cells(p.size());
   for (std::size_t row = 0; row < p.size(); ++row)
-    cells[row] = cell(p.position[row].vec());
+    cells[row] = cell(p.reference[row]);
   return cells;
 }
 
@@ -189,62 +222,51 @@ std::array<bool, 3> ContactGrid::periodic_axes() const
   return {{box.is_periodic(axis[0]), box.is_periodic(axis[1]), box.is_periodic(axis[2])}};
 }
 
-void ContactGrid::note(std::vector<Cell> &&cells, Found *const found) const
-{
-  if (found != nullptr) {
-    found->lower = lower;
-    found->cells = std::move(cells);
-  }
-}
-
 void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairList &pairs,
                              Found *const found) const
 {
-  std::vector<Cell> cells = cells_of(p);
+  const std::vector<Cell> cells = cells_of(p);
   const CellOrder order(cells, p, n);
   PairFinder finder(p, order, cells, box, periodic_axes(), reach);
   list_all(finder, order.rows, pairs, found);
-  note(std::move(cells), found);
+  if (found != nullptr)
+    found->lower = lower;
 }
 
 void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
-                                   const std::vector<std::uint8_t> &moved, PairList &pairs,
-                                   Found *const found) const
+                                   const std::vector<Moved> &moved, PairList &pairs,
+                                   Found &found) const
 {
-  const LivingContacts contacts(pairs, p.size());
-  const PairList old = pairs.take_pairs();
-  std::vector<Cell> cells = cells_of(p);
+  const FormerPairs former(pairs.take_pairs(), found);
+  const std::vector<Cell> cells = cells_of(p);
   CellOrder order(cells, p, n);
   const std::array<bool, 3> periodic = periodic_axes();
   PairFinder finder(p, order, cells, box, periodic, reach);
-  const auto n_moved =
-      std::count_if(moved.begin(), moved.end(), [](auto flag) { return flag != 0; });
-  if (found == nullptr || norm_square(lower - found->lower) > 0. || !order.has_table() ||
-      2 * static_cast<std::size_t>(n_moved) > p.size())
+  if (norm_square(lower - found.lower) > 0. || !order.has_table() ||
+      most_moved * moved.size() > p.size())
   {
-    list_all(finder, order.rows, pairs, found);
-    contacts.attach(pairs, 0);
-    note(std::move(cells), found);
+    list_all(finder, order.rows, pairs, &found);
+    former.give_records(pairs, 0);
+    found.lower = lower;
     return;
   }
-  for (std::size_t row = 0; row < p.size(); ++row)
-    if (moved[row] != 0) {
-      order.mark_around(cells[row], periodic);
-      if (cells[row] != found->cells[row])
-        order.mark_around(found->cells[row], periodic);
-    }
+  for (const Moved &one : moved) {
+    const Cell from = cell(one.from);
+    order.mark_around(from, periodic);
+    if (from != cells[one.row])
+      order.mark_around(cells[one.row], periodic);
+  }
   for (std::size_t place = 0; place < order.rows.size(); ++place) {
     const std::int32_t row = order.rows[place];
-    Found::Group &group = found->groups[row];
     const std::size_t begin = pairs.size();
     if (order.is_marked(cells[row])) {
       finder.append(place, pairs);
-      contacts.attach(pairs, begin);
+      former.give_records(pairs, begin);
     } else
-      pairs.append(old, group.begin, group.end);
-    group = {begin, pairs.size()};
+      former.append_group(row, pairs);
+    found.groups[row] = {static_cast<std::uint32_t>(begin),
+                         static_cast<std::uint32_t>(pairs.size())};
   }
-  note(std::move(cells), found);
 }
 
 } // namespace eunoe

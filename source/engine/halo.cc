@@ -8,9 +8,15 @@ namespace eunoe {
 
 namespace {
 
-constexpr int tag_build = 311, tag_update = 312, tag_flags = 313, tag_paired = 314;
+constexpr int tag_build = 311, tag_update = 312, tag_flags = 313, tag_paired = 314,
+              tag_references = 315;
 /// Doubles per ghost when it is made (all that is constant, then the state) and at every step.
-constexpr std::size_t build_size = 14, update_size = 9;
+constexpr std::size_t build_size = 17, update_size = 9;
+
+void append(std::vector<double> &values, const Vec3 &v)
+{
+  values.insert(values.end(), {v.x, v.y, v.z});
+}
 
 void append(std::vector<double> &values, const Quad &q, bool with_w)
 {
@@ -46,7 +52,7 @@ std::map<int, std::vector<std::int32_t>> Halo::rows_near(const ParticleArrays &p
   std::vector<int> ranks;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     const double reach = 1.0001 * (particles.radius(row) + largest_radius + separation);
-    store.ranks_near(row, particles.position[row].vec(), reach, ranks);
+    store.ranks_near(row, particles.reference[row], reach, ranks);
     for (const int rank : ranks)
       rows[rank].push_back(static_cast<std::int32_t>(row));
   }
@@ -73,6 +79,7 @@ void Halo::send_new(const ParticleArrays &particles,
       append(neighbour.out, particles.spin[row], true);
       neighbour.out.push_back(particles.id[row]);
       neighbour.out.push_back(particles.type[row]);
+      append(neighbour.out, particles.reference[row]);
     }
     neighbour.in.resize(build_size * neighbour.received.size());
     neighbours.push_back(std::move(neighbour));
@@ -93,7 +100,7 @@ void Halo::append_received(ParticleArrays &particles, const ContactGrid &grid)
   for (Neighbour &neighbour : neighbours)
     for (std::size_t k = 0; k < neighbour.received.size(); ++k) {
       const double *const v = &neighbour.in[build_size * k];
-      ghosts.push_back({grid.key({v[0], v[1], v[2]}), static_cast<ParticleId>(v[12]), v,
+      ghosts.push_back({grid.key({v[14], v[15], v[16]}), static_cast<ParticleId>(v[12]), v,
                         &neighbour.received[k]});
     }
   std::sort(ghosts.begin(), ghosts.end(), [](const Ghost &a, const Ghost &b) {
@@ -110,6 +117,7 @@ void Halo::append_received(ParticleArrays &particles, const ContactGrid &grid)
     particles.force[row] = particles.torque[row] = Quad();
     particles.id[row] = ghosts[g].id;
     particles.type[row] = static_cast<std::int32_t>(v[13]);
+    particles.reference[row] = {v[14], v[15], v[16]};
     *ghosts[g].row = static_cast<std::int32_t>(row);
   }
 }
@@ -131,11 +139,32 @@ void Halo::build(ParticleArrays &particles, const ParticleStore &store, const Co
   include_sleepers();
 }
 
-void Halo::update_all(ParticleArrays &particles)
+void Halo::update_all(ParticleArrays &particles, std::vector<ContactGrid::Moved> &moved)
 {
   neighbours = everyone;
   include_sleepers();
   update(particles);
+  update_references(particles, moved);
+}
+
+void Halo::update_references(ParticleArrays &particles, std::vector<ContactGrid::Moved> &moved)
+{
+  for (Neighbour &neighbour : neighbours) {
+    neighbour.out.clear();
+    for (const std::int32_t row : neighbour.sent)
+      append(neighbour.out, particles.reference[row]);
+    neighbour.in.resize(3 * neighbour.received.size());
+  }
+  exchange(tag_references);
+  for (const Neighbour &neighbour : neighbours)
+    for (std::size_t k = 0; k < neighbour.received.size(); ++k) {
+      const double *const in = &neighbour.in[3 * k];
+      Vec3 &reference = particles.reference[neighbour.received[k]];
+      const Vec3 now{in[0], in[1], in[2]};
+      if (norm_square(now - reference) > 0.)
+        moved.push_back({neighbour.received[k], reference});
+      reference = now;
+    }
 }
 
 void Halo::leave_out(const Remaining &remaining)

@@ -57,7 +57,7 @@ void ParticleStore::migrate()
     // New ones have just found their cells.
     if (origin.rank != static_cast<int>(impl.rank) || impl.is_new(origin.row))
       continue;
-    const Forest::Place place = impl.place_of(impl.position(origin.row).vec());
+    const Forest::Place place = impl.place_of(impl.reference(origin.row));
     const Forest::ActiveCell cell = impl.forest.find(place);
     if (cell == particle->get_surrounding_cell()) {
       particle->set_location(impl.forest.centre(place));
@@ -100,7 +100,7 @@ void ParticleStore::insert(std::vector<NewParticle> &&particles, const std::vect
     std::map<unsigned int, std::vector<double>> travellers;
     for (std::size_t k = begin; k < std::min(begin + portion, n); ++k) {
       const auto row = static_cast<std::int32_t>(impl.n_written() + k);
-      const Forest::Place place = impl.place_of(impl.position(row).vec());
+      const Forest::Place place = impl.place_of(impl.reference(row));
       const double properties[property::n] = {encode({static_cast<int>(impl.rank), row}), 1., 0.};
       Implementation::append_traveller(place, impl.incoming[k].id, properties,
                                        travellers[impl.forest.owner(place)]);

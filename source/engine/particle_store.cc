@@ -25,12 +25,9 @@ std::uint64_t ParticleStore::n_cells() const
   return implementation->forest.mesh().n_global_active_cells();
 }
 
-Quad ParticleStore::Implementation::position(const std::int32_t row) const
+Vec3 ParticleStore::Implementation::reference(const std::int32_t row) const
 {
-  const Vec3 x = is_new(row) ? new_one(row).position : written->position[row].vec();
-  const Vec3 wrapped = domain.periods().wrap(x);
-  return {wrapped.x, wrapped.y, wrapped.z,
-          is_new(row) ? new_one(row).radius : written->radius(row)};
+  return is_new(row) ? domain.periods().wrap(new_one(row).position) : written->reference[row];
 }
 
 void ParticleStore::write(const ParticleArrays &particles, const std::vector<double> &work)
@@ -141,6 +138,14 @@ public:
     return {q[0], q[1], q[2], q[3]};
   }
 
+  Vec3 reference(const std::size_t k) const
+  {
+    if (sources[k] >= 0)
+      return impl.reference(sources[k]);
+    const double *const v = foreign(k) + 4 * quads.size();
+    return {v[0], v[1], v[2]};
+  }
+
   std::int32_t type(const std::size_t k) const
   {
     return sources[k] >= 0 ? kept_type(sources[k])
@@ -159,7 +164,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t n_fixed = 4 * quads.size() + 2;
+  static constexpr std::size_t n_fixed = 4 * quads.size() + 3 + 2;
 
   void pack(const std::int32_t row, std::vector<double> &values) const
   {
@@ -167,6 +172,8 @@ private:
       const Quad q = kept(c, row);
       values.insert(values.end(), {q.x, q.y, q.z, q.w});
     }
+    const Vec3 reference = impl.reference(row);
+    values.insert(values.end(), {reference.x, reference.y, reference.z});
     values.push_back(kept_type(row));
     values.push_back(encode(kept_contacts(row)));
     for (unsigned int e = 0; e < impl.n_extra; ++e)
@@ -180,14 +187,13 @@ private:
 
   Quad kept(const unsigned int c, const std::int32_t row) const
   {
-    if (c == 0)
-      return impl.position(row);
     if (!impl.is_new(row)) {
       const Quad &q = ((*impl.written).*quads[c])[row];
       return with(q.vec(), c <= 2 ? q.w : 0.);
     }
     const NewParticle &p = impl.new_one(row);
-    return c == 1   ? with(p.velocity, p.mass)
+    return c == 0   ? with(impl.reference(row), p.radius)
+           : c == 1 ? with(p.velocity, p.mass)
            : c == 2 ? with(p.spin, 0.4 * p.mass * p.radius * p.radius)
                     : Quad();
   }
@@ -228,7 +234,7 @@ std::vector<std::uint32_t> ParticleStore::Implementation::order(const States &st
   entries.reserve(states.size());
   for (const auto &particle : handler) {
     const auto number = static_cast<std::uint32_t>(entries.size());
-    entries.push_back({grid.key(states.quad(0, number).vec()),
+    entries.push_back({grid.key(states.reference(number)),
                        static_cast<ParticleId>(particle.get_id()), number,
                        particle.get_surrounding_cell()->active_cell_index()});
   }
@@ -263,6 +269,11 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
               [&](const std::size_t row) { return states.quad(c, order[row]); });
   }
   {
+    std::vector<Vec3> spare;
+    replace(arrays.reference, spare, n,
+            [&](const std::size_t row) { return states.reference(order[row]); });
+  }
+  {
     std::vector<std::int32_t> spare;
     replace(arrays.type, spare, n, [&](const std::size_t row) { return states.type(order[row]); });
   }
@@ -275,7 +286,6 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   arrays.resize(n, 0, impl.n_extra);
   std::vector<std::uint32_t> row_of(n);
   for (std::size_t row = 0; row < n; ++row) {
-    arrays.reference[row] = arrays.position[row].vec();
     row_of[order[row]] = static_cast<std::uint32_t>(row);
   }
   std::size_t number = 0;
@@ -290,14 +300,14 @@ void ParticleStore::read(ParticleArrays &arrays, const ContactGrid &grid,
   impl.incoming_contacts = std::vector<Origin>();
 }
 
-void ParticleStore::ranks_near(const std::size_t row, const Vec3 &position, const double reach,
+void ParticleStore::ranks_near(const std::size_t row, const Vec3 &reference, const double reach,
                                std::vector<int> &ranks) const
 {
   if (reach > implementation->reach)
     throw std::logic_error("ghosts are wanted from farther away than the mesh looks");
   const PeriodicBox &box = implementation->domain.periods();
   // Particles that stick out of the domain are in its outermost cells.
-  const Vec3 x = implementation->forest.clamp(implementation->domain.to_own_frame(position));
+  const Vec3 x = implementation->forest.clamp(implementation->domain.to_own_frame(reference));
   ranks.clear();
   for (const Forest::ForeignCell &cell : implementation->near_cell[implementation->cells[row]]) {
     if (!ranks.empty() && ranks.back() == cell.rank)

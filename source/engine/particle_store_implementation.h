@@ -72,8 +72,8 @@ struct ParticleStore::Implementation
   /// left out since.
   std::vector<std::int32_t> rows_now;
   std::uint64_t n_left_out = 0; ///< by all ranks
-  /// Position and radius, wrapped at periods.
-  Quad position(std::int32_t row) const;
+  /// Reference, which is that by which a particle finds its cell.
+  Vec3 reference(std::int32_t row) const;
   ///@}
 
   /// The particles in the order of the arrays, by their numbers in that of the handler.

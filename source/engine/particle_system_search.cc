@@ -4,6 +4,7 @@
 #include <eunoe/engine/particle_system.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace eunoe {
@@ -96,11 +97,6 @@ void ParticleSystem::make_room_for_contacts()
   pairs.memory.reserve(n + n / 5);
 }
 
-ContactGrid::Found *ParticleSystem::found_if_any_sleeps()
-{
-  return physics.asleep ? &found : nullptr;
-}
-
 void ParticleSystem::use_pairs()
 {
   pairs.trim();
@@ -115,7 +111,7 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   halo.build(particles, store, grid, skin + 2. * largest_drift + model.range());
   drift = 0.;
   pairs.clear(model.history_size());
-  grid.find_pairs(particles, skin + model.range(), pairs, found_if_any_sleeps());
+  grid.find_pairs(particles, skin + model.range(), pairs, &found);
   use_pairs();
   make_room_for_contacts();
   solid_contacts.search(particles, solids, skin + physics.wall_model.range());
@@ -143,17 +139,37 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
   ++searches;
 }
 
-void ParticleSystem::search(const std::vector<Solid> &solids,
+std::vector<ContactGrid::Moved> ParticleSystem::follow(const double farthest)
+{
+  // References in a domain that moves are where it was at the last search.
+  const double little = std::isfinite(farthest) && !domain.moves() ? 0.5 * farthest : 0.;
+  std::vector<ContactGrid::Moved> moved;
+  for (std::size_t row = 0; row < particles.n_owned; ++row) {
+    Quad &x = particles.position[row];
+    Vec3 &reference = particles.reference[row];
+    if (!(norm_square(x.vec() - reference) > little * little))
+      continue;
+    moved.push_back({static_cast<std::int32_t>(row), reference});
+    reference = domain.periods().wrap(x.vec());
+    x = {reference.x, reference.y, reference.z, x.w};
+  }
+  return moved;
+}
+
+void ParticleSystem::search(const std::vector<Solid> &solids, const double farthest,
                             const LoadBalancingParameters *balance,
                             const std::vector<std::size_t> &lost)
 {
+  const std::vector<std::size_t> leaving = count_leaving(lost);
   rows.collect(particles, pairs, solid_contacts);
+  follow(farthest);
   store.write(particles, work());
-  store.remove(count_leaving(lost));
+  store.remove(leaving);
   rebuild(solids, balance);
 }
 
-std::vector<std::uint8_t> ParticleSystem::cut_off(const std::vector<std::size_t> &leaving)
+std::vector<std::uint8_t> ParticleSystem::cut_off(const std::vector<std::size_t> &leaving,
+                                                  std::vector<ContactGrid::Moved> &moved)
 {
   std::vector<std::uint8_t> leaves(particles.size(), 0);
   for (const std::size_t row : leaving)
@@ -161,8 +177,11 @@ std::vector<std::uint8_t> ParticleSystem::cut_off(const std::vector<std::size_t>
   halo.update(leaves);
   pairs.end_contacts(leaves);
   for (std::size_t row = 0; row < particles.size(); ++row)
-    if (leaves[row] != 0)
-      particles.position[row].x = std::numeric_limits<double>::quiet_NaN();
+    if (leaves[row] != 0) {
+      Vec3 &reference = particles.reference[row];
+      moved.push_back({static_cast<std::int32_t>(row), reference});
+      reference.x = std::numeric_limits<double>::quiet_NaN();
+    }
   return leaves;
 }
 
@@ -170,13 +189,13 @@ void ParticleSystem::leave_out(const Remaining &remaining, const std::uint64_t n
 {
   particles.leave_out(remaining);
   pairs.leave_out(remaining);
-  found.leave_out(remaining);
+  remaining.keep(found.groups);
   halo.leave_out(remaining);
   solid_contacts.leave_out(remaining);
   store.leave_out(remaining, n);
 }
 
-bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double moved,
+bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double farthest,
                                   const std::vector<std::size_t> &lost)
 {
   // On one rank particles need no ghosts; what has moved farther lies far from its neighbours in
@@ -184,30 +203,21 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   constexpr double diameters_on_one_rank = 5.;
   int n_ranks;
   MPI_Comm_size(domain.communicator(), &n_ranks);
-  drift += moved;
+  drift += farthest;
   if (!(drift <= (n_ranks > 1 ? largest_drift : diameters_on_one_rank * largest_diameter)))
     return false;
   const std::vector<std::size_t> leaving = count_leaving(lost);
   std::uint64_t n_leaving = leaving.size();
   MPI_Allreduce(MPI_IN_PLACE, &n_leaving, 1, MPI_UINT64_T, MPI_SUM, domain.communicator());
 
-  std::vector<std::uint8_t> has_moved(particles.size(), 1);
-  for (std::size_t row = 0; row < particles.n_owned; ++row) {
-    Quad &x = particles.position[row];
-    const Vec3 wrapped = domain.periods().wrap(x.vec());
-    has_moved[row] = norm_square(wrapped - particles.reference[row]) == 0. ? 0 : 1;
-    x = {wrapped.x, wrapped.y, wrapped.z, x.w};
-    particles.reference[row] = wrapped;
-  }
+  std::vector<ContactGrid::Moved> moved = follow(farthest);
   particles.wake_all();
-  halo.update_all(particles);
-  if (physics.asleep)
-    halo.update(has_moved);
+  halo.update_all(particles, moved);
   std::vector<std::uint8_t> leaves;
   if (n_leaving > 0)
-    leaves = cut_off(leaving);
+    leaves = cut_off(leaving, moved);
   grid.move_to(domain.centre());
-  grid.find_pairs_again(particles, skin + model.range(), has_moved, pairs, found_if_any_sleeps());
+  grid.find_pairs_again(particles, skin + model.range(), moved, pairs, found);
   if (n_leaving > 0)
     leave_out(Remaining(leaves), n_leaving);
   use_pairs();
@@ -222,9 +232,10 @@ ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
                                              const std::vector<std::size_t> &lost,
                                              const std::vector<Solid> &solids)
 {
-  rows.collect(particles, pairs, solid_contacts);
-  store.write(particles, work());
   std::vector<std::size_t> leaving = count_leaving(lost);
+  rows.collect(particles, pairs, solid_contacts);
+  follow(0.);
+  store.write(particles, work());
   std::vector<bool> has_left(particles.n_owned, false);
   for (const std::size_t row : leaving)
     has_left[row] = true;

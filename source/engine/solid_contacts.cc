@@ -35,7 +35,7 @@ void SolidContacts::search(const ParticleArrays &particles, const std::vector<So
   }
   for (std::size_t p = 0; p < particles.n_owned; ++p)
     for (std::size_t s = 0; s < solids.size(); ++s) {
-      const Vec3 centre = solids[s].to_own_frame(particles.position[p].vec());
+      const Vec3 centre = solids[s].to_own_frame(particles.reference[p]);
       const double near = particles.radius(p) + reach;
       if (!boxes[s].contains(centre, near))
         continue;

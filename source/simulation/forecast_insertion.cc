@@ -150,6 +150,7 @@ Overlap overlap_of_pairs(const Spheres &spheres, const Domain &domain)
   for (const std::size_t k : order) {
     const Vec3 &x = spheres.all[k].centre;
     rows.position.push_back({x.x, x.y, x.z, spheres.all[k].radius});
+    rows.reference.push_back(x);
     rows.id.push_back(static_cast<ParticleId>(spheres.all[k].number));
   }
   PairList pairs;

@@ -236,7 +236,7 @@ void Simulation::search()
   const LoadBalancingParameters *const balance = balancer.at_search(clock.step(), imbalance);
   if (balance != nullptr ||
       !system.search_again(solids.list(), criterion.largest_displacement(), lost))
-    system.search(solids.list(), balance, lost);
+    system.search(solids.list(), criterion.largest_displacement(), balance, lost);
   note_search();
 }
 
@@ -279,7 +279,7 @@ void Simulation::insert_and_remove(Delivery delivery, const std::vector<std::siz
         clock.step() == 0 ? balancer.at_start(system.imbalance(parameters.load_balancing))
                           : nullptr;
     if (balance != nullptr)
-      system.search(solids.list(), balance);
+      system.search(solids.list(), 0., balance);
   }
   note_search();
   if (sleeper.is_enabled())

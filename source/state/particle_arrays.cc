@@ -22,7 +22,7 @@ void ParticleArrays::resize(const std::size_t owned, const std::size_t ghosts,
   type.resize(size());
   pace.assign(size(), 1.f);
   wake_all();
-  reference.resize(owned);
+  reference.resize(size());
   extra.resize(n_extra);
   for (auto &component : extra)
     component.resize(owned);
@@ -38,8 +38,11 @@ void ParticleArrays::leave_out(const Remaining &remaining)
   remaining.keep(reference);
   for (auto &component : extra)
     remaining.keep(component);
-  n_owned = reference.size();
-  n_ghosts = id.size() - n_owned;
+  std::size_t owned = 0;
+  for (std::size_t row = 0; row < n_owned; ++row)
+    owned += remaining[row] != Remaining::none ? 1 : 0;
+  n_owned = owned;
+  n_ghosts = id.size() - owned;
   wake_all();
 }
 

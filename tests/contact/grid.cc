@@ -42,6 +42,7 @@ ParticleArrays ordered(const std::vector<Vec3> &places, const ContactGrid &grid)
   for (std::size_t row = 0; row < ids.size(); ++row) {
     const Vec3 &x = places[ids[row]];
     p.position[row] = {x.x, x.y, x.z, radius};
+    p.reference[row] = x;
     p.id[row] = static_cast<ParticleId>(ids[row]);
   }
   return p;
@@ -112,16 +113,15 @@ void check_again(const std::string &name, const PeriodicBox &box)
 
   bool same = true, remembers = true;
   for (unsigned int round = 0; round < 20; ++round) {
-    std::vector<std::uint8_t> moved(p.size(), 0);
+    std::vector<ContactGrid::Moved> moved;
     for (std::size_t row = 0; row < p.size(); ++row)
-      if (p.id[row] % 10 == 0 && p.position[row].x < 0.5 * size) {
-        moved[row] = 1;
+      if (p.id[row] % 10 == 0 && p.reference[row].x < 0.5 * size) {
+        moved.push_back({static_cast<std::int32_t>(row), p.reference[row]});
         const Vec3 way = 0.3 * radius *
                          Vec3{uniform(3 + round, Draw::size, row, 0) - 0.5,
                               uniform(3 + round, Draw::size, row, 1) - 0.5,
                               uniform(3 + round, Draw::size, row, 2) - 0.5};
-        const Vec3 x = box.wrap(p.position[row].vec() + way);
-        p.position[row] = {x.x, x.y, x.z, radius};
+        p.reference[row] = box.wrap(p.reference[row] + way);
       }
     // A contact that ends is forgotten.
     std::vector<std::uint8_t> listed(record_of.size(), 0);
@@ -134,7 +134,7 @@ void check_again(const std::string &name, const PeriodicBox &box)
       if (listed[k] == 0)
         record_of[k] = ContactMemory::none;
 
-    grid.find_pairs_again(p, reach, moved, list, &found);
+    grid.find_pairs_again(p, reach, moved, list, found);
     same = same && list.i == anew.i && list.j == anew.j;
     for (std::size_t k = 0; k < list.size(); ++k)
       remembers = remembers && list.record[k] == record(list, k);

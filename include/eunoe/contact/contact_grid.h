@@ -32,45 +32,40 @@ public:
   /// What a search leaves for the next one, if the rows stay the same.
   struct Found
   {
-    Vec3 lower;              ///< of the grid
-    std::vector<Cell> cells; ///< by row
+    Vec3 lower; ///< of the grid
     /// Places in the list, [begin, end), of the pairs of which a row comes first in the order of
     /// cells.
     struct Group
     {
-      std::size_t begin, end;
+      std::uint32_t begin, end;
     };
     std::vector<Group> groups; ///< by row
-
-    /// Of particles that have no pairs.
-    void leave_out(const Remaining &remaining)
-    {
-      remaining.keep(cells);
-      remaining.keep(groups);
-    }
   };
 
-  /// Lists all pairs with at least one owned particle and a separation of at most @p reach (m).
-  /// The positions are those of the search; owned and ghost particles must each be ordered by
-  /// (key, id). A particle whose x is not a number has no pairs.
+  /// A particle that has another reference than at the last search.
+  struct Moved
+  {
+    std::int32_t row;
+    Vec3 from; ///< the former one (m)
+  };
+
+  /// Lists all pairs with at least one owned particle and, where their references are, a separation
+  /// of at most @p reach (m). A particle whose reference is not a number has no pairs.
   /// @param found where to leave what find_pairs_again needs, or null
   void find_pairs(const ParticleArrays &particles, double reach, PairList &pairs,
                   Found *found = nullptr) const;
 
   /// The same for rows of the last search: pairs around which nothing has moved since are taken
   /// over from the list.
-  /// @param moved a flag for each row
   /// @param pairs the list of the last search; afterwards the new one, with what contacts remember
-  /// @param found what the last search left, or null
+  /// @param found what the last search left
   void find_pairs_again(const ParticleArrays &particles, double reach,
-                        const std::vector<std::uint8_t> &moved, PairList &pairs,
-                        Found *found) const;
+                        const std::vector<Moved> &moved, PairList &pairs, Found &found) const;
 
 private:
   Cell cell(const Vec3 &x) const;
   std::vector<Cell> cells_of(const ParticleArrays &particles) const;
   std::array<bool, 3> periodic_axes() const;
-  void note(std::vector<Cell> &&cells, Found *found) const;
 
   Vec3 lower_from_centre, lower;
   Vec3 inverse_width;

@@ -22,9 +22,10 @@ public:
   void build(ParticleArrays &particles, const ParticleStore &store, const ContactGrid &grid,
              double separation);
 
-  /// Brings all ghosts of the last `build` up to date, and receives all of them from now on;
-  /// collective.
-  void update_all(ParticleArrays &particles);
+  /// Brings all ghosts of the last `build` up to date, their references too, and receives all of
+  /// them from now on; collective.
+  /// @param moved to which ghosts are added that have another reference than before
+  void update_all(ParticleArrays &particles, std::vector<ContactGrid::Moved> &moved);
 
   /// Takes particles out, of which all ranks that have a copy know.
   void leave_out(const Remaining &remaining);
@@ -67,6 +68,8 @@ private:
                 const std::map<int, std::vector<std::int32_t>> &rows);
   /// Appends the ghosts that have come to the arrays, in their order.
   void append_received(ParticleArrays &particles, const ContactGrid &grid);
+  /// Likewise of all ghosts.
+  void update_references(ParticleArrays &particles, std::vector<ContactGrid::Moved> &moved);
   /// Sends `out` to and fills `in` from every neighbour; both have their sizes already.
   void exchange(int tag);
 

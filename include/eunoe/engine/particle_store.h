@@ -71,17 +71,17 @@ public:
   /// Largest load of a rank less the smallest, over the mean; collective.
   double imbalance(const LoadBalancingParameters &parameters) const;
 
-  /// Fills the arrays with the owned particles, ordered by (cell of @p grid, id), without ghosts;
-  /// collective. They may be those that were written.
+  /// Fills the arrays with the owned particles, ordered by (cell of @p grid where the reference is,
+  /// id), without ghosts; collective. They may be those that were written.
   /// @param contacts where those of each are kept
   void read(ParticleArrays &particles, const ContactGrid &grid, std::vector<Origin> &contacts);
 
   /// Ranks that need a copy of an owned particle by its row in the last `read`: those that own a
   /// place within reach, across periodic faces too.
-  /// @param position of the particle as it was read
+  /// @param reference of the particle as it was read
   /// @param reach distance up to which it can meet the centres of others (m)
   /// @param ranks ascending
-  void ranks_near(std::size_t row, const Vec3 &position, double reach,
+  void ranks_near(std::size_t row, const Vec3 &reference, double reach,
                   std::vector<int> &ranks) const;
 
 private:

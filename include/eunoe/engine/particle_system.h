@@ -55,16 +55,17 @@ public:
 
   /// Distributes the particles, exchanges ghosts and rebuilds the lists; every contact keeps its
   /// memory. Particles beyond an outlet leave. Collective.
+  /// @param farthest that a particle is from its reference (m); infinite: not known
   /// @param lost rows of owned particles that are taken out and counted as lost
-  void search(const std::vector<Solid> &solids, const LoadBalancingParameters *balance = nullptr,
+  void search(const std::vector<Solid> &solids, double farthest,
+              const LoadBalancingParameters *balance = nullptr,
               const std::vector<std::size_t> &lost = {});
 
   /// Rebuilds the lists of the particles on the ranks and in the order that they have, which costs
   /// less and gives the same bits. Particles beyond an outlet leave. Collective.
-  /// @param moved largest displacement of a particle since the last search (m)
-  /// @param lost as for `search`
+  /// @param farthest, lost as for `search`
   /// @return false if only `search` will do; nothing has been done then
-  bool search_again(const std::vector<Solid> &solids, double moved,
+  bool search_again(const std::vector<Solid> &solids, double farthest,
                     const std::vector<std::size_t> &lost);
 
   /// How seldom this rank would list its near pairs.
@@ -134,7 +135,7 @@ public:
   /// both. Velocities, of ghosts too, must belong to the present time.
   std::vector<ContactForce> contact_forces(const std::vector<Solid> &solids, double time) const;
 
-  /// Adds all particles, with what their contacts remember and where they were at the last search,
+  /// Adds all particles, with what their contacts remember and their references,
   /// and the ledger to a checkpoint; collective. Velocities must belong to the present time.
   void save(CheckpointWriter &writer) const;
 
@@ -186,10 +187,16 @@ private:
   /// Counts particles that leave through outlets, and lost particles.
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
+  /// Gives those particles new references, at their places, that have gone by more than half of
+  /// what the farthest have: so a search is about what moves, and the others keep their pairs.
+  /// Wraps them at periods.
+  std::vector<ContactGrid::Moved> follow(double farthest);
   /// Parts particles that leave from all others: their contacts end, and a search finds no pairs of
   /// them; collective.
+  /// @param moved to which they are added
   /// @return a flag for each row, ghosts too
-  std::vector<std::uint8_t> cut_off(const std::vector<std::size_t> &leaving);
+  std::vector<std::uint8_t> cut_off(const std::vector<std::size_t> &leaving,
+                                    std::vector<ContactGrid::Moved> &moved);
   /// Takes particles that have been cut off out of all that knows them by their rows.
   /// @param n owned ones of all ranks
   void leave_out(const Remaining &remaining, std::uint64_t n);
@@ -204,8 +211,6 @@ private:
   /// Reads the particles from the store and makes ghosts and empty lists.
   /// @return where the contacts of each owned particle are kept
   std::vector<Origin> build_lists(const std::vector<Solid> &solids);
-  /// What searches leave for the next one; null if nobody ever sleeps.
-  ContactGrid::Found *found_if_any_sleeps();
   /// After pairs were found: gives back what is not needed.
   void use_pairs();
 

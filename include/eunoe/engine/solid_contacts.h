@@ -30,8 +30,8 @@ public:
 
   explicit SolidContacts(const ContactModel &model);
 
-  /// Lists every owned particle whose separation from a solid's surface is at most @p reach (m),
-  /// ordered by particle and solid. All contacts are forgotten.
+  /// Lists every owned particle whose separation from a solid's surface, where its reference is, is
+  /// at most @p reach (m), ordered by particle and solid. All contacts are forgotten.
   void search(const ParticleArrays &particles, const std::vector<Solid> &solids, double reach);
 
   /// Takes particles out. To be called before `search_again`.

@@ -25,8 +25,8 @@ struct Travel
 };
 
 /// The hot state of the particles that a rank computes with: those that it owns, then copies of
-/// those that its neighbours own (ghosts), each part ordered by the (contact-grid cell, id) of the
-/// last search that brought them from the particle store. SI units.
+/// those that its neighbours own (ghosts), each part ordered by the (contact-grid cell, id) that
+/// its references had when the particle store was last read. SI units.
 struct ParticleArrays
 {
   std::size_t n_owned = 0, n_ghosts = 0;
@@ -53,9 +53,12 @@ struct ParticleArrays
   std::size_t n_awake() const { return awake.empty() ? n_owned : awake_rows.size(); }
   ///@}
 
+  /// Where a particle stands in the lists of what can touch (m): its position at one of the last
+  /// searches, wrapped at periods.
+  std::vector<Vec3> reference;
+
   /// @name Owned particles only
   ///@{
-  std::vector<Vec3> reference; ///< position at the last search
   /// The extra doubles of all fields, `[component][particle]`, for those who store them. A field is
   /// found by its handle.
   std::vector<std::vector<double>> extra;

@@ -140,6 +140,7 @@ void Packing::find_neighbours()
   for (const std::int32_t k : order) {
     const Vec3 &x = spheres[k].position;
     rows.position.push_back({x.x, x.y, x.z, (1. + margin) * spheres[k].radius});
+    rows.reference.push_back(x);
     rows.id.push_back(spheres[k].id);
   }
   PairList pairs;
