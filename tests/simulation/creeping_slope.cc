@@ -1,8 +1,9 @@
-// A slope that creeps is not at rest. Some 200 grains fall on an incline. Under 21 degrees and with
+// A slope that creeps is not at rest. Some 200 grains fall on an incline. Under 23 degrees and with
 // the rolling resistance `constant`, which cannot hold a grain at rest (Ai et al. 2011), the bed
 // stops to flow and creeps on, by some hundredths of a diameter a second: it must creep with sleep
-// as without. Under 17 degrees and with `epsd` it stands: it must sleep, and may not go anywhere
-// else than without sleep.
+// as without. (So small beds are chaotic: under 22.6 and 23.4 degrees others creep by less than a
+// tenth of that, which is rest.) Under 17 degrees and with `epsd` it stands: it must sleep, and may
+// not go anywhere else than without sleep.
 
 #include "../tests.h"
 
@@ -113,7 +114,7 @@ const std::string by_speed = enabled + "  set rest speed = 3e-4\n  set rest time
 
 EUNOE_MPI_TEST()
 {
-  const Story creeping = {21., 0.4, 0.6, "constant"}, standing = {17., 0.3, 0.4, "epsd"};
+  const Story creeping = {22.8, 0.4, 0.6, "constant"}, standing = {17., 0.3, 0.4, "epsd"};
   const Course creep = run(creeping, awake), creep_asleep = run(creeping, enabled),
                frozen = run(creeping, by_speed);
   check("it creeps", creep.way > 1e-3 && creep.way < 0.05, format(creep.way) + " diameters");
