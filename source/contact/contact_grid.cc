@@ -147,30 +147,43 @@ public:
   }
 
   /// Gives the records of contacts to the same pairs of a new list, from @p begin on.
-  void give_records(PairList &to, const std::size_t begin) const
+  /// @param row that comes first in all of them
+  void give_records(PairList &to, const std::size_t begin, const std::int32_t row) const
   {
-    // Either may have come first in the order of cells.
+    // The other may have come first before.
     for (std::size_t k = begin; k < to.size(); ++k)
-      for (const std::int32_t row : {to.i[k], to.j[k]})
-        for (std::uint32_t f = groups[row].begin; f < groups[row].end; ++f)
-          if (pairs.i[f] == to.i[k] && pairs.j[f] == to.j[k])
-            to.record[k] = pairs.record[f];
+      if (!give_record(to, k, row))
+        give_record(to, k, to.i[k] == row ? to.j[k] : to.i[k]);
   }
 
 private:
+  /// @return whether the pair is in the former group of @p row
+  bool give_record(PairList &to, const std::size_t k, const std::int32_t row) const
+  {
+    for (std::uint32_t f = groups[row].begin; f < groups[row].end; ++f)
+      if (pairs.i[f] == to.i[k] && pairs.j[f] == to.j[k]) {
+        to.record[k] = pairs.record[f];
+        return true;
+      }
+    return false;
+  }
+
   const PairList pairs;
   const std::vector<ContactGrid::Found::Group> groups;
 };
 
 /// Lists all pairs and notes their groups.
+/// @param former if not null, has the records of their contacts
 void list_all(PairFinder &finder, const std::vector<std::int32_t> &rows, PairList &pairs,
-              ContactGrid::Found *const found)
+              ContactGrid::Found *const found, const FormerPairs *const former)
 {
   if (found != nullptr)
     found->groups.resize(rows.size());
   for (std::size_t place = 0; place < rows.size(); ++place) {
     const std::size_t begin = pairs.size();
     finder.append(place, pairs);
+    if (former != nullptr)
+      former->give_records(pairs, begin, rows[place]);
     if (found != nullptr)
       found->groups[rows[place]] = {static_cast<std::uint32_t>(begin),
                                     static_cast<std::uint32_t>(pairs.size())};
@@ -228,7 +241,7 @@ void ContactGrid::find_pairs(const ParticleArrays &p, const double reach, PairLi
   const std::vector<Cell> cells = cells_of(p);
   const CellOrder order(cells, p, n);
   PairFinder finder(p, order, cells, box, periodic_axes(), reach);
-  list_all(finder, order.rows, pairs, found);
+  list_all(finder, order.rows, pairs, found, nullptr);
   if (found != nullptr)
     found->lower = lower;
 }
@@ -245,8 +258,7 @@ void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
   if (norm_square(lower - found.lower) > 0. || !order.has_table() ||
       most_moved * moved.size() > p.size())
   {
-    list_all(finder, order.rows, pairs, &found);
-    former.give_records(pairs, 0);
+    list_all(finder, order.rows, pairs, &found, &former);
     found.lower = lower;
     return;
   }
@@ -261,7 +273,7 @@ void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
     const std::size_t begin = pairs.size();
     if (order.is_marked(cells[row])) {
       finder.append(place, pairs);
-      former.give_records(pairs, begin);
+      former.give_records(pairs, begin, row);
     } else
       former.append_group(row, pairs);
     found.groups[row] = {static_cast<std::uint32_t>(begin),

@@ -18,7 +18,7 @@ enum Place : unsigned int
   type,
   radius,
   mass,
-  reference, ///< position at the last search, on which the order of all lists depends
+  reference, ///< on which the order of all lists depends
   position = reference + 3,
   velocity = position + 3,
   spin = velocity + 3,

@@ -1,7 +1,7 @@
 // Checkpoints of a simulation and the continuation from them.
 //
-// A checkpoint holds the state between two steps: particles with their contacts and with the places
-// where they were at the last search, on which the order of all lists depends. So writing one
+// A checkpoint holds the state between two steps: particles with their contacts and with their
+// references, on which the order of all lists depends. So writing one
 // changes nothing, and a run that continues goes on with the same bits. Each part of the simulation
 // saves and loads what it remembers. With another input a run begins a phase: it takes the
 // particles and their contacts over and all else from the input.

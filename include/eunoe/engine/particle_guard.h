@@ -33,7 +33,7 @@ struct Fault
 struct Faults
 {
   std::vector<Fault> lost;     ///< not a number, or outside the mesh and beyond no outlet
-  std::vector<Fault> fast;     ///< moved farther than the last search allows for
+  std::vector<Fault> fast;     ///< moved farther than the lists allow for
   std::vector<Fault> squeezed; ///< too deep in another particle or in a solid
   /// Largest stiffness over effective mass of a living contact (1/s2), its angular frequency
   /// squared.
@@ -59,7 +59,7 @@ public:
   /// Time steps that the half period of a contact should have at least.
   static constexpr double steps_per_contact = 10.;
 
-  /// @param longest_way that a particle may have gone between the last search and the last step (m)
+  /// @param longest_way that a particle may have gone from its reference up to the last step (m)
   /// @param dt time step (s)
   ParticleGuard(const FaultParameters &parameters, const Domain &domain, const Materials &materials,
                 double longest_way, double dt);

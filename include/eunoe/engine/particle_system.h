@@ -187,9 +187,9 @@ private:
   /// Counts particles that leave through outlets, and lost particles.
   /// @return the rows of all of them
   std::vector<std::size_t> count_leaving(const std::vector<std::size_t> &lost);
-  /// Gives those particles new references, at their places, that have gone by more than half of
-  /// what the farthest have: so a search is about what moves, and the others keep their pairs.
-  /// Wraps them at periods.
+  /// Gives those particles new references, at their places, that have gone by more than a
+  /// quarter of what the farthest have: so a search is about what moves, and the others keep their
+  /// pairs. Wraps them at periods.
   std::vector<ContactGrid::Moved> follow(double farthest);
   /// Parts particles that leave from all others: their contacts end, and a search finds no pairs of
   /// them; collective.

@@ -49,8 +49,8 @@ public:
   /// @param near_share of this rank, see `NearPairs`
   void ask(unsigned long long step, const Travel &travel, double near_share);
 
-  /// Of a particle since the last search, on any rank, once all have answered (m); infinite if it
-  /// is not known.
+  /// Of a particle from its reference, on any rank, once all have answered (m); infinite if it is
+  /// not known.
   double largest_displacement() const { return largest[0]; }
   /// In this step, likewise: of a particle over its pace, and the typical step (m), which is the
   /// root of the largest mean square of a rank.
@@ -67,7 +67,7 @@ private:
   const ContactDetectionParameters &parameters;
   const double allowed;
   MPI_Comm comm;
-  /// Since the last search (m), in this step (paces, m), and the share, on any rank.
+  /// From the references (m), in this step (paces, m), and the share, on any rank.
   std::array<double, 4> largest = {};
   MPI_Request answer = MPI_REQUEST_NULL;
 };
