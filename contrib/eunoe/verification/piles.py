@@ -24,7 +24,8 @@ def pile(bench: Bench) -> Row:
         speed[name] = float(curves[name][2][time >= FROM].max())
     checks = [absolute(f"EPSD: sinking of the centre of mass from {FROM:g} to {TO:g} s, over a diameter",
                        sunk["epsd"], 0., 1e-4),
-              absolute("EPSD: largest root mean square speed from then on", speed["epsd"], 0., 1e-5, "m/s"),
+              # No law resists a spin about a contact's normal: a grain that turns in place wobbles.
+              absolute("EPSD: largest root mean square speed from then on", speed["epsd"], 0., 1e-4, "m/s"),
               # Far beyond the limit for EPSD, so that the row distinguishes the two.
               at_least("constant torque: sinking over a diameter", sunk["constant"], 1e-3),
               at_least("constant torque: largest root mean square speed", speed["constant"], 1e-4, "m/s")]
