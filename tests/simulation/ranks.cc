@@ -2,8 +2,14 @@
 // powder rains into a periodic box, is stirred by a turning paddle, slides on a moving floor and
 // leaves through an outlet, while more is inserted. The same with every law that acts across a
 // separation and with drag. The first rank runs the case alone, then all ranks run it together.
+// Meanwhile all particles are compared with all others: no list may lack a pair that touches.
+
+#include <deal.II/base/mpi.h>
 
 #include "../tests.h"
+
+#include <set>
+#include <utility>
 
 using namespace test;
 
@@ -107,7 +113,38 @@ struct Result
   std::vector<double> load;
   ExactSum lost;
   unsigned long long searches, in_place, balances;
+  std::size_t n_touching = 0, n_missed = 0;
 };
+
+/// Counts the pairs of particles that touch, each once on every rank, and those of them of which
+/// this rank owns one and whose contact it does not know.
+void count_touching(Simulation &simulation, MPI_Comm comm, Result &result)
+{
+  const std::vector<ContactForce> contacts = simulation.contact_forces();
+  const ParticleArrays &p = simulation.get_system().particles;
+  std::set<std::pair<double, double>> known;
+  for (const ContactForce &contact : contacts)
+    if (contact.second >= 0)
+      known.emplace(std::minmax(p.id[contact.first], p.id[contact.second]));
+  std::vector<std::vector<double>> mine;
+  std::set<double> owned;
+  for (std::size_t row = 0; row < p.n_owned; ++row) {
+    const Quad &x = p.position[row];
+    mine.push_back({static_cast<double>(p.id[row]), x.x, x.y, x.z, x.w});
+    owned.insert(p.id[row]);
+  }
+  const std::vector<std::vector<double>> all = of_all_ranks(comm, mine);
+  for (const auto &a : all)
+    for (const auto &b : all) {
+      constexpr double period = 4e-3;
+      const Vec3 apart{a[1] - b[1], a[2] - b[2], std::remainder(a[3] - b[3], period)};
+      if (a[0] >= b[0] || norm(apart) > a[4] + b[4] - 1e-12)
+        continue;
+      ++result.n_touching;
+      const bool is_mine = owned.count(a[0]) + owned.count(b[0]) > 0;
+      result.n_missed += is_mine && known.count({a[0], b[0]}) == 0 ? 1 : 0;
+    }
+}
 
 /// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to matter.
 const char *const all_laws = R"(
@@ -145,8 +182,14 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
                      "  set calculation = true\n  set output frequency = 6000\n"
                      " end\nend\n",
                  comm);
-  test_case.run();
   Result result;
+  constexpr unsigned int interval = 23; // so that it falls on all places between searches
+  unsigned int n = 0;
+  test_case.run([&](Simulation &simulation) {
+    if (n++ % interval == 0)
+      count_touching(simulation, comm, result);
+  });
+  result.n_missed = dealii::Utilities::MPI::sum(result.n_missed, comm);
   result.particles = particle_table(*test_case);
   const SolidLoad load = test_case->global_solid_loads().back();
   for (const ExactSum &component : load.force)
@@ -182,6 +225,8 @@ void compare(const std::string &laws, const std::vector<std::string> &balancings
     check("all particles are there",
           together.particles.size() == alone.particles.size() && together.particles.size() > 150);
     check("the same bits", together.particles == alone.particles);
+    check("no contact is missed", together.n_missed == 0 && together.n_touching > 5000,
+          std::to_string(together.n_missed) + " of " + std::to_string(together.n_touching));
     check("the same force on the paddle",
           together.load == alone.load && std::abs(alone.load[1]) > 0.);
     if (balancing == none)
