@@ -43,6 +43,10 @@ private:
   const std::vector<std::int32_t> *const places;
 };
 
+/// From so many particles on it pays to ask for them ahead. Those of fewer are in a near cache, and
+/// asking costs more than waiting does.
+constexpr std::size_t far_from = 100000;
+
 /// Lets the processor bring into its cache what forces need of a particle. Asked again for
 /// particles that are in several pairs: processors drop what they are asked for while they wait for
 /// much.
@@ -160,6 +164,7 @@ void PairForces::list_near(ParticleArrays &particles, PairList &pairs, const dou
 void PairForces::add_of_all(ParticleArrays &particles, PairList &pairs, const double dt) const
 {
   NearPairs &near = pairs.near;
+  const bool are_far = particles.size() >= far_from;
   Run run(*this, particles, dt);
   for (std::size_t k = 0; k < near.n_blocks(); ++k) {
     const std::size_t first = k * B;
@@ -169,7 +174,7 @@ void PairForces::add_of_all(ParticleArrays &particles, PairList &pairs, const do
     b.kind = near.kind.empty() ? nullptr : &near.kind[first];
     b.history = pairs.memory.lanes.block(k);
     pairs.note_reach(k, run.describe(static_cast<unsigned int>(std::min(B, near.size() - first))));
-    if (k + 1 < near.n_blocks()) {
+    if (are_far && k + 1 < near.n_blocks()) {
       pairs.memory.lanes.prefetch(k + 1);
       for (std::size_t next = first + B; next < first + 2 * B; ++next)
         for (const Offset particle : {near.i[next], near.j[next]})
@@ -184,6 +189,7 @@ void PairForces::add_of_some(ParticleArrays &particles, PairList &pairs, const d
 {
   const Period period(box);
   NearPairs &near = pairs.near;
+  const bool are_far = particles.size() >= far_from;
   Run run(*this, particles, dt);
   std::int32_t place[2 * B];
   alignas(64) std::int32_t record[B];
@@ -213,8 +219,9 @@ void PairForces::add_of_some(ParticleArrays &particles, PairList &pairs, const d
                                model.range()));
     for (std::uint64_t bits = near.in_reach[k]; bits != 0; bits &= bits - 1) {
       const std::int32_t at = static_cast<std::int32_t>(first) + __builtin_ctzll(bits);
-      prefetch(particles, near.i[at]);
-      prefetch(particles, near.j[at]);
+      if (are_far)
+        for (const Offset particle : {near.i[at], near.j[at]})
+          prefetch(particles, particle);
       place[n++] = at;
     }
     if (n < B)

@@ -100,7 +100,7 @@ public:
   std::uint64_t mask(const std::size_t block) const
   {
     const std::size_t n = std::min<std::size_t>(PairBlock::size, n_pairs - block * PairBlock::size);
-    return ~std::uint64_t(0) >> (PairBlock::size - n);
+    return ~std::uint64_t(0) >> (64 - n);
   }
   std::size_t n_blocks() const { return in_reach.size(); }
 

@@ -9,7 +9,7 @@ namespace eunoe {
 /// What the laws of a batch of contacts write; all zero before the first.
 struct alignas(64) ContactForces
 {
-  static constexpr unsigned int size = 64;
+  static constexpr unsigned int size = 32;
   using Lanes = double[size];
 
   alignas(64) Lanes stiffness;      ///< normal secant stiffness k_n (N/m)
