@@ -119,6 +119,9 @@ private:
   /// From how many pairs of the last list were within reach.
   void judge_density()
   {
+    // Of the first list nothing is known.
+    if (n_pairs == 0)
+      return;
     std::size_t n_within = 0;
     for (const std::uint64_t bits : in_reach)
       n_within += static_cast<std::size_t>(__builtin_popcountll(bits));
