@@ -137,7 +137,7 @@ class FormerPairs
 {
 public:
   FormerPairs(PairList &&pairs, const ContactGrid::Found &found)
-      : pairs(std::move(pairs)), groups(found.groups)
+      : pairs(std::move(pairs)), groups(found.groups), partners(found.groups.size(), {-1, 0})
   {
   }
 
@@ -148,34 +148,47 @@ public:
 
   /// Gives the records of contacts to the same pairs of a new list, from @p begin on.
   /// @param row that comes first in all of them
-  void give_records(PairList &to, const std::size_t begin, const std::int32_t row) const
+  void give_records(PairList &to, const std::size_t begin, const std::int32_t row)
   {
-    // The other may have come first before.
-    for (std::size_t k = begin; k < to.size(); ++k)
-      if (!give_record(to, k, row))
-        give_record(to, k, to.i[k] == row ? to.j[k] : to.i[k]);
+    for (std::uint32_t f = groups[row].begin; f < groups[row].end; ++f)
+      partners[partner(pairs, f, row)] = {row, pairs.record[f]};
+    for (std::size_t k = begin; k < to.size(); ++k) {
+      const std::int32_t other = partner(to, k, row);
+      // The other may have come first before.
+      to.record[k] = partners[other].of == row ? partners[other].record : record_of(other, row);
+    }
   }
 
 private:
-  /// @return whether the pair is in the former group of @p row
-  bool give_record(PairList &to, const std::size_t k, const std::int32_t row) const
+  /// Of a row, as marked last.
+  struct Partner
   {
-    for (std::uint32_t f = groups[row].begin; f < groups[row].end; ++f)
-      if (pairs.i[f] == to.i[k] && pairs.j[f] == to.j[k]) {
-        to.record[k] = pairs.record[f];
-        return true;
-      }
-    return false;
+    std::int32_t of, record;
+  };
+
+  static std::int32_t partner(const PairList &list, const std::size_t k, const std::int32_t row)
+  {
+    return list.i[k] == row ? list.j[k] : list.i[k];
+  }
+
+  /// Record of the pair of two rows of which @p first came first; none if there was none.
+  std::int32_t record_of(const std::int32_t first, const std::int32_t second) const
+  {
+    for (std::uint32_t f = groups[first].begin; f < groups[first].end; ++f)
+      if (partner(pairs, f, first) == second)
+        return pairs.record[f];
+    return ContactMemory::none;
   }
 
   const PairList pairs;
   const std::vector<ContactGrid::Found::Group> groups;
+  std::vector<Partner> partners; ///< by row
 };
 
 /// Lists all pairs and notes their groups.
 /// @param former if not null, has the records of their contacts
 void list_all(PairFinder &finder, const std::vector<std::int32_t> &rows, PairList &pairs,
-              ContactGrid::Found *const found, const FormerPairs *const former)
+              ContactGrid::Found *const found, FormerPairs *const former)
 {
   if (found != nullptr)
     found->groups.resize(rows.size());
@@ -250,7 +263,7 @@ void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
                                    const std::vector<Moved> &moved, PairList &pairs,
                                    Found &found) const
 {
-  const FormerPairs former(pairs.take_pairs(), found);
+  FormerPairs former(pairs.take_pairs(), found);
   const std::vector<Cell> cells = cells_of(p);
   CellOrder order(cells, p, n);
   const std::array<bool, 3> periodic = periodic_axes();
