@@ -263,7 +263,9 @@ void ContactGrid::find_pairs_again(const ParticleArrays &p, const double reach,
                                    const std::vector<Moved> &moved, PairList &pairs,
                                    Found &found) const
 {
+  const std::size_t room = pairs.i.capacity();
   FormerPairs former(pairs.take_pairs(), found);
+  pairs.reserve(room);
   const std::vector<Cell> cells = cells_of(p);
   CellOrder order(cells, p, n);
   const std::array<bool, 3> periodic = periodic_axes();

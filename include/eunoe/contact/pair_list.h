@@ -91,6 +91,12 @@ struct PairList
       }
   }
 
+  void reserve(const std::size_t n)
+  {
+    for (auto *list : {&i, &j, &record})
+      list->reserve(n);
+  }
+
   /// Appends @p n pairs, out of reach as yet.
   void append(const std::int32_t *first, const std::int32_t *second, const std::size_t n)
   {
