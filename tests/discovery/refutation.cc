@@ -77,21 +77,6 @@ void of_a_tie()
             std::abs(one.findings.off_catalogue - none_of_these.probability / left) < 1e-12 &&
             one.findings.models.front().effects == b.effects);
 
-  // Three quarters of the evidence of "none of these" are of what looks like the first effect.
-  Findings relatives = by_fit();
-  relatives.models.back().log_evidence = std::log(2.);
-  relatives.models.front().log_evidence = std::log(5.);
-  relatives.lookalikes.taken_for = {{0, 0.3}, {1, 0.2}};
-  Model first = a;
-  first.log_evidence = std::log(5.);
-  const Result without_relatives = of({first, b}, {refuted, good}, Untested::fall, relatives);
-  const double unlike = 0.25 * none_of_these.probability,
-               rest = b.probability + c.probability + unlike;
-  check("what looks like a refuted effect is refuted with it",
-        std::abs(without_relatives.findings.off_catalogue - unlike / rest) < 1e-12 &&
-            std::abs(without_relatives.findings.answer.front().probability - b.probability / rest) <
-                1e-12);
-
   Findings doubt = by_fit();
   doubt.none_of_these = true;
   doubt.p_fit = doubtful;

@@ -42,17 +42,6 @@ double Lookalikes::log_evidence(const std::vector<Model> &models, const double t
   return temperature * log_sum(logs);
 }
 
-double Lookalikes::share_like(const std::vector<Model> &likes, const double log_evidence,
-                              const double temperature) const
-{
-  double sum = 0.;
-  for (const Model &model : likes)
-    if (model.effects.size() == 1)
-      if (const auto share = taken_for.find(model.effects.front()); share != taken_for.end())
-        sum += share->second * std::exp((model.log_evidence - log_evidence) / temperature);
-  return std::min(sum, 1.);
-}
-
 Lookalikes find_lookalikes(const Evidence &evidence, const double strength, const double threshold,
                            const unsigned int draws, const std::uint32_t seed)
 {

@@ -29,23 +29,15 @@ std::vector<Model> falling_with(const std::vector<Model> &refuted, const std::ve
   return result;
 }
 
-/// Shares the probability of refuted models among the rest, and chooses the answer anew. What the
-/// catalogue lacks and looks like a refuted effect is refuted with it. If the refuted models were
-/// all of the answer, "none of these" is in the new one, and is all of it if nothing else is left
-/// or as likely.
+/// Shares the probability of refuted models among the rest, and chooses the answer anew. If they
+/// were all of the answer, "none of these" is in the new one, and is all of it if nothing else is
+/// left or as likely.
 void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings)
 {
   std::vector<Model> &models = findings.models;
   const auto is_refuted = [&](const Model &model) {
     return !model.is_discrepancy && is_among(model, refuted);
   };
-  for (Model &model : models)
-    if (model.is_discrepancy) {
-      const double share = findings.lookalikes.share_like(refuted, model.log_evidence,
-                                                          findings.calibration.temperature);
-      model.probability *= 1. - share;
-      findings.off_catalogue *= 1. - share;
-    }
   double left = 0.;
   for (const Model &model : models)
     left += is_refuted(model) ? 0. : model.probability;

@@ -23,10 +23,6 @@ struct Lookalikes
   /// @param models with the evidence of each single effect and of the discrepancy
   /// @param temperature by which evidence is divided, and shares are not
   double log_evidence(const std::vector<Model> &models, double temperature) const;
-
-  /// Share of that evidence which comes from what looks like some effects.
-  /// @param likes models of single effects; others have no share
-  double share_like(const std::vector<Model> &likes, double log_evidence, double temperature) const;
 };
 
 /// @param strength of the data: who is confused with whom depends on it. Effects that do not reach
