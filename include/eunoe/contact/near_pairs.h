@@ -99,8 +99,10 @@ public:
   /// Bits of the pairs of a block, which fill all but the last.
   std::uint64_t mask(const std::size_t block) const
   {
+    constexpr std::size_t n_bits = std::numeric_limits<std::uint64_t>::digits;
+    static_assert(PairBlock::size <= n_bits, "a block has a bit for each pair");
     const std::size_t n = std::min<std::size_t>(PairBlock::size, n_pairs - block * PairBlock::size);
-    return ~std::uint64_t(0) >> (64 - n);
+    return ~std::uint64_t(0) >> (n_bits - n);
   }
   std::size_t n_blocks() const { return in_reach.size(); }
 
