@@ -43,13 +43,18 @@ struct Result
   unsigned int n_judged = 0;
 };
 
+/// Data that nothing else would look like, or that say nothing of that.
+constexpr double rare = 0.2, usual = 1.;
+
 Result of(const std::vector<Model> &models, const std::vector<double> &p,
-          const Untested untested = Untested::fall, const Findings &before = by_fit())
+          const Untested untested = Untested::fall, const Findings &before = by_fit(),
+          const double passes = usual)
 {
   Result result;
   result.findings = before;
   result.leader = refute(
-      {models, p, refuted}, untested, {}, [&](Findings &) { ++result.n_judged; }, result.findings);
+      {models, p, std::vector<double>(models.size(), passes), refuted}, untested, {},
+      [&](Findings &) { ++result.n_judged; }, result.findings);
   return result;
 }
 
@@ -93,8 +98,27 @@ void of_a_tie()
 
   Findings off = by_fit();
   const auto spurn = [](Findings &findings) { findings.verdict = Verdict::off_catalogue; };
-  refute({{a, b}, {refuted, good}, refuted}, Untested::fall, {}, spurn, off);
+  refute({{a, b}, {refuted, good}, {usual, usual}, refuted}, Untested::fall, {}, spurn, off);
   check("nor where the data of the fit refute it", off.verdict == Verdict::off_catalogue);
+}
+
+void of_none_of_these()
+{
+  Findings open = by_fit();
+  open.models = {with({0}, 0.8), with({}, 0.2)};
+  open.answer = {a};
+  open.none_of_these = true;
+  open.off_catalogue = 0.2;
+  const auto share = [](const Result &result) { return result.findings.off_catalogue; };
+  const Result unheard = of({a}, {good}, Untested::fall, open);
+  check("data that anything passes say nothing",
+        std::abs(share(unheard) - 0.2) < 1e-12 && unheard.findings.verdict == Verdict::tie);
+  const Result heard = of({a}, {good}, Untested::fall, open, rare);
+  check("what few would have passed speaks for the model that has",
+        std::abs(share(heard) - 0.2 * rare / (0.8 + 0.2 * rare)) < 1e-12 &&
+            heard.findings.verdict == Verdict::named);
+  check("and not for one that has not",
+        of({a}, {refuted}, Untested::fall, open, rare).findings.verdict == Verdict::off_catalogue);
 }
 
 void of_all_of_an_answer()
@@ -134,6 +158,7 @@ void of_no_answer()
 EUNOE_MPI_TEST()
 {
   of_a_tie();
+  of_none_of_these();
   of_all_of_an_answer();
   of_no_answer();
 }

@@ -41,6 +41,24 @@ std::uint64_t HeldOut::n_runs() const
   return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
 }
 
+double HeldOut::chance_to_pass(const std::size_t model, const std::vector<Model> &models,
+                               const Contest &contest) const
+{
+  const std::vector<std::size_t> &own = models[model].effects;
+  const auto is_other = [&](const Model &truth) {
+    return std::none_of(own.begin(), own.end(), [&](const std::size_t effect) {
+      return std::find(truth.effects.begin(), truth.effects.end(), effect) != truth.effects.end();
+    });
+  };
+  double passed = 1., all = 2.;
+  for (std::size_t truth = 0; truth < models.size(); ++truth)
+    if (is_other(models[truth])) {
+      passed += 1. - contest.refuted_by(first + model, first + truth, rule.refuted);
+      all += 1.;
+    }
+  return passed / all;
+}
+
 HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &models,
                                const unsigned int runs)
 {
@@ -61,9 +79,11 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &mo
   Contest contest(std::move(all));
   const auto p = [&](const std::size_t place) { return contest.p(place, target.data()); };
   Test test;
-  test.tested = {models, {}, p(base)};
-  for (std::size_t m = 0; m < models.size(); ++m)
+  test.tested = {models, {}, {}, p(base)};
+  for (std::size_t m = 0; m < models.size(); ++m) {
     test.tested.p.push_back(p(first + m));
+    test.tested.passes.push_back(chance_to_pass(m, models, contest));
+  }
   test.comparison = Comparison{std::move(target), std::move(contest)};
   return test;
 }

@@ -29,12 +29,36 @@ std::vector<Model> falling_with(const std::vector<Model> &refuted, const std::ve
   return result;
 }
 
+std::optional<std::size_t> place_among(const std::vector<Model> &models, const Model &model)
+{
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (models[m].effects == model.effects)
+      return m;
+  return {};
+}
+
+/// How likely data of something else spare the likeliest of the models that these data spare.
+double chance_of_sparing(const TestedModels &tested, const DecisionRule &rule,
+                         const std::vector<Model> &models)
+{
+  for (const Model &model : models)
+    if (const auto place = place_among(tested.models, model); place && !model.is_discrepancy)
+      if (tested.p[*place] >= rule.refuted)
+        return tested.passes[*place];
+  return 1.;
+}
+
 /// Shares the probability of refuted models among the rest, and chooses the answer anew. If they
 /// were all of the answer, "none of these" is in the new one, and is all of it if nothing else is
 /// left or as likely.
-void withdraw(const std::vector<Model> &refuted, const DecisionRule &rule, Findings &findings)
+void withdraw(const std::vector<Model> &refuted, const TestedModels &tested,
+              const DecisionRule &rule, Findings &findings)
 {
   std::vector<Model> &models = findings.models;
+  const double chance = chance_of_sparing(tested, rule, models);
+  for (Model &model : models)
+    model.probability *= model.is_discrepancy ? chance : 1.;
+  findings.off_catalogue *= chance;
   const auto is_refuted = [&](const Model &model) {
     return !model.is_discrepancy && is_among(model, refuted);
   };
@@ -67,14 +91,6 @@ void keep_tested(const std::vector<Model> &tested, Findings &findings)
   findings.verdict = answer.empty() ? Verdict::off_catalogue : findings.verdict;
 }
 
-std::optional<std::size_t> place_among(const std::vector<Model> &models, const Model &model)
-{
-  for (std::size_t m = 0; m < models.size(); ++m)
-    if (models[m].effects == model.effects)
-      return m;
-  return {};
-}
-
 } // namespace
 
 std::optional<std::size_t> refute(const TestedModels &tested, const Untested untested,
@@ -96,7 +112,7 @@ std::optional<std::size_t> refute(const TestedModels &tested, const Untested unt
   if (untested == Untested::fall || is_all_refuted)
     for (const Model &model : falling_with(refuted, tested.models, findings.models))
       refuted.push_back(model);
-  withdraw(refuted, rule, findings);
+  withdraw(refuted, tested, rule, findings);
   if (untested == Untested::fall && is_all_refuted)
     keep_tested(tested.models, findings);
   if (findings.verdict == Verdict::off_catalogue) {
