@@ -1,7 +1,7 @@
 """Makes a blind suite: hidden truths, their data, and a study of each.
 
 Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full]
-       [--seeds ci|development|reported|again|third|fourth|fifth] [--study-seeds N] [--ranks N] [--label NAME]
+       [--seeds ci|development|reported|again|third|fourth|fifth|sixth] [--study-seeds N] [--ranks N] [--label NAME]
        [--set "discovery/entry = value" ...] [--part I/N]
 
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
@@ -12,7 +12,7 @@ another command is making is left out.
 --label keeps the studies of an ablation beside the others: they use the same data. score.py makes the tables.
 
 Thresholds are tuned on development seeds only; the reported suite is made afterwards, and once what it
-shows has changed the rules, one of the seeds "again", then of the "third", "fourth" and "fifth".
+shows has changed the rules, one of the seeds "again", then of the "third" to the "sixth".
 """
 
 from __future__ import annotations
