@@ -119,6 +119,9 @@ void of_none_of_these()
             heard.findings.verdict == Verdict::named);
   check("and not for one that has not",
         of({a}, {refuted}, Untested::fall, open, rare).findings.verdict == Verdict::off_catalogue);
+  open.models = {with({0}, 0.6), with({1}, 0.2), with({}, 0.2)};
+  check("nor for one that nothing has tested",
+        std::abs(share(of({b}, {good}, Untested::fall, open, rare)) - 0.2) < 1e-12);
 }
 
 void of_all_of_an_answer()

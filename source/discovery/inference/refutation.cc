@@ -37,17 +37,6 @@ std::optional<std::size_t> place_among(const std::vector<Model> &models, const M
   return {};
 }
 
-/// How likely data of something else spare the likeliest of the models that these data spare.
-double chance_of_sparing(const TestedModels &tested, const DecisionRule &rule,
-                         const std::vector<Model> &models)
-{
-  for (const Model &model : models)
-    if (const auto place = place_among(tested.models, model); place && !model.is_discrepancy)
-      if (tested.p[*place] >= rule.refuted)
-        return tested.passes[*place];
-  return 1.;
-}
-
 /// Shares the probability of refuted models among the rest, and chooses the answer anew. If they
 /// were all of the answer, "none of these" is in the new one, and is all of it if nothing else is
 /// left or as likely.
@@ -55,13 +44,19 @@ void withdraw(const std::vector<Model> &refuted, const TestedModels &tested,
               const DecisionRule &rule, Findings &findings)
 {
   std::vector<Model> &models = findings.models;
-  const double chance = chance_of_sparing(tested, rule, models);
-  for (Model &model : models)
-    model.probability *= model.is_discrepancy ? chance : 1.;
-  findings.off_catalogue *= chance;
   const auto is_refuted = [&](const Model &model) {
     return !model.is_discrepancy && is_among(model, refuted);
   };
+  const auto likeliest = std::find_if(models.begin(), models.end(), [&](const Model &model) {
+    return !model.is_discrepancy && !is_refuted(model);
+  });
+  // Data of something else would often have refuted it, too.
+  if (likeliest != models.end())
+    if (const auto place = place_among(tested.models, *likeliest)) {
+      for (Model &model : models)
+        model.probability *= model.is_discrepancy ? tested.passes[*place] : 1.;
+      findings.off_catalogue *= tested.passes[*place];
+    }
   double left = 0.;
   for (const Model &model : models)
     left += is_refuted(model) ? 0. : model.probability;
