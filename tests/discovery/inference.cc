@@ -262,6 +262,10 @@ void contests(Laboratory &lab)
         std::to_string(alone) + ", " + std::to_string(against_right));
   check_close("and says how often it will", contest.refuted_by(1, 0, level), against_right / number,
               0.1);
+  check_close("and how rarely something else passes", contest.passes(1, {0}, level),
+              (2. - against_right / number) / 3., 0.05);
+  check_close("of which nothing is known without another model", contest.passes(1, {}, level), 0.5,
+              0.);
   // Data beyond the right model.
   const Eigen::VectorXd beyond = 2. * right.mean() - wrong.mean();
   check("a model is better than another one beyond it",

@@ -19,6 +19,18 @@ constexpr unsigned int in_doubt = 3;
 /// Places in a contest.
 constexpr std::size_t base = 0, first = 1;
 
+/// Places in a contest of the models that share no effect with one of them.
+std::vector<std::size_t> others(const std::size_t model, const std::vector<Model> &models)
+{
+  const std::vector<std::size_t> &own = models[model].effects;
+  std::vector<std::size_t> result;
+  for (std::size_t m = 0; m < models.size(); ++m)
+    if (std::find_first_of(own.begin(), own.end(), models[m].effects.begin(),
+                           models[m].effects.end()) == own.end())
+      result.push_back(first + m);
+  return result;
+}
+
 std::string sentence(const double p_before, const double p_after, const double level)
 {
   if (p_after < level)
@@ -39,24 +51,6 @@ HeldOut::HeldOut(const StudyOptions &options, const DecisionRule &rule, const Me
 std::uint64_t HeldOut::n_runs() const
 {
   return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
-}
-
-double HeldOut::chance_to_pass(const std::size_t model, const std::vector<Model> &models,
-                               const Contest &contest) const
-{
-  const std::vector<std::size_t> &own = models[model].effects;
-  const auto is_other = [&](const Model &truth) {
-    return std::none_of(own.begin(), own.end(), [&](const std::size_t effect) {
-      return std::find(truth.effects.begin(), truth.effects.end(), effect) != truth.effects.end();
-    });
-  };
-  double passed = 1., all = 2.;
-  for (std::size_t truth = 0; truth < models.size(); ++truth)
-    if (is_other(models[truth])) {
-      passed += 1. - contest.refuted_by(first + model, first + truth, rule.refuted);
-      all += 1.;
-    }
-  return passed / all;
 }
 
 HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &models,
@@ -82,7 +76,7 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &mo
   test.tested = {models, {}, {}, p(base)};
   for (std::size_t m = 0; m < models.size(); ++m) {
     test.tested.p.push_back(p(first + m));
-    test.tested.passes.push_back(chance_to_pass(m, models, contest));
+    test.tested.passes.push_back(contest.passes(first + m, others(m, models), rule.refuted));
   }
   test.comparison = Comparison{std::move(target), std::move(contest)};
   return test;

@@ -183,4 +183,13 @@ double Contest::refuted_by(const std::size_t model, const std::size_t truth,
   return (p_values(model, models[truth].twins()) < level).cast<double>().mean();
 }
 
+double Contest::passes(const std::size_t model, const std::vector<std::size_t> &others,
+                       const double level) const
+{
+  double passed = 1.;
+  for (const std::size_t other : others)
+    passed += 1. - refuted_by(model, other, level);
+  return passed / (2. + static_cast<double>(others.size()));
+}
+
 } // namespace eunoe::discovery

@@ -42,11 +42,6 @@ private:
   };
   /// Models of the answer, and others that held-out data might speak for.
   std::vector<Model> first_tested(const Findings &by_fit) const;
-  /// Probability that data of something else would not refute a model: something that the catalogue
-  /// lacks is as far from it as the other effects that are tested, whose share follows Laplace's
-  /// rule of succession.
-  double chance_to_pass(std::size_t model, const std::vector<Model> &models,
-                        const Contest &contest) const;
   /// Runs the models and compares.
   Test compare(const Evidence &fit, const std::vector<Model> &models, unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.

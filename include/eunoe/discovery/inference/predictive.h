@@ -85,6 +85,9 @@ public:
   }
   /// Share of another model's twins that a model is refuted by at a level.
   double refuted_by(std::size_t model, std::size_t truth, double level) const;
+  /// Probability that data of something else would not refute a model at a level. Some of the other
+  /// models stand for something else, by Laplace's rule of succession: one half without any.
+  double passes(std::size_t model, const std::vector<std::size_t> &others, double level) const;
 
 private:
   /// Log densities of data in columns, a row for each model.
