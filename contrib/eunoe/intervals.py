@@ -32,26 +32,68 @@ class Interval:
         return abs(self.value) > self.half
 
 
-def mean_of(values: Sequence[float]) -> Interval:
-    """NaN values are left out."""
-    known = [value for value in values if not math.isnan(value)]
-    if len(known) < 2:
-        return Interval(known[0] if known else math.nan, math.nan)
-    half = quantile(len(known) - 1) * statistics.stdev(known) / math.sqrt(len(known))
-    return Interval(statistics.mean(known), half or math.nan)
+@dataclass(frozen=True)
+class Scatter:
+    """Standard deviation of single values about the mean of their group, and how many degrees of freedom know it."""
+
+    deviation: float
+    freedom: int
 
 
-def difference_of(values: Sequence[float], reference: Sequence[float]) -> Interval:
-    """Of the means; both may scatter differently. NaN values are left out."""
-    values, reference = ([value for value in group if not math.isnan(value)] for group in (values, reference))
+def _known(values: Sequence[float]) -> list[float]:
+    return [value for value in values if not math.isnan(value)]
+
+
+def common_scatter(groups: Sequence[Sequence[float]]) -> Scatter | None:
+    """Of groups that are taken to scatter alike, so that a group of one value has an interval, too (the mean square
+    within groups of an analysis of variance). None if no group has two values. NaN values are left out."""
+    several = [group for group in map(_known, groups) if len(group) > 1]
+    freedom = sum(len(group) - 1 for group in several)
+    if not freedom:
+        return None
+    squares = sum((len(group) - 1) * statistics.variance(group) for group in several)
+    return Scatter(math.sqrt(squares / freedom), freedom)
+
+
+def _variance_of_mean(values: Sequence[float], scatter: Scatter | None) -> tuple[float, float]:
+    """And its degrees of freedom; NaN if neither the values nor a scatter tell."""
+    if scatter is not None:
+        return scatter.deviation ** 2 / len(values), scatter.freedom
+    if len(values) < 2:
+        return math.nan, math.nan
+    return statistics.variance(values) / len(values), len(values) - 1
+
+
+def _interval(value: float, variance: float, freedom: float) -> Interval:
+    if math.isnan(variance) or variance == 0.:
+        return Interval(value, math.nan)
+    return Interval(value, quantile(freedom) * math.sqrt(variance))
+
+
+def mean_of(values: Sequence[float], scatter: Scatter | None = None) -> Interval:
+    """The values scatter as given, else as they do themselves. NaN values are left out."""
+    values = _known(values)
+    if not values:
+        return Interval(math.nan, math.nan)
+    return _interval(statistics.mean(values), *_variance_of_mean(values, scatter))
+
+
+def difference_of(values: Sequence[float], reference: Sequence[float], scatter: Scatter | None = None) -> Interval:
+    """Of the means. The values scatter as given, else as they do themselves; the reference scatters by itself (Welch).
+    NaN values are left out."""
+    values, reference = _known(values), _known(reference)
     if not values or not reference:
         return Interval(math.nan, math.nan)
-    difference = statistics.mean(values) - statistics.mean(reference)
-    if min(len(values), len(reference)) < 2:
-        return Interval(difference, math.nan)
-    parts = [statistics.variance(group) / len(group) for group in (values, reference)]
-    if sum(parts) == 0.:
-        return Interval(difference, math.nan)
-    freedom = sum(parts) ** 2 / sum(part**2 / (len(group) - 1)
-                                    for part, group in zip(parts, (values, reference)))
-    return Interval(difference, quantile(freedom) * math.sqrt(sum(parts)))
+    parts = [_variance_of_mean(values, scatter), _variance_of_mean(reference, None)]
+    total = sum(variance for variance, _ in parts)
+    freedom = total ** 2 / sum(variance ** 2 / freedom for variance, freedom in parts) if total else math.nan
+    return _interval(statistics.mean(values) - statistics.mean(reference), total, freedom)
+
+
+def difference_within(scatter: Scatter | None, values: Sequence[float], reference: Sequence[float]) -> Interval:
+    """Of the means of two groups that share this scatter; each scatters by itself if there is none."""
+    values, reference = _known(values), _known(reference)
+    if scatter is None or not values or not reference:
+        return difference_of(values, reference)
+    return _interval(statistics.mean(values) - statistics.mean(reference),
+                     scatter.deviation ** 2 * (1. / len(values) + 1. / len(reference)), scatter.freedom)

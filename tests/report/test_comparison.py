@@ -20,7 +20,7 @@ import numpy as np
 
 import sample_bed
 import sample_run
-from eunoe.intervals import difference_of, mean_of
+from eunoe.intervals import common_scatter, difference_of, difference_within, mean_of
 from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_maps import maps_of, read_maps, read_table, write_table
@@ -183,6 +183,22 @@ class Numbers(unittest.TestCase):
         # Equal values do not tell how they scatter.
         self.assertTrue(np.isnan(mean_of([3., 3.]).half))
         self.assertFalse(difference_of([1., 1.], [2., 2.]).is_significant)
+
+    def test_groups_that_scatter_alike(self) -> None:
+        scatter = common_scatter([[1., 3.], [5.], [2., 4., float("nan"), 6.]])
+        assert scatter is not None
+        # The squares about the means of their groups are 2 and 8, with 1 and 2 degrees of freedom.
+        self.assertEqual((round(scatter.deviation ** 2, 6), scatter.freedom), (round(10. / 3., 6), 3))
+        self.assertAlmostEqual(mean_of([5.], scatter).half, 3.182 * (10. / 3.) ** 0.5)
+        self.assertAlmostEqual(mean_of([5., 6.], scatter).half, 3.182 * (10. / 6.) ** 0.5)
+        within = difference_within(scatter, [5.], [1., 3.])
+        self.assertEqual((within.value, round(within.half, 3)), (3., 7.115))  # 3.182 sqrt(10 / 3 * 3 / 2)
+        # Of a reference that scatters by itself: Welch, with 3.99 degrees of freedom.
+        apart = difference_of([5.], [1., 3.], scatter)
+        self.assertEqual((apart.value, round(apart.half, 3)), (3., 6.624))  # 3.182 sqrt(10 / 3 + 1)
+        # Single runs alone tell nothing.
+        self.assertIsNone(common_scatter([[1.], [2.], []]))
+        self.assertTrue(np.isnan(difference_within(None, [1.], [2.]).half))
 
     def test_differences_of_runs_that_spread_the_same_grains(self) -> None:
         def group(label: str, *densities: float, first: int = 1) -> Group:
