@@ -25,6 +25,7 @@ from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_maps import maps_of, read_maps, read_table, write_table
 from eunoe.report.comparison_report import default_labels
+from eunoe.report.common_scatter import CommonScatter
 from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
                                           supply_table)
 from eunoe.report.layer_results import moved_over_plate
@@ -214,6 +215,25 @@ class Numbers(unittest.TestCase):
         other = difference(group("c", 0.51, 0.611, 0.709, first=2), reference, of)
         self.assertFalse(other.is_significant)
         self.assertTrue(np.isnan(difference(group("d", 0.51), reference, of).half))
+
+    def test_a_single_run_has_the_scatter_of_other_groups(self) -> None:
+        def rise(run: SpreadRun) -> float:
+            return run.rise
+        def group(label: str, *rises: float) -> Group:
+            return Group(label, [run_with([0.5] * 10 + [0.5 + rise] * 10) for rise in rises])
+        single, several, measured = group("a", 0.05), group("b", 0.01, 0.02), group("measured", 0.05, 0.06)
+        alone, common = CommonScatter(), CommonScatter([single, several])
+        self.assertTrue(np.isnan(alone.mean(single, rise).half))
+        scatter = common_scatter([[0.01, 0.02]])
+        for found, wanted in ((common.mean(single, rise), mean_of([0.05], scatter)),
+                              (common.difference(single, several, rise), difference_within(scatter, [0.05], [0.01, 0.02])),
+                              (common.difference(single, measured, rise), difference_of([0.05], [0.05, 0.06], scatter)),
+                              # What is not among the groups scatters by itself.
+                              (common.mean(measured, rise), mean_of([0.05, 0.06]))):
+            self.assertFalse(np.isnan(wanted.half))
+            np.testing.assert_allclose([found.value, found.half], [wanted.value, wanted.half], atol=1e-12)
+        self.assertIn("one run has no interval", rise_sentence(single))
+        self.assertNotIn("no interval", rise_sentence(single, common))
 
     def test_the_pass_that_is_shown(self) -> None:
         """The last one of which all was filmed; else that of which most was."""

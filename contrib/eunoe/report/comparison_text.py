@@ -4,7 +4,7 @@ differences pair by pair of seeds, or by Welch)."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import fields
 
 import numpy as np
@@ -12,9 +12,10 @@ import numpy as np
 from eunoe.intervals import Interval, mean_of
 from eunoe.tables import Table
 
+from .common_scatter import CommonScatter, Number
 from .measured import Measured
 from .run_folder import Layers
-from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun, difference
+from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
 
 
 def measured_group(measured: Measured, label: str = "measured, full size") -> Group:
@@ -30,7 +31,7 @@ def measured_group(measured: Measured, label: str = "measured, full size") -> Gr
     return Group(label, runs)
 
 
-Number = Callable[[SpreadRun], float]
+ALONE = CommonScatter()  # each group scatters by itself
 SUPPLIED = (1, 10, 20)
 
 
@@ -57,36 +58,35 @@ def text_of(interval: Interval, size: float = 1., sign: str = "") -> str:
     return value if math.isnan(interval.half) else f"{value} ± {size * interval.half:.1f}"
 
 
-def densities_table(groups: Sequence[Group]) -> Table:
+def densities_table(groups: Sequence[Group], scatter: CommonScatter = ALONE) -> Table:
     table = [["", "runs", *DENSITIES]]
     for group in groups:
-        cells = [text_of(mean_of(group.of_runs(number)), size) for number, size in DENSITIES.values()]
+        cells = [text_of(scatter.mean(group, number), size) for number, size in DENSITIES.values()]
         table.append([group.label, str(len(group.runs)), *cells])
     return table
 
 
-def differences_table(groups: Sequence[Group]) -> Table:
+def differences_table(groups: Sequence[Group], scatter: CommonScatter = ALONE) -> Table:
     """Of each group from the first one; bold where 0 lies outside of the interval."""
     numbers = {span(COMPARED): (lambda run: run.mean_lrd(COMPARED), 100.), **DENSITIES}
     table = [[f"less {groups[0].label}", "runs", *numbers]]
     for group in groups[1:]:
         cells = []
         for number, size in numbers.values():
-            found = difference(group, groups[0], number)
+            found = scatter.difference(group, groups[0], number)
             text = text_of(found, size, "+")
             cells.append(f"**{text}**" if found.is_significant else text)
         table.append([group.label, str(len(group.runs)), *cells])
     return table
 
 
-def rise_sentence(group: Group) -> str:
+def rise_sentence(group: Group, scatter: CommonScatter = ALONE) -> str:
     """Whether the layers become denser after layer 10."""
-    return change_sentence(group.label, group.of_runs(lambda run: run.rise))
+    return change_sentence(group.label, scatter.mean(group, lambda run: run.rise))
 
 
-def change_sentence(label: str, rises: Sequence[float]) -> str:
-    """The same by changes that are independent of each other."""
-    found = mean_of(rises)
+def change_sentence(label: str, found: Interval) -> str:
+    """The same by a change that is known."""
     if math.isnan(found.value):
         return f"{label}: too few layers to say whether they become denser."
     spans = f"from layers {PLATEAU[0]} to {PLATEAU[1]} to layers {LATER[0]} to {LATER[1]}"

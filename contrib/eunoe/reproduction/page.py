@@ -10,7 +10,8 @@ from pathlib import Path
 from eunoe.folders import write_whole
 from eunoe.intervals import mean_of
 from eunoe.launch import Failure
-from eunoe.report.comparison_text import (change_sentence, densities_table, differences_table, measured_group, rest_table,
+from eunoe.report.common_scatter import CommonScatter
+from eunoe.report.comparison_text import (ALONE, change_sentence, densities_table, differences_table, measured_group, rest_table,
                                           rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, Group
@@ -109,7 +110,9 @@ def densities_block(findings: Findings) -> str:
     if not groups:
         return NOTHING
     everyone = [*groups, measured_group(read_measured())]
-    return _block(densities_table(everyone), _results(groups), " ".join([*map(rise_sentence, groups), *_together(groups)]))
+    scatter = CommonScatter(groups)
+    sentences = [*(rise_sentence(group, scatter) for group in groups), *_together(groups)]
+    return _block(densities_table(everyone, scatter), _results(groups), " ".join(sentences))
 
 
 def _together(groups: list[Group]) -> list[str]:
@@ -126,24 +129,24 @@ def _together(groups: list[Group]) -> list[str]:
             names = " and ".join(group.runs[0].case.properties for group in same)
             rises = [statistics.mean(rise[seed] for rise in by_seed) for seed in seeds]
             sentences.append(change_sentence(f"{names}, {length_name(length)}, their mean for each of {len(seeds)} seeds",
-                                             rises))
+                                             mean_of(rises)))
     return sentences
 
 
-def _differences(pairs: list[list[Group]]) -> str:
+def _differences(pairs: list[list[Group]], scatter: CommonScatter = ALONE) -> str:
     """One table for each list of groups, compared with its first."""
-    blocks = [_block(differences_table(groups), _results(groups)) for groups in pairs if len(groups) > 1]
+    blocks = [_block(differences_table(groups, scatter), _results(groups)) for groups in pairs if len(groups) > 1]
     return "\n\n".join(blocks) or NOTHING
 
 
 def lengths_block(findings: Findings) -> str:
-    return _differences([findings.lengths(properties) for properties in SETS])
+    return _differences([findings.lengths(properties) for properties in SETS], CommonScatter(findings.plain()))
 
 
 def sets_block(findings: Findings) -> str:
     lengths = sorted({result.case.length for result in findings.all})
     return _differences([[group for properties in SETS if (group := findings.of(properties, length))]
-                         for length in lengths])
+                         for length in lengths], CommonScatter(findings.plain()))
 
 
 def rest_block(findings: Findings) -> str:
@@ -191,7 +194,7 @@ def needed_block(findings: Findings) -> str:
             continue
         used += groups
         longest = groups[-1].runs[0].case.length
-        rows = differences_table([groups[-1], *groups[:-1]])[1:]
+        rows = differences_table([groups[-1], *groups[:-1]], CommonScatter(findings.plain()))[1:]
         table += [[group.label, f"{group.runs[0].case.length / longest:.2g}", row[2].replace("**", "")]
                   for group, row in zip(groups[:-1], rows)]
     return _block(table, _results(used))

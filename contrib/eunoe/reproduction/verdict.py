@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 
-from eunoe.intervals import Interval, Scatter, common_scatter, difference_of, difference_within, mean_of
+from eunoe.intervals import Interval
+from eunoe.report.common_scatter import CommonScatter
 from eunoe.report.comparison_text import layers_of, measured_group, text_of
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
@@ -76,34 +76,20 @@ def _fall(run: SpreadRun) -> float:
     return run.peak[0] - float(run.layers.lrd[-1])
 
 
-class _Scatters:
-    """How a number scatters between runs that differ in the seed alone. Two or three runs of a group hardly tell, and
-    one does not, so the groups without a variant are taken to scatter alike."""
-
-    def __init__(self, findings: Findings) -> None:
-        self._groups = findings.plain()
-
-    def of(self, number: Callable[[SpreadRun], float]) -> Scatter | None:
-        return common_scatter([group.of_runs(number) for group in self._groups])
-
-    def difference(self, group: Group, reference: Group, number: Callable[[SpreadRun], float]) -> Interval:
-        return difference_within(self.of(number), group.of_runs(number), reference.of_runs(number))
-
-
-def _by_group(groups: list[Group], measured: Group, scatters: _Scatters) -> Table:
+def _by_group(groups: list[Group], measured: Group, scatter: CommonScatter) -> Table:
     rows = []
     for title, number in ((f"LRD of layers {PLATEAU[0]} to {PLATEAU[1]}", _plateau),
                           ("rise of LRD from there to layers 11 to 20", _rise),
                           ("peak of LRD", _peak),
                           ("fall of LRD from the peak to layer 20", _fall)):
-        rows += [[title, "measured: " + _said(mean_of(measured.of_runs(number))),
-                  f"{group.label}: {_said(mean_of(group.of_runs(number), scatters.of(number)))}",
-                  agreement(difference_of(group.of_runs(number), measured.of_runs(number), scatters.of(number)))]
+        rows += [[title, "measured: " + _said(scatter.mean(measured, number)),
+                  f"{group.label}: {_said(scatter.mean(group, number))}",
+                  agreement(scatter.difference(group, measured, number))]
                  for group in groups]
     return rows
 
 
-def _differences(findings: Findings, scatters: _Scatters) -> Table:
+def _differences(findings: Findings, scatter: CommonScatter) -> Table:
     rows = []
     for properties in ("PS1", "PS2", "PS3"):
         groups = findings.lengths(properties)
@@ -111,7 +97,7 @@ def _differences(findings: Findings, scatters: _Scatters) -> Table:
             for title, number, size, unit in (("the rise grows with the length", _rise, 100., " %"),
                                               ("the peak grows with the length", _peak, 100., " %"),
                                               ("its layer grows with the length", _layer_of_peak, 1., "")):
-                found = scatters.difference(longer, shorter, number)
+                found = scatter.difference(longer, shorter, number)
                 rows.append([title, "simulated: yes", f"{longer.label}, less {shorter.label}: {_said(found, size, unit)}",
                              _sign(Interval(found.value * size / 100., found.half * size / 100.), "+")])
     for length in sorted({result.case.length for result in findings.all}):
@@ -119,7 +105,7 @@ def _differences(findings: Findings, scatters: _Scatters) -> Table:
         if first and third:
             for title, number in (("the peak of PS3 is lower than that of PS1", _peak),
                                   ("layers 11 to 20 of PS3 are looser", _later)):
-                found = scatters.difference(third, first, number)
+                found = scatter.difference(third, first, number)
                 rows.append([title, "simulated: yes", f"{third.label}, less {first.label}: {_said(found)}",
                              _sign(found, "-")])
     return rows
@@ -155,6 +141,6 @@ def _longest(findings: Findings) -> list[Group]:
 
 def verdict_table(findings: Findings) -> Table:
     groups = _longest(findings)
-    measured, scatters = measured_group(read_measured()), _Scatters(findings)
+    measured, scatter = measured_group(read_measured()), CommonScatter(findings.plain())
     return [["what", "in the paper", "here", "verdict"],
-            *_by_group(groups, measured, scatters), *_differences(findings, scatters), *_rest(groups)]
+            *_by_group(groups, measured, scatter), *_differences(findings, scatter), *_rest(groups)]
