@@ -92,8 +92,15 @@ void check_phase(const Parameters &parameters, const Problems &differences,
       return;
     } else if (difference.where.find(describe({parameters.process_name}, "")) == 0)
       of_process.push_back(difference);
+  const ProcessSection &process = *parameters.process();
   if (!of_process.empty())
-    parameters.process()->check_phase(of_process, head, problems);
+    process.check_phase(of_process, head, problems);
+  else if (process.is_done(head))
+    problems.add(
+        describe({parameters.process_name}, ""),
+        "is that of the checkpoint, whose run has done all of it, so that nothing would be "
+        "simulated with what differs now.",
+        "Start anew with 'restart = false', or give the process more to do if it can.");
 }
 
 } // namespace eunoe

@@ -90,6 +90,11 @@ public:
       problems.add(difference.where, difference.what, difference.mend);
   }
 
+  /// Whether the run of a checkpoint has come to the end of this process, so that nothing is left
+  /// to simulate unless this section asks for more.
+  /// @param head of the checkpoint, with what the process has saved
+  virtual bool is_done(const nlohmann::ordered_json & /*head*/) const { return false; }
+
   /// Sets those parameters of the engine that the process decides: mesh, boundaries, end time.
   /// Throws a UserError if they are impossible.
   virtual void decide(Parameters &parameters) const = 0;

@@ -82,6 +82,11 @@ RunEstimate HeapParameters::estimate(const Parameters &parameters) const
   return estimate;
 }
 
+bool HeapParameters::is_done(const nlohmann::ordered_json &head) const
+{
+  return Heap::is_done(head);
+}
+
 std::unique_ptr<Process> HeapParameters::make(const Parameters &parameters) const
 {
   return std::make_unique<Heap>(*this, parameters.physics);

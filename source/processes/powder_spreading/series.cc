@@ -49,7 +49,7 @@ void SpreadingParameters::check_phase(const std::vector<Problem> &differences,
   // More layers of the same kind need no series of their own.
   const bool is_longer = differences.size() == 1 && differences[0].where == number &&
                          feedstock == "replenished" && n_layers > weighed;
-  if (!saved.at("is done").get<bool>() && !is_longer)
+  if (!is_done(head) && !is_longer)
     problems.add(describe({section}, ""),
                  "differs from that of the checkpoint, of whose layers " + std::to_string(weighed) +
                      " are weighed and others are still to come.",
@@ -57,6 +57,18 @@ void SpreadingParameters::check_phase(const std::vector<Problem> &differences,
   else if (n_layers <= weighed)
     problems.add(number, "is " + std::to_string(n_layers) + ", and " + lie,
                  "Give the number of all layers, with those to be added.");
+  const auto begun = count_in<unsigned int>(saved.at("series").at("first_layer")) +
+                     count_in<unsigned int>(saved.at("next_feed"));
+  if (is_longer && n_layers < begun)
+    problems.add(number,
+                 "is " + std::to_string(n_layers) + ", and the pass of layer " +
+                     std::to_string(begun - 1) + " has begun.",
+                 "Give at least " + std::to_string(begun) + ".");
+}
+
+bool SpreadingParameters::is_done(const nlohmann::ordered_json &head) const
+{
+  return head.at("powder spreading").at("is done").get<bool>();
 }
 
 void PowderSpreading::begin_series(const double time, const unsigned int n_layers_so_far,

@@ -26,6 +26,11 @@ public:
   double progress(const Simulation &simulation) const override;
   std::string stage() const override;
   bool finished() const override { return phase == Phase::done; }
+  /// Whether the run of a checkpoint has measured its heap.
+  static bool is_done(const nlohmann::ordered_json &head)
+  {
+    return head.at("heap").at("phase").get<int>() == static_cast<int>(Phase::done);
+  }
   void add_to_summary(nlohmann::ordered_json &summary) const override
   {
     summary.update(results.keys);

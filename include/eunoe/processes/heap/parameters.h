@@ -34,6 +34,7 @@ struct HeapParameters : public ProcessSection
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
   void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
+  bool is_done(const nlohmann::ordered_json &head) const override;
   void decide(Parameters &parameters) const override;
   RunEstimate estimate(const Parameters &parameters) const override;
   double fastest_solid() const override;

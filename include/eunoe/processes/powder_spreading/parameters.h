@@ -67,6 +67,7 @@ struct SpreadingParameters : public ProcessSection
   void check_with(const Parameters &parameters, const ParameterCheck &check) const override;
   void check_phase(const std::vector<Problem> &differences, const nlohmann::ordered_json &head,
                    Problems &problems) const override;
+  bool is_done(const nlohmann::ordered_json &head) const override;
   void decide(Parameters &parameters) const override;
   RunEstimate estimate(const Parameters &parameters) const override;
   double fastest_solid() const override;
