@@ -1,6 +1,7 @@
 // What a simulation is made of, and how it goes through time.
 
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -106,12 +107,18 @@ void Simulation::open_output()
     checkpoints.understand(
         [this](const nlohmann::ordered_json &head) { outputs.begin_series(&head.at("outputs")); });
   make_observables(); // may refuse to go on in a table that was changed
-  int rank;
-  MPI_Comm_rank(communicator(), &rank);
-  if (rank == 0)
-    // Those of an earlier run would make this run look finished.
+}
+
+/// Replaces the files of an earlier run that say what it was and that it is finished.
+void Simulation::begin_results()
+{
+  if (!outputs.folder.is_open())
+    return;
+  on_first_rank(communicator(), [this] {
     for (const char *const result : {"summary.json", "measurements.csv"})
       remove_file(outputs.folder.file(result));
+  });
+  outputs.folder.write("used.prm", parameters.as_input_file());
 }
 
 void Simulation::make_observables()
@@ -127,12 +134,14 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
   MPI_Comm_size(communicator(), &n_ranks);
   get_log().line("Eunoe " + std::string(version()) + " on " +
                  format_count(n_ranks, "rank", "ranks"));
-  outputs.folder.write("used.prm", parameters.as_input_file());
   checkpoints.begin();
-  if (checkpoints.opened() != nullptr)
-    resume();
-  else
+  if (checkpoints.opened() != nullptr) {
+    resume(); // may refuse, and the results of the run before it must be there still
+    begin_results();
+  } else {
+    begin_results();
     start();
+  }
   if (look)
     look(*this);
   progress.begin_loop();

@@ -144,6 +144,24 @@ def longer(series: Series) -> None:
     expect("is 2, and 'number of particle types' is 2." in said, said)
 
 
+def finished(series: Series) -> None:
+    """What has been done to its end is not done again with other powder, and what is refused leaves its results."""
+    place = series.folder / "finished"
+    shutil.copytree(series.folder / "first", place)
+    before = {file.name: file.read_bytes() for file in place.iterdir()}
+    other = "lagrangian physical properties/particle type 0/friction coefficient particles = 0.9"
+    said = series.run("finished", "restart/restart = true", other, code=2)
+    expect("whose run has done all of it" in said, said)
+    expect({file.name: file.read_bytes() for file in place.iterdir()} == before, "what was refused has changed files")
+    # As a spreadsheet saves it.
+    layers = before["layers.csv"].decode().replace("\n", ";\n", 1)
+    (place / "layers.csv").write_text(layers, encoding="utf-8")
+    said = series.run("finished", *MORE, code=1)
+    expect("layers.csv cannot be continued" in said, said)
+    for name in ("summary.json", "measurements.csv", "used.prm", "apparatus.json"):
+        expect((place / name).read_bytes() == before[name], f"{name} of the finished run is gone")
+
+
 def main() -> int:
     program, case, folder = sys.argv[1:]
     series = Series(program, case, Path(folder))
@@ -151,7 +169,7 @@ def main() -> int:
     shutil.copytree(series.folder / "first", series.folder / "more")
     series.run("more", *MORE)
     attempts = Attempts()
-    for attempt in (results, stopped, longer):
+    for attempt in (results, stopped, longer, finished):
         attempts.make(attempt.__name__, attempt, series)
     return attempts.exit_code()
 

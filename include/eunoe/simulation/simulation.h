@@ -106,6 +106,7 @@ public:
 private:
   std::vector<Solid> given_solids(Problems &problems) const;
   void start();
+  void begin_results();
   /// The time step.
   void advance();
   void move_solids();

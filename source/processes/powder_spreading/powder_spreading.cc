@@ -45,9 +45,10 @@ void PowderSpreading::save(CheckpointWriter &writer) const
 void PowderSpreading::resume(Simulation &simulation, const Checkpoint &checkpoint)
 {
   const auto &saved = checkpoint.head.at("powder spreading");
+  // May refuse to go on in a table that was changed, and is first for that.
+  layers = std::make_unique<LayerLog>(simulation, p, apparatus, layer_fields);
   simulation.output_folder().write("apparatus.json",
                                    apparatus.as_json(feedstock(simulation).density));
-  layers = std::make_unique<LayerLog>(simulation, p, apparatus, layer_fields);
   layers->load(saved.at("layers"));
   const auto weighed = count_in<unsigned int>(saved.at("layers weighed"));
   if (saved.at("is done").get<bool>() && p.n_layers > weighed) {
