@@ -22,7 +22,7 @@ bool Inserter::is_due(const unsigned long long step) const
 
 bool Inserter::waits_for_ever() const
 {
-  return method && !method->finished() && parameters.frequency == 0;
+  return method && method->has_more() && parameters.frequency == 0;
 }
 
 Inserter::Event Inserter::next_event(const Domain &domain, const ParticleArrays &particles,
@@ -54,7 +54,10 @@ Inserter::Event Inserter::next_event(const Domain &domain, const ParticleArrays 
 
 nlohmann::ordered_json Inserter::save() const
 {
-  return {{"events", n_events}, {"supplied", n_supplied}, {"next_id", ids.next()}};
+  return {{"events", n_events},
+          {"supplied", n_supplied},
+          {"next_id", ids.next()},
+          {"method", parameters.method}};
 }
 
 void Inserter::load(const nlohmann::ordered_json &saved)
@@ -62,6 +65,8 @@ void Inserter::load(const nlohmann::ordered_json &saved)
   n_supplied = count_in(saved.at("supplied"));
   n_events = count_in(saved.at("events"));
   ids.go_on_from(count_in<ParticleId>(saved.at("next_id")));
+  if (saved.value("method", parameters.method) != parameters.method)
+    n_events = 0;
   if (method)
     method->skip(n_events, n_supplied);
 }

@@ -244,6 +244,25 @@ def leaving(program: Program) -> None:
         raise Failure(f"{program.summary('left')['particles']} grains instead of one")
 
 
+def other_insertion(program: Program) -> None:
+    """A single grain of another type, from a list, comes once on those that another method has brought."""
+    insertion, kind = "insertion info/", "lagrangian physical properties/"
+    brought = (kind + "particle type 0/number of particles = 4", OUTPUT + "brought")
+    program.run("leaving.prm", "restart/checkpoint = true", *brought, insertion + "insertion method = volume",
+                insertion + "insertion box points coordinates = 1e-3, 1e-3, 1e-3 : 9e-3, 9e-3, 3e-3")
+    if program.summary("brought")["particles"] != 4:
+        raise Failure("the first grains are not there, so nothing is tested")
+    begin = (brought[0], CONTINUE, "restart/restart folder = brought", END + "60", OUTPUT + "intruder",
+             *(insertion + f"list {name}" for name in ("x = 5e-3", "y = 5e-3", "z = 8e-3", "velocity x = 0", "velocity y = 0",
+                                                       "velocity z = 0")),
+             kind + "number of particle types = 2", kind + "particle type 1/diameter = 1e-3",
+             kind + "particle type 1/number of particles = 1")
+    program.run("leaving.prm", *begin, insertion + "insertion frequency = 10")
+    if program.summary("intruder")["particles"] != 5:
+        raise Failure(f"{program.summary('intruder')['particles']} grains instead of five")
+    expect(program.run("leaving.prm", *begin), "Nothing is inserted in this phase, although not all particles have come")
+
+
 def refused(program: Program) -> None:
     start = (*LOAD[1:], CONTINUE, "restart/restart folder = load", OUTPUT + "refused")
     kind = "lagrangian physical properties/"
@@ -355,7 +374,7 @@ def main() -> int:
     program = Program(sys.argv[1], Path(sys.argv[2]))
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
-    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving,
+    for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving, other_insertion,
                     refused, loads_at_the_beginning, jumps, walls_of_one_name, only_the_balance, turns_in_place,
                     other_contents):
         attempts.make(attempt.__name__.replace("_", " "), attempt, program)

@@ -81,11 +81,15 @@ public:
   virtual std::vector<std::vector<NewParticle>> known_events() const { return {}; }
 
   /// Skips the particles of the first events, which have been supplied already.
+  /// @param n_events 0: they were those of another method
   /// @param n_particles that they supplied
   virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
 
-  /// Whether all particles have been supplied.
+  /// Whether all particles have been supplied that come at its events.
   virtual bool finished() const = 0;
+
+  /// Whether more particles would come if there were more events.
+  virtual bool has_more() const { return !finished(); }
 };
 
 /// Takes particles outside a mesh out of a list.

@@ -78,6 +78,11 @@ public:
 
   bool finished() const override { return n_supplied >= most || (!repeats && n_events > 0); }
 
+  bool has_more() const override
+  {
+    return most < std::numeric_limits<std::size_t>::max() ? n_supplied < most : !finished();
+  }
+
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
     Contents &file = files[n_events++ % files.size()];

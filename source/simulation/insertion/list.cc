@@ -29,6 +29,7 @@ public:
       n_events += events_of(kind);
       kinds.push_back(std::move(kind));
     }
+    n_all_events = n_events;
     if (!repeats)
       n_events = 1;
   }
@@ -77,9 +78,21 @@ public:
     return events;
   }
 
-  void skip(const std::size_t n, std::size_t) override { n_done = n; }
+  void skip(const std::size_t n, const std::size_t n_particles) override
+  {
+    n_done = n;
+    // Those of another method came type by type, too.
+    std::size_t left = n == 0 ? n_particles : 0;
+    for (const Kind &kind : kinds) {
+      const std::size_t of_kind = std::min(left, kind.number);
+      n_done += (of_kind + p.x.size() - 1) / p.x.size();
+      left -= of_kind;
+    }
+  }
 
   bool finished() const override { return n_done >= n_events; }
+
+  bool has_more() const override { return n_done < n_all_events; }
 
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
@@ -158,7 +171,7 @@ private:
   const Lists p;
   MPI_Comm comm;
   std::vector<Kind> kinds;
-  std::size_t n_events = 0, n_done = 0;
+  std::size_t n_events = 0, n_all_events = 0, n_done = 0;
 };
 
 class ListSection : public InsertionSection
