@@ -65,6 +65,12 @@ void covariances()
         (estimate.matrix - 0.01 * Eigen::MatrixXd::Identity(n, n)).llt().info() == Eigen::Success);
   check("closer to the truth than without shrinkage",
         (estimate.matrix - truth).norm() < (plain - truth).norm());
+  Eigen::MatrixXd still = few;
+  still.col(3).setZero();
+  const Eigen::MatrixXd with_still = shrunk_covariance(still, 11.).matrix;
+  check("what does not vary has the variance that is believed",
+        std::abs(with_still(3, 3) - 1.) < 1e-12 &&
+            std::abs(with_still.col(3).cwiseAbs().sum() - 1.) < 1e-12);
   check("variances stay", estimate.matrix.diagonal().isApprox(plain.diagonal(), 1e-12));
   check("determinant of a chain", std::abs(half_log_determinant(truth.llt()) -
                                            0.5 * (n - 1.) * std::log(1. - 0.8 * 0.8)) < 1e-8);

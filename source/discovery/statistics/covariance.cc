@@ -27,8 +27,8 @@ Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, const double deg
   const auto runs = static_cast<double>(deviations.rows());
   const double dof = std::max(1., degrees_of_freedom);
   const Eigen::VectorXd variance = deviations.colwise().squaredNorm().transpose() / dof;
-  const double floor = 1e-12 * std::max(variance.maxCoeff(), 1e-300);
-  const Eigen::VectorXd sigma = variance.cwiseMax(floor).cwiseSqrt();
+  constexpr double rounding = 1e-12;
+  const Eigen::VectorXd sigma = (variance.array() > rounding).select(variance, 1.).cwiseSqrt();
   const Eigen::MatrixXd z = deviations * sigma.cwiseInverse().asDiagonal();
   Eigen::MatrixXd correlation = z.transpose() * z / dof;
   correlation.diagonal().setZero();

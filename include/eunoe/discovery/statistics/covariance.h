@@ -14,7 +14,8 @@ struct Covariance
 
 /// Estimate with correlations shrunk towards zero by the share that minimises the expected error
 /// (Ledoit and Wolf 2004; Schaefer and Strimmer 2005, Statist. Appl. Genet. Mol. Biol. 4, 32).
-/// @param deviations from the means, replicates x modes
+/// @param deviations from the means, replicates x modes, in units of the deviation that is believed
+/// of modes that do not vary
 /// @param degrees_of_freedom number of replicates less the number of means that were subtracted
 Covariance shrunk_covariance(const Eigen::MatrixXd &deviations, double degrees_of_freedom);
 
