@@ -340,6 +340,49 @@ void without_runs()
   const Target target = evaluate();
   check("runs in one experiment make it one",
         Evidence(target, space).usable() == std::vector<std::size_t>{c});
+  check("which is not known everywhere", samples.has_any(c, {"heap"}) && !samples.has_any(c, both));
+}
+
+/// Each experiment gets the replicates that it lacks.
+void completing()
+{
+  SyntheticSimulator simulator(nature());
+  StudyOptions options;
+  const FactorSpace space(simulator.factors());
+  Samples samples(options, space, simulator, both);
+  samples.run({{space.origin(), 3}}, {"heap"});
+  const DesignPoint base{space.origin(), 4};
+  check("missing replicates",
+        samples.n_missing(base, "heap") == 1 && samples.n_missing(base, "spreading") == 4);
+  for (int i = 0; i < 2; ++i) {
+    samples.complete({base}, both);
+    check("are run once", samples.n_asked() == 8, std::to_string(samples.n_asked()));
+  }
+}
+
+/// An observable that is the same in all runs, such as what never falls into a gap, is judged by
+/// the scatter of its measurement.
+void constant_observable()
+{
+  Nature still = nature();
+  still.constant = "mass";
+  Laboratory lab(still, 3);
+  constexpr std::uint32_t number = 30;
+  int alarms = 0;
+  for (std::uint32_t k = 0; k < number; ++k) {
+    std::vector<MeasuredPoint> data = lab.simulator.measure(both, {}, {}, 4, 0.3, 700 + k).fit;
+    for (MeasuredPoint &point : data)
+      if (point.point.observable == still.constant && k % 2 == 0)
+        point.repeats = 1;
+    std::vector<std::string> notes;
+    const Target target(sort_by_experiment(data, lab.samples, lab.simulator, notes), lab.samples,
+                        lab.space, 0.);
+    const Evidence evidence(target, lab.space);
+    alarms +=
+        null_distribution(evidence, 100, 1).p(evidence.log_bayes_factors(target.data())(0)) < 0.05;
+  }
+  // More than 6 of 30 at a true rate of 5 % would be a chance of 0.1 %.
+  check("a constant observable makes no false alarms", alarms <= 6, std::to_string(alarms));
 }
 
 void calibrations(Laboratory &lab)
@@ -625,6 +668,8 @@ EUNOE_MPI_TEST()
   contests(lab);
   false_trail();
   without_runs();
+  completing();
+  constant_observable();
   calibrations(lab);
   lookalikes();
   intervals(lab);

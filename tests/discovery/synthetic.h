@@ -28,6 +28,8 @@ struct Nature
   double seed_correlation = 0.3; ///< between runs of one seed at different amplitudes
   double failures = 0.02;        ///< share of runs that fail
   double refused_from = 1e9;     ///< positive amplitude of the first effect from which all fail
+  std::string refused_in;        ///< the only experiment where they do; empty: everywhere
+  std::string constant;          ///< observable that no run changes
   double skewness = 0.15;        ///< of the scatter
   double changed_chaos = 0.15;   ///< how much an effect at one scale makes scatter grow
   double swing = 0.5;            ///< common to all observables, in units of their own scatter
@@ -215,13 +217,19 @@ private:
       z(i) += nature.skewness * (z(i) * z(i) - 1.);
       z(i) /= std::sqrt(1. + 2. * nature.skewness * nature.skewness);
     }
-    return mean(experiment, amplitudes) + std::max(0.5, growth) * (half.at(experiment) * z);
+    Eigen::VectorXd result =
+        mean(experiment, amplitudes) + std::max(0.5, growth) * (half.at(experiment) * z);
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (all_points.at(experiment)[static_cast<std::size_t>(i)].observable == nature.constant)
+        result(i) = level.at(experiment)(i);
+    return result;
   }
 
   bool fails(const RunRequest &request) const override
   {
     const auto first = request.amplitudes.find("a");
-    if (first != request.amplitudes.end() && first->second >= nature.refused_from)
+    if (first != request.amplitudes.end() && first->second >= nature.refused_from &&
+        (nature.refused_in.empty() || nature.refused_in == request.experiment))
       return true;
     std::string text = request.experiment;
     for (const auto &[name, amplitude] : request.amplitudes)

@@ -70,10 +70,7 @@ void Design::run_base()
   if (samples.n_known() == 0 && samples.remaining() < needed)
     throw UserError("The budget has no room for the " + std::to_string(needed) +
                     " runs of the base model. Increase 'budget of runs'.");
-  std::vector<DesignPoint> points = points_of_base(space, options.null_runs, options.nuisance_runs);
-  for (DesignPoint &point : points)
-    point.replicates = samples.n_missing(point, experiments);
-  samples.run(points, experiments);
+  samples.complete(points_of_base(space, options.null_runs, options.nuisance_runs), experiments);
 }
 
 void Design::run_effects(const std::function<Target()> &estimate)
@@ -100,7 +97,7 @@ void Design::run_effects(const std::function<Target()> &estimate)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const Ladder &ladder : looks)
       if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments) &&
-          !samples.fails_near(ladder.effect, ladder.amplitude))
+          !samples.fails_near(ladder.effect, ladder.amplitude, experiments))
         points.push_back(point(ladder.effect, ladder.amplitude));
     samples.run(points, experiments);
     const Target target = estimate();
@@ -159,9 +156,10 @@ std::uint64_t Design::size_of_round(const std::uint64_t n_runs) const
 bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 {
   constexpr double share_of_base = 0.1;
-  list.erase(std::remove_if(
-                 list.begin(), list.end(),
-                 [&](const Wish &wish) { return samples.fails_near(wish.effect, wish.amplitude); }),
+  list.erase(std::remove_if(list.begin(), list.end(),
+                            [&](const Wish &wish) {
+                              return samples.fails_near(wish.effect, wish.amplitude, experiments);
+                            }),
              list.end());
   double others = 0.;
   for (const Wish &wish : list)

@@ -53,10 +53,15 @@ std::uint64_t HeldOut::n_runs() const
   return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
 }
 
-HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &models,
+HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &wanted,
                                const unsigned int runs)
 {
-  run_near(fit, models, runs, space, experiments, samples);
+  run_near(fit, wanted, runs, space, experiments, samples);
+  std::vector<Model> models;
+  std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(models), [&](const Model &model) {
+    return std::all_of(model.effects.begin(), model.effects.end(),
+                       [&](const std::size_t k) { return samples.has_any(k, experiments); });
+  });
   std::vector<std::string> notes;
   const auto measured = sort_by_experiment(data.held_out, samples, samples.simulator(), notes);
   if (measured.empty())
@@ -82,11 +87,13 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &mo
   return test;
 }
 
-bool HeldOut::is_doubtful(const TestedModels &tested, const std::size_t n_answers) const
+bool HeldOut::is_doubtful(const TestedModels &tested, const std::vector<Model> &answer) const
 {
   const double clearly = 0.1 * rule.refuted, hardly = 4. * rule.doubtful;
-  return std::any_of(tested.p.begin(), tested.p.begin() + static_cast<std::ptrdiff_t>(n_answers),
-                     [&](const double p) { return p > clearly && p < hardly; });
+  for (std::size_t m = 0; m < tested.models.size(); ++m)
+    if (tested.p[m] > clearly && tested.p[m] < hardly && is_among(tested.models[m], answer))
+      return true;
+  return false;
 }
 
 std::vector<Model> HeldOut::first_tested(const Findings &by_fit) const
@@ -178,16 +185,20 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), models))
     return {{"result", "the budget has no room to test the answer on held-out data"}};
   Test last;
+  std::size_t n_compared = 0;
   for (unsigned int round = 0; round < most_rounds; ++round) {
-    if (round > 0 && models.size() == last.tested.models.size())
+    if (round > 0 && models.size() == n_compared)
       break;
+    n_compared = models.size();
     try {
       Test test = compare(evidence, models, options.validate_runs);
-      if (test.comparison &&
-          is_doubtful(test.tested, std::min(models.size(), by_fit.answer.size())))
+      if (test.comparison && is_doubtful(test.tested, by_fit.answer))
         test = compare(evidence, models, in_doubt * options.validate_runs);
       if (!test.comparison)
         return {{"result", "the held-out data do not vary"}};
+      if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), test.tested.models))
+        return {{"result", "no run of the held-out experiments with the answer's effects reached "
+                           "its end, so it was not tested"}};
       last = std::move(test);
     } catch (const TooFewRuns &) {
       if (round == 0)

@@ -1,3 +1,4 @@
+#include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/describe.h>
 #include <eunoe/discovery/inference/plan.h>
 #include <eunoe/discovery/inference/unmeasured.h>
@@ -229,7 +230,7 @@ std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
   std::uint64_t result = experiments.size() * models * most_runs_near(runs);
   for (const DesignPoint &point : base_near(runs, space))
     for (const std::string &experiment : experiments)
-      result += samples.n_missing(point, {experiment});
+      result += samples.n_missing(point, experiment);
   return result;
 }
 
@@ -250,9 +251,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
         points.back().position(static_cast<Eigen::Index>(k)) = amplitude;
       }
     }
-  for (DesignPoint &point : points)
-    point.replicates = samples.n_missing(point, experiments);
-  samples.run(points, experiments);
+  samples.complete(points, experiments);
 }
 
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
@@ -287,6 +286,15 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
     made.push_back(part.measured.name);
     known.insert(part.measured.points.begin(), part.measured.points.end());
   }
+  // Where a model was not run it would seem to change nothing, and much to be learnt.
+  const auto is_unknown = [&](const std::string &experiment) {
+    return std::any_of(models.begin(), models.end(), [&](const Model &model) {
+      return std::any_of(model.effects.begin(), model.effects.end(),
+                         [&](const std::size_t k) { return !samples.has_any(k, {experiment}); });
+    });
+  };
+  experiments.erase(std::remove_if(experiments.begin(), experiments.end(), is_unknown),
+                    experiments.end());
   experiments.insert(experiments.end(), made.begin(), made.end());
   try {
     const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
@@ -325,7 +333,7 @@ nlohmann::ordered_json plan(const StudyOptions &options,
   std::vector<Model> models;
   std::vector<Expectation> expectations;
   for (std::size_t k = 0; k < space.n_effects(); ++k) {
-    if (evidence.places(k).empty())
+    if (evidence.places(k).empty() || !samples.has_any(k, experiments))
       continue;
     const PriorAmplitudes prior(evidence, k);
     expectations.push_back({{target, prior.draw(draws, random), options.seed + 7},

@@ -134,16 +134,24 @@ void Samples::add(const RunRequest &request, const RunResult &result)
                                 result->data(), static_cast<Eigen::Index>(result->size()))});
 }
 
-unsigned int Samples::n_missing(const DesignPoint &point,
-                                const std::vector<std::string> &experiments) const
+unsigned int Samples::n_missing(const DesignPoint &point, const std::string &experiment) const
 {
-  unsigned int there = point.replicates;
-  for (const std::string &experiment : experiments)
-    if (source.concerns(experiment, effects_of(space, point.position))) {
-      const auto found = counts.find({experiment, space.amplitudes(point.position)});
-      there = std::min(there, found == counts.end() ? 0 : found->second);
-    }
-  return point.replicates - there;
+  if (!source.concerns(experiment, effects_of(space, point.position)))
+    return 0;
+  const auto found = counts.find({experiment, space.amplitudes(point.position)});
+  return point.replicates - (found == counts.end() ? 0 : std::min(point.replicates, found->second));
+}
+
+bool Samples::has_any(const std::size_t effect, const std::vector<std::string> &experiments) const
+{
+  const std::vector<std::string> alone = {space.effect(effect).name};
+  return std::all_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
+    const std::vector<Sample> &all = samples.at(experiment);
+    return !source.concerns(experiment, alone) ||
+           std::any_of(all.begin(), all.end(), [&](const Sample &sample) {
+             return effects_of(space, sample.position) == alone;
+           });
+  });
 }
 
 bool Samples::is_near(const Eigen::VectorXd &position, const std::size_t effect,
@@ -172,13 +180,15 @@ bool Samples::has_near(const std::size_t effect, const double amplitude, const u
   });
 }
 
-bool Samples::fails_near(const std::size_t effect, const double amplitude) const
+bool Samples::fails_near(const std::size_t effect, const double amplitude,
+                         const std::vector<std::string> &experiments) const
 {
   // One may have failed by chance.
   constexpr std::ptrdiff_t too_many = 2;
-  return std::any_of(failures.begin(), failures.end(), [&](const auto &of_experiment) {
-    const auto &[experiment, positions] = of_experiment;
-    return std::count_if(positions.begin(), positions.end(),
+  return std::any_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
+    const auto found = failures.find(experiment);
+    return found != failures.end() &&
+           std::count_if(found->second.begin(), found->second.end(),
                          [&](const Eigen::VectorXd &position) {
                            return is_near(position, effect, amplitude);
                          }) >= too_many &&
@@ -196,16 +206,33 @@ std::uint64_t Samples::remaining() const
 void Samples::run(const std::vector<DesignPoint> &points,
                   const std::vector<std::string> &experiments)
 {
+  run(points, experiments, [&](const DesignPoint &point, const std::string &experiment) {
+    return source.concerns(experiment, effects_of(space, point.position)) ? point.replicates : 0;
+  });
+}
+
+void Samples::complete(const std::vector<DesignPoint> &points,
+                       const std::vector<std::string> &experiments)
+{
+  run(points, experiments, [&](const DesignPoint &point, const std::string &experiment) {
+    return n_missing(point, experiment);
+  });
+}
+
+void Samples::run(const std::vector<DesignPoint> &points,
+                  const std::vector<std::string> &experiments, const Number &number)
+{
   std::vector<RunRequest> requests;
-  for (const DesignPoint &point : points)
+  for (const DesignPoint &point : points) {
+    const Amplitudes amplitudes = space.amplitudes(point.position);
     for (unsigned int r = 0; r < point.replicates; ++r) {
-      const Amplitudes amplitudes = space.amplitudes(point.position);
-      const std::uint32_t seed = next_seed++;
+      const std::size_t before = requests.size();
       for (const std::string &experiment : experiments)
-        if (requests.size() < remaining() &&
-            source.concerns(experiment, effects_of(space, point.position)))
-          requests.push_back({experiment, amplitudes, seed});
+        if (requests.size() < remaining() && r < number(point, experiment))
+          requests.push_back({experiment, amplitudes, next_seed});
+      next_seed += requests.size() > before ? 1 : 0;
     }
+  }
   asked += requests.size();
   const std::vector<RunResult> results = source.run(requests);
   for (std::size_t k = 0; k < requests.size(); ++k)

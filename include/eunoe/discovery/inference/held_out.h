@@ -42,10 +42,10 @@ private:
   };
   /// Models of the answer, and others that held-out data might speak for.
   std::vector<Model> first_tested(const Findings &by_fit) const;
-  /// Runs the models and compares.
-  Test compare(const Evidence &fit, const std::vector<Model> &models, unsigned int runs);
+  /// Runs the models and compares those that could be run.
+  Test compare(const Evidence &fit, const std::vector<Model> &wanted, unsigned int runs);
   /// Whether more runs could change what the data say of a model of the answer.
-  bool is_doubtful(const TestedModels &tested, std::size_t n_answers) const;
+  bool is_doubtful(const TestedModels &tested, const std::vector<Model> &answer) const;
   /// Adds at most so many models that are not yet among those that are tested, as far as the budget
   /// has room.
   void add(const std::vector<Model> &wanted, std::size_t most, std::vector<Model> &models) const;

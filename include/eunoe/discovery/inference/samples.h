@@ -6,6 +6,7 @@
 #include <eunoe/discovery/study.h>
 
 #include <Eigen/Dense>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -72,22 +73,28 @@ public:
 
   /// Runs design points, as many as the budget has room for.
   void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
+  /// The same of the replicates that are missing in each experiment.
+  void complete(const std::vector<DesignPoint> &points,
+                const std::vector<std::string> &experiments);
 
   const std::vector<Sample> &of(const std::string &experiment) const
   {
     return samples.at(experiment);
   }
-  /// Replicates of a design point that are still missing in one of the experiments that it
-  /// concerns; failed ones are not missing.
-  unsigned int n_missing(const DesignPoint &point,
-                         const std::vector<std::string> &experiments) const;
+  /// Replicates of a design point that are still missing in an experiment that it concerns; failed
+  /// ones are not missing.
+  unsigned int n_missing(const DesignPoint &point, const std::string &experiment) const;
+  /// Whether each experiment that an effect concerns has a run with it alone. Of what was never run
+  /// an emulator would say that it changes nothing.
+  bool has_any(std::size_t effect, const std::vector<std::string> &experiments) const;
   /// Whether each experiment that an effect concerns has this many runs with nearly this amplitude.
   bool has_near(std::size_t effect, double amplitude, unsigned int runs,
                 const std::vector<std::string> &experiments) const;
 
-  /// Whether runs with nearly this amplitude fail in an experiment, such as where its input is
-  /// refused, so that more of them would fail as well.
-  bool fails_near(std::size_t effect, double amplitude) const;
+  /// Whether runs with nearly this amplitude fail in one of the experiments, such as where its
+  /// input is refused, so that more of them would fail as well.
+  bool fails_near(std::size_t effect, double amplitude,
+                  const std::vector<std::string> &experiments) const;
 
   std::uint64_t n_asked() const { return asked; }
   /// Of those that it has asked for.
@@ -99,6 +106,10 @@ public:
   Simulator &simulator() const { return source; }
 
 private:
+  using Number = std::function<unsigned int(const DesignPoint &, const std::string &)>;
+  /// Runs as many replicates of each design point in each experiment.
+  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
+           const Number &number);
   void add(const RunRequest &request, const RunResult &result);
   /// Whether a position has nearly this amplitude and no other effect, and how many runs that
   /// reached their end have.
