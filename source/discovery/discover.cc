@@ -1,3 +1,4 @@
+#include <eunoe/core/parameter_section.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/held_out.h>
 #include <eunoe/discovery/inference/plan.h>
@@ -102,7 +103,8 @@ public:
   bool is_settled(const Round &round, const double level) const
   {
     constexpr std::size_t patience = 3;
-    constexpr double same = 0.05, sure = 0.99, well_known = 0.15, far = 4.;
+    constexpr double same = 0.05, sure = 0.99, well_known = 0.15;
+    const double clear = std::min(4. * level, 0.5); // p
     if (rows.size() < patience)
       return false;
     const Json &last = rows.back();
@@ -111,7 +113,7 @@ public:
           (round.findings.detected && (rows[k]["answer"] != last["answer"] ||
                                        std::abs(rows[k]["probability"].get<double>() -
                                                 last["probability"].get<double>()) > same)) ||
-          (!round.findings.detected && rows[k]["p of nothing missing"].get<double>() < far * level))
+          (!round.findings.detected && rows[k]["p of nothing missing"].get<double>() < clear))
         return false;
     if (round.findings.detected ? has_challenger(round) : could_be_detected(round))
       return false;
@@ -129,16 +131,15 @@ public:
   Json rows = Json::array();
 };
 
-/// Verdict where nothing was detected: whether most effects would have been.
+/// Verdict where nothing was detected: whether most effects would have been. Those that were never
+/// simulated would not.
 Verdict verdict_without_detection(const Json &power)
 {
-  double seen = 0., all = 0.;
-  for (const auto &row : power)
-    if (row.at("simulated").get<bool>()) {
-      all += 1.;
-      seen += row.at("detectable").get<bool>() ? 1. : 0.;
-    }
-  return 2. * seen >= all ? Verdict::none : Verdict::underpowered;
+  const auto seen = std::count_if(power.begin(), power.end(), [](const Json &row) {
+    return row.at("simulated").get<bool>() && row.at("detectable").get<bool>();
+  });
+  return 2 * seen >= static_cast<std::ptrdiff_t>(power.size()) ? Verdict::none
+                                                               : Verdict::underpowered;
 }
 
 /// What the residuals resemble where no effect of the catalogue explains them.
@@ -255,6 +256,8 @@ private:
     return all;
   }
   std::uint64_t n_runs() const { return samples.n_known() + samples.n_asked(); }
+  /// Says which effects the answer does not judge, or not everywhere.
+  void note_what_was_not_run();
   Json describe(const Json &power, const Json &validation, const Json &of_fit);
 
   const StudyOptions &options;
@@ -299,6 +302,25 @@ void Study::run()
                     " runs was spent before the answer had settled. With a larger 'budget of "
                     "runs' the study goes on from here, and the answer may change.");
   round->look(rule);
+}
+
+void Study::note_what_was_not_run()
+{
+  std::string never;
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
+    const std::string &name = space.effect(k).name;
+    if (round->evidence.places(k).empty())
+      never += (never.empty() ? "" : ", ") + name;
+    else
+      for (const std::string &experiment : fit)
+        if (!samples.has_any(k, {experiment}))
+          notes.push_back("No run of '" + experiment + "' with the effect '" + name +
+                          "' reached its end, so it is taken to change nothing there.");
+  }
+  if (!never.empty())
+    notes.push_back("These effects were never simulated, as the budget ended or all their runs "
+                    "failed, so the answer says nothing of them: " +
+                    never + ".");
 }
 
 Json Study::describe(const Json &power, const Json &validation, const Json &of_fit)
@@ -349,6 +371,7 @@ Discovery Study::answer()
   const Json power = describe_power(round->evidence, findings, options.seed);
   if (!findings.detected)
     findings.verdict = verdict_without_detection(power);
+  note_what_was_not_run();
   samples.set_aside(0);
   const Json validation = held_out.test(round->evidence, findings);
   Discovery discovery;

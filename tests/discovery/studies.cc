@@ -263,6 +263,60 @@ void no_room_for_held_out_data()
         tested.dump());
 }
 
+/// A model whose runs under the held-out condition all fail is not judged by it.
+void held_out_runs_that_fail()
+{
+  Nature picky = nature(72);
+  picky.refused_from = 0.;
+  picky.refused_in = "thick layers";
+  SyntheticSimulator simulator(picky);
+  const Amplitudes truth = {{"a", simulator.amplitude_of("a", 16., both)}};
+  const Discovery d = study(simulator, simulator.measure(both, thick, truth, 4, 0.2, 1));
+  const auto &held_out = d.content["gaps"]["held-out"];
+  check("an answer that cannot be run there stands", d.model_after.count("a") == 1,
+        d.content["verdict"].get<std::string>() + held_out.dump());
+  check("and is said to be untested",
+        held_out["result"] == "no run of the held-out experiments with the answer's effects "
+                              "reached its end, so it was not tested",
+        held_out.dump());
+}
+
+bool has_note(const Discovery &discovery, const std::string &words)
+{
+  const auto &notes = discovery.content["notes"];
+  return std::any_of(notes.begin(), notes.end(), [&](const auto &note) {
+    return note.template get<std::string>().find(words) != std::string::npos;
+  });
+}
+
+/// Who could try few effects does not say that none is missing.
+void few_effects_tried()
+{
+  SyntheticSimulator simulator(nature(1001));
+  StudyOptions poor;
+  constexpr std::uint64_t experiments = 2, looks = 2, replicates = 2;
+  poor.budget = experiments * (poor.null_runs + 2 * poor.nuisance_runs + looks * replicates);
+  const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1), poor);
+  check("most effects were not tried", d.verdict == Verdict::underpowered,
+        d.content["verdict"].get<std::string>());
+  check("and are named", has_note(d, "never simulated") && has_note(d, "f."),
+        d.content["notes"].dump());
+}
+
+/// p cannot be four times a high level, at which three of ten studies find something by chance.
+void high_level()
+{
+  StudyOptions options = small();
+  options.level = 0.3;
+  int settled = 0;
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    SyntheticSimulator simulator(nature(1000 + seed));
+    const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, seed), options);
+    settled += d.verdict == Verdict::none && !has_note(d, "was spent before");
+  }
+  check("studies with a high level settle", settled > 0, std::to_string(settled));
+}
+
 void runs_of_an_earlier_study()
 {
   Nature frail = nature(81);
@@ -386,6 +440,9 @@ EUNOE_MPI_TEST()
   too_weak_to_see();
   withdrawn();
   no_room_for_held_out_data();
+  held_out_runs_that_fail();
+  few_effects_tried();
+  high_level();
   runs_of_an_earlier_study();
   refused_amplitudes();
   filled_table();
