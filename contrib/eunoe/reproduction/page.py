@@ -11,7 +11,7 @@ from eunoe.folders import write_whole
 from eunoe.intervals import mean_of
 from eunoe.launch import Failure
 from eunoe.report.common_scatter import CommonScatter
-from eunoe.report.comparison_text import (ALONE, change_sentence, densities_table, differences_table, measured_group, rest_table,
+from eunoe.report.comparison_text import (ALONE, DENSITIES, change_sentence, densities_table, differences_table, measured_group, rest_table,
                                           rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, Group
@@ -113,6 +113,35 @@ def densities_block(findings: Findings) -> str:
     scatter = CommonScatter(groups)
     sentences = [*(rise_sentence(group, scatter) for group in groups), *_together(groups)]
     return _block(densities_table(everyone, scatter), _results(groups), " ".join(sentences))
+
+
+def scatter_block(findings: Findings) -> str:
+    """How much densities scatter between the seeds of each group, and of all as if they did so alike."""
+    groups = [group for group in findings.plain() if len(group.runs) > 1]
+    numbers = {name: number for name, (number, size) in DENSITIES.items() if size == 100.}
+    table: Table = [["standard deviation between seeds", "degrees of freedom", *numbers]]
+    rows = [(group.label, [group]) for group in groups] + [("**all groups alike**", groups)]
+    for label, members in rows if groups else []:
+        common = CommonScatter(members)
+        found = [common.of(number) for number in numbers.values()]
+        table.append([label, str(sum(len(group.runs) - 1 for group in members)),
+                      *(f"{100. * scatter.deviation:.2f}" if scatter else "" for scatter in found)])
+    return _block(table, _results(groups))
+
+
+def passes_block(findings: Findings) -> str:
+    """What each pass did, on the longest plate of the first property set; means over its runs."""
+    groups = findings.lengths(SETS[0])
+    runs = groups[-1].runs if groups else []
+    if not runs or not all(run.maps for run in runs):
+        return NOTHING
+    table: Table = [["layer", "LRD (%)", "gained five layers and more below (% of a layer)", "displacement of what lay there (um)",
+                     "zones at rest cover (%)", "removed (% of the mass before)"]]
+    for layer in range(1, N_LAYERS):
+        lrd = [100. * float(run.layers.lrd[run.layers.layer == layer].mean()) for run in runs]
+        gained = [100. * run.compaction((layer, layer)) for run in runs]
+        table.append([str(layer), text_of(mean_of(lrd)), text_of(mean_of(gained)), *_pass(runs, layer)])
+    return "\n\n".join([f"{groups[-1].label}:", _block(table, list(runs))])
 
 
 def _together(groups: list[Group]) -> list[str]:
@@ -226,7 +255,8 @@ PICTURES = {
              "open_layers": "The bed at four weighings, open ends", "open_pass": "A pass in four pictures, open ends"},
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
-BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "densities": densities_block,
+BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "scatter": scatter_block,
+          "densities": densities_block, "passes": passes_block,
           "lengths": lengths_block, "sets": sets_block, "rest": rest_block, "supply": supply_block,
           "open": open_block, "held": held_block, "variants": variants_block, "needed": needed_block}
 
