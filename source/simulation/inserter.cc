@@ -65,8 +65,8 @@ void Inserter::load(const nlohmann::ordered_json &saved)
   n_supplied = count_in(saved.at("supplied"));
   n_events = count_in(saved.at("events"));
   ids.go_on_from(count_in<ParticleId>(saved.at("next_id")));
-  if (saved.value("method", parameters.method) != parameters.method)
-    n_events = 0;
+  if (method && saved.value("method", parameters.method) != parameters.method)
+    n_events = method->events_for(n_supplied);
   if (method)
     method->skip(n_events, n_supplied);
 }

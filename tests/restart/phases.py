@@ -252,15 +252,18 @@ def other_insertion(program: Program) -> None:
                 insertion + "insertion box points coordinates = 1e-3, 1e-3, 1e-3 : 9e-3, 9e-3, 3e-3")
     if program.summary("brought")["particles"] != 4:
         raise Failure("the first grains are not there, so nothing is tested")
-    begin = (brought[0], CONTINUE, "restart/restart folder = brought", END + "60", OUTPUT + "intruder",
+    begin = (brought[0], "restart/restart folder = brought", OUTPUT + "intruder", "restart/checkpoint = true",
              *(insertion + f"list {name}" for name in ("x = 5e-3", "y = 5e-3", "z = 8e-3", "velocity x = 0", "velocity y = 0",
                                                        "velocity z = 0")),
              kind + "number of particle types = 2", kind + "particle type 1/diameter = 1e-3",
              kind + "particle type 1/number of particles = 1")
-    program.run("leaving.prm", *begin, insertion + "insertion frequency = 10")
-    if program.summary("intruder")["particles"] != 5:
-        raise Failure(f"{program.summary('intruder')['particles']} grains instead of five")
-    expect(program.run("leaving.prm", *begin), "Nothing is inserted in this phase, although not all particles have come")
+    often = insertion + "insertion frequency = 10"
+    # And in a part of that phase.
+    for part in ((CONTINUE, END + "60"), ("restart/restart = auto", END + "90")):
+        program.run("leaving.prm", *begin, often, *part)
+        if program.summary("intruder")["particles"] != 5:
+            raise Failure(f"{program.summary('intruder')['particles']} grains instead of five")
+    expect(program.run("leaving.prm", *begin, OUTPUT + "none", CONTINUE, END + "60"), "Nothing is inserted in this phase, although not all particles have come")
 
 
 def refused(program: Program) -> None:

@@ -81,9 +81,11 @@ public:
   virtual std::vector<std::vector<NewParticle>> known_events() const { return {}; }
 
   /// Skips the particles of the first events, which have been supplied already.
-  /// @param n_events 0: they were those of another method
   /// @param n_particles that they supplied
   virtual void skip(std::size_t n_events, std::size_t n_particles) = 0;
+
+  /// Events that would have supplied as many particles as another method has.
+  virtual std::size_t events_for(std::size_t /*n_particles*/) const { return 0; }
 
   /// Whether all particles have been supplied that come at its events.
   virtual bool finished() const = 0;

@@ -78,16 +78,18 @@ public:
     return events;
   }
 
-  void skip(const std::size_t n, const std::size_t n_particles) override
+  void skip(const std::size_t n, std::size_t) override { n_done = n; }
+
+  std::size_t events_for(std::size_t n_particles) const override
   {
-    n_done = n;
-    // Those of another method came type by type, too.
-    std::size_t left = n == 0 ? n_particles : 0;
+    // All methods supply type by type.
+    std::size_t events = 0;
     for (const Kind &kind : kinds) {
-      const std::size_t of_kind = std::min(left, kind.number);
-      n_done += (of_kind + p.x.size() - 1) / p.x.size();
-      left -= of_kind;
+      const std::size_t of_kind = std::min(n_particles, kind.number);
+      events += (of_kind + p.x.size() - 1) / p.x.size();
+      n_particles -= of_kind;
     }
+    return events;
   }
 
   bool finished() const override { return n_done >= n_events; }
