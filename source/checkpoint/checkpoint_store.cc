@@ -19,6 +19,9 @@ namespace {
 
 const std::string ending = ".checkpoint";
 
+/// First line of an index whose other lines name the checkpoints of an earlier run.
+const std::string anew = "begun anew; of the run before:";
+
 /// When a file was written, for people; collective.
 std::string time_of(const std::string &path, MPI_Comm comm)
 {
@@ -48,19 +51,22 @@ bool CheckpointStore::is_ours(const std::string &file) const
                      [](char c) { return c >= '0' && c <= '9'; });
 }
 
-std::vector<std::string> CheckpointStore::listed() const
+CheckpointStore::Index CheckpointStore::read_index() const
 {
   std::ifstream stream(index(), std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   std::istringstream lines(text);
-  std::vector<std::string> names;
+  Index found;
   for (std::string line; std::getline(lines, line);)
-    names.push_back(line);
+    if (line == anew && found.names.empty())
+      found.begun_anew = true;
+    else
+      found.names.push_back(line);
   // An index that is not in order may have lost any of its lines.
   const bool is_in_order = !text.empty() && text.back() == '\n' &&
-                           std::all_of(names.begin(), names.end(),
+                           std::all_of(found.names.begin(), found.names.end(),
                                        [this](const std::string &file) { return is_ours(file); });
-  return is_in_order ? names : std::vector<std::string>();
+  return is_in_order ? found : Index();
 }
 
 std::vector<std::string> CheckpointStore::present() const
@@ -77,21 +83,47 @@ std::vector<std::string> CheckpointStore::present() const
   return names;
 }
 
+std::vector<std::string> CheckpointStore::candidates() const
+{
+  const Index listed = read_index();
+  std::vector<std::string> found;
+  if (!listed.begun_anew)
+    found = listed.names;
+  for (const std::string &file : present())
+    if (std::find(listed.names.begin(), listed.names.end(), file) == listed.names.end())
+      found.push_back(file);
+  return found;
+}
+
+bool CheckpointStore::was_begun_anew() const
+{
+  return broadcast(is_first_rank(comm) && read_index().begun_anew ? "yes" : "", comm) == "yes";
+}
+
+void CheckpointStore::begin_anew()
+{
+  on_first_rank(comm, [&] {
+    std::string text = anew + "\n";
+    const std::vector<std::string> all = present();
+    for (const std::string &each : all)
+      text += each + "\n";
+    if (!all.empty())
+      write_file(index(), text, true);
+  });
+}
+
 std::vector<std::string> CheckpointStore::find(std::string &defect)
 {
   std::string names, problem;
   if (is_first_rank(comm)) {
-    std::vector<std::string> found = listed();
     std::error_code failure;
-    const std::vector<std::string> all = present();
-    if (found.empty() && fs::exists(index(), failure))
-      problem = index() + " is empty or damaged.";
-    else if (found.empty() && !all.empty())
-      problem = index() + ", which names the checkpoints, is missing.";
-    for (const std::string &file : all)
-      if (std::find(found.begin(), found.end(), file) == found.end())
-        found.push_back(file);
-    for (const std::string &file : found)
+    if (read_index().names.empty()) {
+      if (fs::exists(index(), failure))
+        problem = index() + " is empty or damaged.";
+      else if (!present().empty())
+        problem = index() + ", which names the checkpoints, is missing.";
+    }
+    for (const std::string &file : candidates())
       names += file + "\n";
   }
   defect = broadcast(problem, comm);

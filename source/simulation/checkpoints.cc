@@ -145,7 +145,16 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
     return;
   open(log);
   if (!checkpoint) {
-    if (parameters.restart == "true" || !parameters.folder.empty())
+    if (parameters.restart == "true" && parameters.folder.empty() && store.was_begun_anew())
+      problems.add(
+          "subsection 'restart' / entry 'restart'",
+          "is true, but the run that began anew in " + folder +
+              " was stopped before its first checkpoint.",
+          "Start it again with 'restart = false' or 'auto'. Checkpoints of the run before it "
+          "are still there: without " +
+              store.index() +
+              " a run with another 'output path' goes on from them by 'restart folder'.");
+    else if (parameters.restart == "true" || !parameters.folder.empty())
       problems.add("subsection 'restart' / entry 'restart'",
                    "is " + parameters.restart + ", but " +
                        (parameters.folder.empty() ? folder : parameters.folder) +

@@ -109,11 +109,13 @@ void Simulation::open_output()
   make_observables(); // may refuse to go on in a table that was changed
 }
 
-/// Replaces the files of an earlier run that say what it was and that it is finished.
+/// Replaces the files of an earlier run that say what it was and that it is finished, and marks its
+/// checkpoints.
 void Simulation::begin_results()
 {
   if (!outputs.folder.is_open())
     return;
+  checkpoints.begin_results();
   on_first_rank(communicator(), [this] {
     for (const char *const result : {"summary.json", "measurements.csv"})
       remove_file(outputs.folder.file(result));

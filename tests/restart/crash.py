@@ -7,14 +7,17 @@ Usage: crash.py path/to/eunoe-particles folder
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Callable
 
-from attempts import Attempts
+from attempts import HANGING, Attempts
 from eunoe.endurance.kill_and_restart import Case, compare
 from eunoe.launch import Failure
 
@@ -147,6 +150,42 @@ def spoilt_table(stopped: Case, folder: Path, change: Change, sentence: str) -> 
         raise Failure("a good checkpoint is gone")
 
 
+def begun_anew(stopped: Case, folder: Path) -> None:
+    """A run that began anew and was killed before its first checkpoint is not continued from those of the run
+    before it, which stay until it has one of its own."""
+    case = crashed(stopped, folder, lambda results: None)
+    # Tables would tell the two runs apart.
+    quiet = ("post-processing/energies/calculation = false", "post-processing/solid forces/calculation = false",
+             "boundary forces/calculation = false", "simulation control/output frequency = 0")
+    seldom = ("restart/checkpoint = true", "restart/frequency = 0", "simulation control/iteration end = 10000000")
+    process = case.start(1, *seldom, *quiet)
+    deadline = time.monotonic() + HANGING
+    while b"begun anew" not in (case.results / INDEX).read_bytes():
+        if process.poll() is not None or time.monotonic() > deadline:
+            raise Failure("it does not say that it began anew")
+        time.sleep(0.02)
+    for rank in case.processes():
+        os.kill(rank, signal.SIGKILL)
+    process.communicate()
+
+    def answer(code: int, sentence: str, *settings: str) -> None:
+        run = subprocess.run(case.command(1, *quiet, *settings), text=True, check=False, capture_output=True)
+        if run.returncode != code or sentence not in run.stdout + run.stderr:
+            raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
+
+    end = "simulation control/iteration end = "
+    answer(2, "was stopped before its first checkpoint.", "restart/restart = true", LAST)
+    for name in (NEWEST, OLDER):
+        if (case.results / name).read_bytes() != (stopped.results / name).read_bytes():
+            raise Failure("a checkpoint of the run before is gone")
+    answer(0, "Finished 100 steps", *AUTO, WITHOUT, end + "100")
+    answer(0, "Finished 200 steps", *AUTO, *EVERY, "restart/frequency = 150", end + "200")
+    answer(0, "Continuing from " + str(case.results / "restart_000000000200.checkpoint"), *AUTO, *EVERY,
+           "restart/frequency = 150", end + "300")
+    if (case.results / NEWEST).exists():
+        raise Failure("the checkpoints of the run before are still there")
+
+
 def main(program: str, folder: Path) -> int:
     reference = Case(program, CASE, folder / "reference", [LAST])
     reference.run(1)
@@ -174,6 +213,7 @@ def main(program: str, folder: Path) -> int:
              ("edited table", spoilt_table, stopped, folder / "edited",
               lambda results: write(table, b"x" + (results / table).read_bytes())(results),
               "no row ends after its first ")]
+    work.append(("begun anew", begun_anew, stopped, folder / "anew"))
     attempts = Attempts()
     attempts.make_at_once(work)
     return attempts.exit_code()

@@ -13,7 +13,9 @@ class CheckpointWriter;
 
 /// The checkpoints of a run in its output folder: "<name>_<step>.checkpoint", and "<name>.latest"
 /// with their names, the newest first, which is renewed when a checkpoint is complete and on the
-/// disk. Only then the oldest goes.
+/// disk. Only then the oldest goes. A run that begins anew where others have left theirs marks
+/// these in the index: they stay until its own first one is complete, but nothing goes on from
+/// them.
 class CheckpointStore
 {
 public:
@@ -30,8 +32,18 @@ public:
   /// @param defects gets what is wrong with newer ones, and what was taken instead
   std::unique_ptr<Checkpoint> open_newest(std::vector<std::string> &defects);
 
-  /// Whether there is any; to be asked on one rank.
-  bool has_any() const { return !present().empty(); }
+  /// Path of the file that names them.
+  std::string index() const { return folder + "/" + name + ".latest"; }
+
+  /// Whether there is any from which a run can go on; to be asked on one rank.
+  bool has_any() const { return !candidates().empty(); }
+
+  /// Whether a run that began anew has not come to a checkpoint yet, while those of an earlier run
+  /// are still there; collective.
+  bool was_begun_anew() const;
+
+  /// Marks those that are there as of an earlier run; collective.
+  void begin_anew();
 
   /// Gives the one that was opened a second name, "<name>_phase_<step>.checkpoint", by which it
   /// stays; collective.
@@ -47,14 +59,19 @@ public:
 
 private:
   bool is_ours(const std::string &file) const;
-  /// What the index names; nothing if it is not in order.
-  std::vector<std::string> listed() const;
+  struct Index
+  {
+    std::vector<std::string> names; ///< nothing if it is not in order
+    bool begun_anew = false;        ///< the names are of an earlier run
+  };
+  Index read_index() const;
   /// All that are there, by their steps, the last first.
   std::vector<std::string> present() const;
+  /// Those from which a run can go on, in the order in which they are tried.
+  std::vector<std::string> candidates() const;
   void remove_unfinished() const;
-  /// All, in the order in which they are tried; collective.
+  /// The same on every rank, and what is wrong with the index; collective.
   std::vector<std::string> find(std::string &defect);
-  std::string index() const { return folder + "/" + name + ".latest"; }
 
   const std::string folder, name;
   const unsigned int keep;

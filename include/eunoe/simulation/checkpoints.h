@@ -62,6 +62,14 @@ public:
     if (is_other_input)
       store.keep_opened();
     store.go_on();
+    goes_on = true;
+  }
+  /// Keeps a later run from going on from what is there of an earlier run, unless this one does so
+  /// itself; collective.
+  void begin_results()
+  {
+    if (parameters.checkpoint && !goes_on)
+      store.begin_anew();
   }
   void close();
 
@@ -94,6 +102,7 @@ private:
   std::unique_ptr<RunLock> lock;
   EntryValues files; ///< digests of those that the input names
   bool is_other_input = false, is_own_folder = true, has_own_results = true;
+  bool goes_on = false;  ///< behind a checkpoint of its folder
   double last_time = 0.; ///< by the wall clock (s)
   /// Of the one that was opened or written last.
   unsigned long long last_step = std::numeric_limits<unsigned long long>::max();
