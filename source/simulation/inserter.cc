@@ -20,6 +20,11 @@ bool Inserter::is_due(const unsigned long long step) const
   return step == 0 || (parameters.frequency > 0 && step % parameters.frequency == 0);
 }
 
+bool Inserter::brings_more() const
+{
+  return method && method->has_more() && parameters.frequency > 0;
+}
+
 bool Inserter::waits_for_ever() const
 {
   return method && method->has_more() && parameters.frequency == 0;

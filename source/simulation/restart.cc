@@ -31,7 +31,6 @@ void Simulation::resume()
   checkpoints.go_on();
   const Checkpoint &checkpoint = *checkpoints.opened();
   checkpoints.understand([&](const nlohmann::ordered_json &head) {
-    inserter.load(head.at("insertion"));
     const bool is_phase = checkpoints.begins_phase();
     const Clock::End end = [this](const unsigned long long step, const double time) {
       return parameters.control.last_step(step, time);

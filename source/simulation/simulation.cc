@@ -45,8 +45,13 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
         check_phase(parameters, differences, head, found);
       },
       log, problems);
+  if (checkpoints.opened() != nullptr)
+    checkpoints.understand(
+        [this](const nlohmann::ordered_json &head) { inserter.load(head.at("insertion")); });
+  // A run that goes on with the same input has passed these when it began.
   if (const Insertion *const method = inserter.get_method();
-      method != nullptr && checkpoints.opened() == nullptr)
+      method != nullptr &&
+      (checkpoints.opened() == nullptr || (checkpoints.begins_phase() && inserter.brings_more())))
   {
     check_places(domain, method->known_places(), comm, problems);
     method->check(domain, problems);

@@ -263,6 +263,10 @@ def other_insertion(program: Program) -> None:
         program.run("leaving.prm", *begin, often, *part)
         if program.summary("intruder")["particles"] != 5:
             raise Failure(f"{program.summary('intruder')['particles']} grains instead of five")
+    # Places outside the mesh are refused as long as anything is to come to them.
+    outside = (often, insertion + "list z = 5", OUTPUT + "outside", CONTINUE)
+    expect(program.run("leaving.prm", *begin, *outside, END + "60", code=2), "are to be inserted outside the mesh")
+    program.run("leaving.prm", *begin, *outside, END + "100", "restart/restart folder = intruder")
     expect(program.run("leaving.prm", *begin, OUTPUT + "none", CONTINUE, END + "60"), "Nothing is inserted in this phase, although not all particles have come")
 
 

@@ -24,6 +24,8 @@ public:
 
   /// Whether particles are inserted after a step.
   bool is_due(unsigned long long step) const;
+  /// Whether particles come after the first step.
+  bool brings_more() const;
   /// Whether particles that have not come never will, after the first step.
   bool waits_for_ever() const;
 
