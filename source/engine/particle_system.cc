@@ -40,12 +40,15 @@ void ParticleSystem::add_forces(const std::vector<Solid> &solids, const double t
   solid_contacts.add_forces(particles, solids, time, dt, on_solids);
 }
 
-void ParticleSystem::forget_contacts()
+void ParticleSystem::forget_contacts(const bool between_particles, const bool with_solids)
 {
-  std::fill(pairs.record.begin(), pairs.record.end(), ContactMemory::none);
-  pairs.memory.clear(model.history_size());
-  pairs.near.forget();
-  solid_contacts.forget();
+  if (between_particles) {
+    std::fill(pairs.record.begin(), pairs.record.end(), ContactMemory::none);
+    pairs.memory.clear(model.history_size());
+    pairs.near.forget();
+  }
+  if (with_solids)
+    solid_contacts.forget();
 }
 
 void ParticleSystem::update_sleep(const SparseContacts &sparse, const Stirring &stirring)

@@ -217,8 +217,9 @@ void Simulation::advance()
   if (look_is_due || (sleeper.is_enabled() && searches))
     update_sleep(false);
 
-  if (parameters.contact_history.forgets_at(clock.step()))
-    system.forget_contacts();
+  if (const ContactHistoryParameters &history = parameters.contact_history;
+      history.forgets_at(clock.step()))
+    system.forget_contacts(history.between_particles(), history.with_solids());
   compute_forces();
   integrator->end_step();
   progress.count_step(system.n_global(), system.particles.n_owned - system.particles.n_awake());

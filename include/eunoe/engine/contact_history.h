@@ -9,7 +9,10 @@ namespace eunoe {
 struct ContactHistoryParameters : public ParameterSection
 {
   unsigned long long forget_interval = 0; ///< steps; 0: never
+  std::string forgetful = "all";
 
+  bool between_particles() const { return forgetful != "solids"; }
+  bool with_solids() const { return forgetful != "particles"; }
   bool forgets_at(unsigned long long step) const
   {
     return forget_interval > 0 && step % forget_interval == 0;

@@ -116,7 +116,7 @@ public:
   void update_sleep(const SparseContacts &sparse, const Stirring &stirring);
 
   /// Lets every contact begin anew.
-  void forget_contacts();
+  void forget_contacts(bool between_particles, bool with_solids);
 
   /// Adds the forces of the loads and of all contacts and advances their memory by @p dt (s).
   /// @param on_solids if not null: forces on the solids, one per solid
