@@ -106,6 +106,17 @@ class Maps(unittest.TestCase):
             np.testing.assert_allclose(deep.compaction()[[4, 7]], [0., 0.03], atol=1e-12)
         self.assertTrue(np.isnan(maps([0, 2]).compaction()[1]))
 
+    def test_what_lies_above_the_level_of_the_plates(self) -> None:
+        found = maps(range(8))
+        for first_row in (0, 1):
+            filling = replace(found, fraction=np.zeros_like(found.fraction), first_row=first_row)
+            for k in range(8):  # a bed of 0.6, and under the spreader ever more until layer 5
+                filling.fraction[k, :, :k + first_row] = 0.6
+                filling.fraction[k, :, k + first_row] = 0.3 + 0.02 * min(k, 5)
+            np.testing.assert_allclose(filling.above_level(), 0.3 + 0.02 * np.minimum(np.arange(8), 5))
+            np.testing.assert_allclose(filling.crd_below(), [np.nan, np.nan, *[0.6] * 6])
+        self.assertTrue(np.isnan(maps([0, 2]).crd_below()).all())  # layer 1 is not known
+
     def test_density_of_the_middle_half(self) -> None:
         beds = [sample_bed.bed(layer) for layer in range(3)]
         for bed in beds:  # the new layers of the first 0.4 mm, outside the middle half, are missing

@@ -68,6 +68,8 @@ class Cases(unittest.TestCase):
                          ("the paper's Young's modulus", "without rims, fed less, the paper's Young's modulus"))
         self.assertTrue(soft.is_seen_closely and stiff.is_seen_closely)
         self.assertFalse(Case("PS1", 0.25, 1, variant="lips").is_seen_closely)
+        deep = Case("PS1", 0.5, 1, depth=0.8)
+        self.assertTrue(deep.keeps_maps and not deep.is_seen_closely)
 
     def test_names_of_lengths(self) -> None:
         self.assertEqual([length_name(length) for length in (0.25, 0.5, 1., 2.)], ["L1/4", "L1/2", "L1", "L2"])
@@ -168,7 +170,7 @@ class Campaign(unittest.TestCase):
         folder = self.folder / "pictures"
         record = read_record(folder)
         self.assertEqual(sorted(record), [f"reproduction_{name}.png" for name in
-                                          ("density", "held", "held_layers", "held_maps_PS1", "held_mechanism", "layers",
+                                          ("density", "held", "held_layers", "held_maps_PS1", "held_mechanism", "layers", "levels",
                                            "maps_PS1", "maps_PS3", "mechanism", "middle", "open", "open_layers",
                                            "open_maps_PS1", "open_mechanism", "open_middle", "profiles", "variants_1")])
         for name, entry in record.items():

@@ -104,6 +104,19 @@ class BedMaps:
                 found[k] = (self.columns()[k] - self.columns()[k - 1]) / np.diff(self.y)[0]
         return found
 
+    def above_level(self) -> np.ndarray:
+        """Solid above the level of the transfer plate, where the spreader leaves room, as density of a layer, by weighing."""
+        return np.array([self.fraction[k, :, self.first_row + int(layer):].mean(axis=0).sum()
+                         for k, layer in enumerate(self.layers)])
+
+    def crd_below(self) -> np.ndarray:
+        """CRD without what lies above that level, by weighing: the mean density of layers 2 to k in the bed below; NaN
+        where it is not known."""
+        below = (self.fraction.mean(axis=1).sum(axis=1) - self.above_level())[:, np.newaxis]
+        first = below[self.layers == 1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            found = (below - first) / (self.layers[:, np.newaxis] - 1.) if len(first) else np.full_like(below, np.nan)
+        return np.where(self.layers >= 2, found[:, 0], np.nan)
 
     def compaction(self) -> np.ndarray:
         """What the rows of height that lie `DEEP` and more below the new layer gained since the weighing before, as

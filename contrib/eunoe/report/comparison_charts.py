@@ -171,6 +171,24 @@ def middle_figure(groups: Sequence[Group], measured: Measured | None) -> Figure:
     return figure
 
 
+def levels_figure(groups: Sequence[Group]) -> Figure:
+    """What lies above the level of the transfer plate, and how dense the bed below it has become."""
+    figure = Figure(figsize=(style.WIDTH, 3.1), layout="constrained")
+    panels = figure.subplots(1, 2)
+    for axes, values, label in zip(panels, ("above_level", "crd_below"),
+                                   ("Solid above the level (% of a layer)", "Density below it from layer 2 on (%)")):
+        for number, group in enumerate(groups):
+            if group.mapped:
+                rows = group.over_maps(values)
+                draw_group(axes, number, group.mapped[0].maps.layers[:rows.shape[1]], rows, group.label, 100.)
+        axes.set_ylabel(label)
+        style.layer_axis(axes, max(group.layer[-1] for group in groups))
+    for axes, title in zip(panels, ("(a) Room under the spreader", "(b) Bed")):
+        axes.set_title(title)
+    _legend_below(figure, panels[0])
+    return figure
+
+
 def profiles_figure(groups: Sequence[Group]) -> Figure:
     """Solid along the plate and over the height, after the last layer."""
     figure = Figure(figsize=(style.WIDTH, 3.1), layout="constrained")

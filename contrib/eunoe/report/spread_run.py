@@ -66,6 +66,21 @@ class SpreadRun:
         rows = (self.maps.layers >= span[0]) & (self.maps.layers <= span[1])
         return float(self.maps.middle_lrd()[rows].mean()) if rows.sum() == span[1] - span[0] + 1 else np.nan
 
+    def above_level(self, layer: int) -> float:
+        """Solid above the level of the transfer plate after a layer, as density of a layer; NaN without maps."""
+        found = self.maps.above_level()[self.maps.layers == layer] if self.maps else np.empty(0)
+        return float(found[0]) if len(found) else np.nan
+
+    def lrd_below(self, span: tuple[int, int]) -> float:
+        """The mean LRD without what the room between that level and the spreader has gained meanwhile."""
+        gained = self.above_level(span[1]) - self.above_level(span[0] - 1)
+        return self.mean_lrd(span) - gained / (span[1] - span[0] + 1)
+
+    def crd(self, layer: int) -> float:
+        """NaN if the layer has not been spread."""
+        found = self.layers.crd[self.layers.layer == layer]
+        return float(found[0]) if len(found) else np.nan
+
     def compaction(self, span: tuple[int, int]) -> float:
         """Mean of what passes press together far below their layer, as density of a layer; NaN without maps."""
         if self.maps is None:

@@ -20,6 +20,7 @@ L1 = 1. / 7.  # of the full size
 SPREADING, MODEL = "powder spreading", "model parameters"
 SLEEP = f"{MODEL}/adaptive sparse contacts/enable adaptive sparse contacts"
 FORGET = f"{MODEL}/contact history/forget interval"
+FORGETFUL = f"{MODEL}/contact history/forgetful contacts"
 BALANCE_INTERVAL = 7.0e-3  # s between two load balances of the published input files
 NEIGHBORHOOD = f"{MODEL}/contact detection/neighborhood threshold"
 SETS = ("PS1", "PS2", "PS3")
@@ -37,7 +38,7 @@ class Variant:
     @param forgets seconds after which contacts forget all; 0: never
     @param stiff whether Young's modulus is the paper's. Where it is divided by `SOFTER`, the pull-off force
         stays, and the time step keeps its share of the Rayleigh time, which goes with the inverse root of the modulus
-    @param closely whether maps and pictures of its runs are kept, as of those without a variant"""
+    @param closely whether maps of its runs are kept and a pass is drawn, as of those without a variant"""
 
     title: str
     settings: dict[str, Any] = field(default_factory=dict)
@@ -56,6 +57,8 @@ VARIANTS = {
     "": Variant("as the published input files, at the cheap settings", closely=True),
     "stiff": Variant("the paper's Young's modulus", stiff=True),
     "forget": Variant("contacts forget every 7 ms", forgets=BALANCE_INTERVAL),
+    # Contacts with walls and solids only feel how fast they slip then.
+    "gliding": Variant("contacts with walls and solids forget at every step", {FORGET: "1", FORGETFUL: "solids"}),
     "radius5": Variant("a spreader of 5 mm of radius, as in the paper's text", {RADIUS: "5e-3"}),
     "unopened": Variant("velocity Verlet without its opening half step",
                         {f"{MODEL}/integration method": "symplectic_euler"}),
@@ -130,9 +133,13 @@ class Case:
 
     @property
     def is_seen_closely(self) -> bool:
-        """Whether maps and pictures of its runs are kept."""
+        """Whether a pass of its runs is drawn."""
         variant = VARIANTS[self.variant]
         return variant.closely and (self.is_plain or self.title == variant.title)
+
+    @property
+    def keeps_maps(self) -> bool:
+        return VARIANTS[self.variant].closely
 
     @property
     def input_file(self) -> str:
@@ -176,6 +183,7 @@ CASES = (
     *_in_turn(_series("PS1", 0.25, 3, variant="awake_forget"), _series("PS1", 0.25, 3, variant="radius5"),
               _series("PS1", 0.25, 3, variant="damping")),
     *_in_turn(_series("PS1", 0.25, 3, variant="forget"), _series("PS1", 0.25, 3, variant="unopened")),
+    *_series("PS1", 0.25, 1, variant="gliding"),
     *_in_turn(_series("PS1", 0.25, 3, variant="lips"), _series("PS1", 0.25, 3, variant="lips_stiff"),
               _series("PS3", 0.25, 3, variant="lips_stiff")),
     *_series("PS1", 1., 1, variant="open"),

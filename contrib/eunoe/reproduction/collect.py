@@ -64,7 +64,7 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
     try:
         apparatus = Apparatus.read(folder / "apparatus.json")
         # Maps are for the questions of the mechanism; other variants are compared by their densities alone.
-        pictures = run.layer_pictures() if case.is_seen_closely else {}
+        pictures = run.layer_pictures() if case.keeps_maps else {}
         maps = read_maps(pictures, apparatus) if pictures else None
     except (ApparatusError, VtkError) as error:
         raise Failure(f"{case.name}: {error}") from error

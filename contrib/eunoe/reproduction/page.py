@@ -5,16 +5,17 @@ from __future__ import annotations
 import re
 import statistics
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from eunoe.folders import write_whole
 from eunoe.intervals import mean_of
 from eunoe.launch import Failure
-from eunoe.report.common_scatter import CommonScatter
+from eunoe.report.common_scatter import CommonScatter, Number
 from eunoe.report.comparison_text import (ALONE, DENSITIES, change_sentence, densities_table, differences_table, measured_group, rest_table,
                                           rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import LATER, PLATEAU, Group
+from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
 from eunoe.tables import Table, as_markdown
 
 from .cases import N_LAYERS, SETS
@@ -129,6 +130,24 @@ def scatter_block(findings: Findings) -> str:
     return _block(table, _results(groups))
 
 
+def levels_block(findings: Findings) -> str:
+    """What layers add below the level of the transfer plate, and to the room between that and the spreader."""
+    alike = findings.alike()
+    groups, scatter = [group for group in alike if len(group.mapped) == len(group.runs)], CommonScatter(alike)
+    first, last = PLATEAU[0] - 1, LATER[1]
+    numbers: dict[str, Number] = {
+        **{f"above the level after layer {layer} (% of a layer)": partial(SpreadRun.above_level, layer=layer)
+           for layer in (first, PLATEAU[1], last)},
+        **{f"bed below, layers {layers[0]} to {layers[1]} (%)": partial(SpreadRun.lrd_below, span=layers)
+           for layers in (PLATEAU, LATER)},
+        "rise of the bed (%)": lambda run: run.lrd_below(LATER) - run.lrd_below(PLATEAU),
+        **{f"CRD after layer {layer} (%)": partial(SpreadRun.crd, layer=layer) for layer in (PLATEAU[1], last)}}
+    table: Table = [["", *numbers]]
+    for group in [*groups, measured_group(read_measured())] if groups else []:
+        table.append([group.label, *(text_of(scatter.mean(group, number), 100.) for number in numbers.values())])
+    return _block(table, _results(groups))
+
+
 def passes_block(findings: Findings) -> str:
     """What each pass did, on the longest plate of the first property set; means over its runs."""
     groups = findings.lengths(SETS[0])
@@ -210,7 +229,7 @@ def supply_block(findings: Findings) -> str:
 
 
 def variants_block(findings: Findings) -> str:
-    return _differences([[base, *variants] for base, variants in findings.variants()])
+    return _differences([[base, *variants] for base, variants in findings.variants()], CommonScatter(findings.alike()))
 
 
 def needed_block(findings: Findings) -> str:
@@ -237,6 +256,7 @@ def verdict_block(findings: Findings) -> str:
 PICTURES = {
     "densities": {"density": "LRD and CRD of all lengths and property sets, beside the measured ones",
                   "middle": "LRD of the middle half of the plate"},
+    "levels": {"levels": "Solid above the level of the transfer plate, and density of the bed below it"},
     "rest": {"mechanism": "Displacement, rest, removal and zones by layer",
              "maps_PS1": "Displacement and density by place and layer, PS1 on its longest plate",
              "maps_PS3": "Displacement and density by place and layer, PS3 on its longest plate",
@@ -256,7 +276,7 @@ PICTURES = {
     "variants": {f"variants_{number}": f"LRD and CRD of the variants, part {number}" for number in range(1, 7)},
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "scatter": scatter_block,
-          "densities": densities_block, "passes": passes_block,
+          "densities": densities_block, "levels": levels_block, "passes": passes_block,
           "lengths": lengths_block, "sets": sets_block, "rest": rest_block, "supply": supply_block,
           "open": open_block, "held": held_block, "variants": variants_block, "needed": needed_block}
 

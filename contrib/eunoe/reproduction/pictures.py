@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from eunoe.pictures.record import Entry, digest, read_record, write_record
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_pictures import layers_figure
-from eunoe.report.comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
+from eunoe.report.comparison_charts import (MOST_GROUPS, densities_figure, levels_figure, maps_figure, mechanism_figure,
                                               middle_figure, profiles_figure)
 from eunoe.report.evidence import FIELDS
 from eunoe.report.measured import Measured, read_measured
@@ -55,6 +55,7 @@ def _of_results(findings: Findings) -> Todo:
     measured, plain = read_measured(), findings.plain()
     add("density", densities_figure, plain, measured)
     add("middle", middle_figure, plain, measured)
+    add("levels", levels_figure, plain)
     add("mechanism", mechanism_figure, plain)
     add("profiles", profiles_figure, plain)
     for properties in ("PS1", "PS3"):

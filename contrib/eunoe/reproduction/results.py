@@ -70,6 +70,12 @@ class Findings:
         found.sort(key=lambda results: (results[0].case.length, results[0].case.properties))
         return [Group(plain_label(results[0].case), results) for results in found]
 
+    def alike(self) -> list[Group]:
+        """Those, and the ones that differ from them in depth or time step alone: all scatter alike between seeds."""
+        return [*self.plain(),
+                *(Group(f"{base.label}, {group.label}", group.runs) for base, variants in self.variants()
+                  for group in variants if not group.runs[0].case.variant)]
+
     def of(self, properties: str, length: float) -> Group | None:
         """The group without a variant."""
         results = self.results.get(Case(properties, length, 1).group)

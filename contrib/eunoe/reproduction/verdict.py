@@ -63,12 +63,24 @@ def _rise(run: SpreadRun) -> float:
     return run.rise
 
 
+def _rise_below(run: SpreadRun) -> float:
+    return run.lrd_below(LATER) - run.lrd_below(PLATEAU)
+
+
 def _peak(run: SpreadRun) -> float:
     return run.peak[0]
 
 
 def _layer_of_peak(run: SpreadRun) -> float:
     return run.peak[1]
+
+
+def _crd_early(run: SpreadRun) -> float:
+    return run.crd(PLATEAU[1])
+
+
+def _crd_late(run: SpreadRun) -> float:
+    return run.crd(LATER[1])
 
 
 def _fall(run: SpreadRun) -> float:
@@ -81,7 +93,9 @@ def _by_group(groups: list[Group], measured: Group, scatter: CommonScatter) -> T
     for title, number in ((f"LRD of layers {PLATEAU[0]} to {PLATEAU[1]}", _plateau),
                           ("rise of LRD from there to layers 11 to 20", _rise),
                           ("peak of LRD", _peak),
-                          ("fall of LRD from the peak to layer 20", _fall)):
+                          ("fall of LRD from the peak to layer 20", _fall),
+                          (f"CRD after layer {PLATEAU[1]}", _crd_early),
+                          (f"CRD after layer {LATER[1]}", _crd_late)):
         rows += [[title, "measured: " + _said(scatter.mean(measured, number)),
                   f"{group.label}: {_said(scatter.mean(group, number))}",
                   agreement(scatter.difference(group, measured, number))]
@@ -95,6 +109,8 @@ def _differences(findings: Findings, scatter: CommonScatter) -> Table:
         groups = findings.lengths(properties)
         for shorter, longer in zip(groups, groups[1:]):
             for title, number, size, unit in (("the rise grows with the length", _rise, 100., " %"),
+                                              ("the rise of the bed below the level of the plates grows with the length",
+                                               _rise_below, 100., " %"),
                                               ("the peak grows with the length", _peak, 100., " %"),
                                               ("its layer grows with the length", _layer_of_peak, 1., "")):
                 found = scatter.difference(longer, shorter, number)
