@@ -29,7 +29,7 @@ APPARATUS = {
     "spreader_height": 1.0e-3, "clearance": 1e-4, "n_layers": 3, "layer_thickness": 1e-4,
     "velocity": 0.1, "first_stroke": 5e-4, "stroke": 3e-4, "platform_velocity": 0.03,
     "rest_before_weighing": 0., "replenished": True, "bed_depth": 5e-4,
-    "first_bed_depth": 7e-4, "density": 4000.}
+    "first_bed_depth": 7e-4, "density": 4386.}
 
 LAYERS = """\
 layer,time,mass,particles,LRD,CRD,mass_removed,mass_to_gap,mass_to_collector,\

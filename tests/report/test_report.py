@@ -25,7 +25,7 @@ from eunoe.report.apparatus import Apparatus
 from eunoe.report.case_section import slopes_sentence
 from eunoe.report.heap_results import read_map
 from eunoe.report.layer_results import counting_noise, moved_over_plate
-from eunoe.report.measured import FullSize, read_measured
+from eunoe.report.measured import TABLE, FullSize, measured_for, read_measured
 from eunoe.report.quantities import number
 from eunoe.report.run_folder import ReportError, read_layers
 from eunoe.vtk_files import VtkError, read_pvd, read_vtu
@@ -108,9 +108,30 @@ class Tables(InFolder):
     def test_measured_densities(self) -> None:
         measured = read_measured()
         np.testing.assert_array_equal(measured.layer, np.arange(1, 21))
-        np.testing.assert_allclose(measured.repeats.mean(axis=1), measured.mean, atol=2e-6)
-        np.testing.assert_allclose(measured.repeats.std(axis=1, ddof=1), measured.std, atol=2e-6)
+        table = np.genfromtxt([line for line in TABLE.read_text().splitlines() if not line.startswith("#")], delimiter=",",
+                              names=True)
+        np.testing.assert_allclose(measured.mean, table["mean"], atol=2e-6)
+        np.testing.assert_allclose(measured.repeats.std(axis=1, ddof=1), table["std"], atol=2e-6)
         self.assertEqual(measured.layer[measured.mean.argmax()], 18)
+
+    def test_which_measured_densities(self) -> None:
+        apparatus = Apparatus(**{**sample_run.APPARATUS, "density": FullSize.density, "velocity": FullSize.velocity,
+                                 "layer_thickness": FullSize.layer_thickness})
+        self.assertTrue(measured_for("", [apparatus, None]).is_of_paper)
+        self.assertIsNone(measured_for("", [apparatus, replace(apparatus, density=7800.)]))
+        self.assertIsNone(measured_for("none", [apparatus]))
+        own = self.file("own.csv", "# steel\nlayer, repeat 1, repeat 2\n1,0.5,0.52\n2,0.55,0.57\n")
+        found = measured_for(str(own), [replace(apparatus, density=7800.)])
+        np.testing.assert_allclose(found.mean, [0.51, 0.56])
+        np.testing.assert_allclose(found.cumulative()[1], [[0.55, 0.57]])
+        self.assertIn("own.csv, mean and standard deviation of 2 repeats", found.caption)
+        for text, said in (("layer,LRD\n1,0.5\n", "heading"), ("", "heading"), ("layer,repeat\n1,x\n", "row that does not have 2"),
+                           ("layer,repeat\n1\n", "row that does not have 2"),
+                           ("layer,repeat\n2,0.5\n1,0.5\n", "ascending"), ("layer,repeat\n1,55\n", "not per cent")):
+            with self.assertRaisesRegex(ReportError, said):
+                measured_for(str(self.file("own.csv", text)), [apparatus])
+        with self.assertRaisesRegex(ReportError, "No such file"):
+            measured_for(str(own.with_name("nowhere.csv")), [apparatus])
 
     def test_counting_noise(self) -> None:
         layers = read_layers(self.file("layers.csv", sample_run.LAYERS))
@@ -133,7 +154,7 @@ class Geometry(unittest.TestCase):
         a = self.apparatus
         np.testing.assert_allclose([a.x_gap, a.x_plate, a.x_plate_end, a.x_exit, a.x_end],
                                    [2.0e-3, 2.1e-3, 3.6e-3, 3.7e-3, 4.2e-3])
-        np.testing.assert_allclose(a.full_layer_mass, 4000. * 1.5e-3 * 4e-4 * 1e-4)
+        np.testing.assert_allclose(a.full_layer_mass, 4386. * 1.5e-3 * 4e-4 * 1e-4)
         self.assertAlmostEqual(a.spreader_tip(), 4.0e-3)
         self.assertAlmostEqual(a.spreader_outline(a.spreader_tip())[:, 1].min(), 1e-4)
 
@@ -217,6 +238,16 @@ class Report(InFolder):
         self.assert_says("apparatus.json cannot be read")
         (self.folder / "apparatus.json").unlink()
         self.assert_says("apparatus.json is missing")
+
+    def test_run_of_another_powder(self) -> None:
+        sample_run.write_run(self.folder)
+        (self.folder / "apparatus.json").write_text(json.dumps({**sample_run.APPARATUS, "density": 7800.}))
+        page = self.page()
+        for text in ("full-size", "full size", "Ti-6Al-4V"):
+            self.assertFalse(text in page, f"The page has '{text}'.")
+        own = self.file("own.csv", "layer,repeat\n1,0.51\n2,0.56\n")
+        page = of_run.make_page(self.folder, measured=str(own)).html()
+        self.assertTrue("own.csv" in page and "against 53.5" in page)
 
     def test_run_that_was_no_spreading(self) -> None:
         self.file("summary.json", json.dumps(sample_run.SUMMARY))

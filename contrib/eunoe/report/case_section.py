@@ -71,12 +71,9 @@ def _bridging(apparatus: Apparatus, largest_diameter: float) -> str:
 
 def _differences(apparatus: Apparatus, full: FullSize) -> str:
     """Settings other than those of the measurement."""
-    settings = [("layers of", apparatus.layer_thickness, full.layer_thickness, 1e6, "µm"),
-                ("a velocity of", apparatus.velocity, full.velocity, 1e3, "mm/s"),
-                ("a density of", apparatus.density, full.density, 1., "kg/m³")]
     differing = [f"{name} {number(size * here, 4)}\u00a0{unit} (measured: "
                  f"{number(size * there, 4)}\u00a0{unit})"
-                 for name, here, there, size, unit in settings if abs(here / there - 1.) > 0.005]
+                 for name, here, there, size, unit in full.differing(apparatus)]
     if not differing:
         return ""
     return ("The measurement does not apply to the settings of this run, which has "

@@ -57,8 +57,8 @@ def densities_figure(groups: Sequence[Group], measured: Measured | None) -> Figu
     figure = Figure(figsize=(style.WIDTH, 3.3), layout="constrained")
     left, right = figure.subplots(1, 2, sharey=True)
     if measured:
-        draw_measured(left, measured.layer, measured.repeats)
-        draw_measured(right, *measured.cumulative())
+        draw_measured(left, measured.layer, measured.repeats, measured.label)
+        draw_measured(right, *measured.cumulative(), measured.label)
     for number, group in enumerate(groups):
         for axes, values in ((left, "lrd"), (right, "crd")):
             draw_group(axes, number, group.layer, group.stacked(values), group.label, 100.)
@@ -160,7 +160,7 @@ def middle_figure(groups: Sequence[Group], measured: Measured | None) -> Figure:
     figure = Figure(figsize=(style.WIDTH, 2.9), layout="constrained")
     axes = figure.subplots()
     if measured:
-        draw_measured(axes, measured.layer, measured.repeats)
+        draw_measured(axes, measured.layer, measured.repeats, measured.label)
     for number, group in enumerate(groups):
         if group.mapped:
             rows = group.over_maps("middle_lrd")

@@ -13,7 +13,7 @@ from .bed_maps import read_maps
 from .comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
                                 middle_figure, profiles_figure)
 from .comparison_text import densities_table, differences_table, measured_group, rest_table, rise_sentence
-from .measured import read_measured
+from .measured import Measured, measured_for
 from .page import Page
 from .quantities import length
 from .run_folder import ReportError, Run, read_run
@@ -94,15 +94,14 @@ def _unmarked(table: list[list[str]]) -> list[list[str]]:
     return [[cell.replace("**", "") for cell in row] for row in table]
 
 
-def _add_densities(page: Page, groups: Sequence[Group]) -> None:
-    measured = read_measured()
+def _add_densities(page: Page, groups: Sequence[Group], measured: Measured | None) -> None:
     page.heading("Density of the layers")
-    page.figure(densities_figure(groups, measured), f"Relative density of the layers. {BAND} Black: measured at full "
-                "size, with its repeats.")
+    page.figure(densities_figure(groups, measured), f"Relative density of the layers. {BAND}"
+                + (f" {measured.caption}" if measured else ""))
     if any(group.mapped for group in groups):
         page.figure(middle_figure(groups, measured), "LRD of the middle half of the plate, which the slopes at its two "
-                    f"ends reach last, beside the measured LRD of a whole plate. {BAND}")
-    everyone = [*groups, measured_group(measured)]
+                    f"ends reach last{', beside the measured LRD of a whole plate' if measured else ''}. {BAND}")
+    everyone = [*groups, *([measured_group(measured)] if measured else [])]
     head, *rows = densities_table(everyone)
     page.table(head, rows)
     page.paragraph("Means over the runs with their 95 % intervals (Student's t). The peak is the largest mean of "
@@ -136,13 +135,15 @@ def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:
                 "the plate; (b) solid fraction over the height, in the middle half of the plate. Means over the runs.")
 
 
-def comparison_report(folders: Sequence[Path], labels: Sequence[str]) -> Page:
+def comparison_report(folders: Sequence[Path], labels: Sequence[str], given: str = "") -> Page:
+    """:param given: what was measured, as `measured_for` takes it"""
     problems: list[str] = []
     groups = groups_of(folders, labels, problems)
+    measured = measured_for(given, [run.apparatus for group in groups for run in group.runs])
     page = Page("Spreading runs compared", "; ".join(
         f"{group.label}: {', '.join(run.name for run in group.runs)}" for group in groups))
     for text in (*problems, *filter(None, [_plates(groups)])):
         page.notice(text)
-    _add_densities(page, groups)
+    _add_densities(page, groups, measured)
     _add_mechanism(page, groups)
     return page

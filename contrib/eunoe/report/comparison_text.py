@@ -18,7 +18,7 @@ from .run_folder import Layers
 from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
 
 
-def measured_group(measured: Measured, label: str = "measured, full size") -> Group:
+def measured_group(measured: Measured) -> Group:
     """The repeats of the measurement as runs, of which only densities are known."""
     runs = []
     for number, repeat in enumerate(measured.repeats.T, start=1):
@@ -28,7 +28,7 @@ def measured_group(measured: Measured, label: str = "measured, full size") -> Gr
         known = {"layer": measured.layer, "lrd": repeat, "crd": crd}
         layers = Layers(**{field.name: known.get(field.name, unknown) for field in fields(Layers)})
         runs.append(SpreadRun(f"repeat {number}", layers, None, None))
-    return Group(label, runs)
+    return Group("measured, full size" if measured.is_of_paper else "measured", runs)
 
 
 ALONE = CommonScatter()  # each group scatters by itself

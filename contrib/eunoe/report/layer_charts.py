@@ -14,11 +14,13 @@ from .quantities import FORCE, MASS, TIME, unit_for
 from .run_folder import Layers
 
 
-def draw_measured(axes: Axes, layer: np.ndarray, repeats: np.ndarray) -> None:
+def draw_measured(axes: Axes, layer: np.ndarray, repeats: np.ndarray, label: str) -> None:
     """Repeats, mean and standard deviation band of a measured density (fractions)."""
-    mean, std = 100. * repeats.mean(axis=1), 100. * repeats.std(axis=1, ddof=1)
-    axes.plot(layer, mean, color=style.INK, linewidth=1.1, zorder=3,
-              label="measured (full size)")
+    mean = 100. * repeats.mean(axis=1)
+    axes.plot(layer, mean, color=style.INK, linewidth=1.1, zorder=3, label=label)
+    if repeats.shape[1] < 2:
+        return
+    std = 100. * repeats.std(axis=1, ddof=1)
     axes.fill_between(layer, mean - std, mean + std, color="#dddddd", linewidth=0.,
                       label="± std. deviation")
     for k, repeat in enumerate(repeats.T):
@@ -35,13 +37,14 @@ def _draw_simulated(axes: Axes, layer: np.ndarray, density: np.ndarray,
                   label="simulated" + ("" if noise is None else " ± counting noise"), zorder=4)
 
 
-def density_figure(layers: Layers, noise: DensityNoise | None, measured: Measured) -> Figure:
-    """LRD and CRD of the layers beside the measured ones."""
+def density_figure(layers: Layers, noise: DensityNoise | None, measured: Measured | None) -> Figure:
+    """LRD and CRD of the layers, beside the measured ones if there are any."""
     figure = Figure(figsize=(style.WIDTH, 3.1))
     left, right = figure.subplots(1, 2, sharey=True)
     figure.subplots_adjust(left=0.08, right=0.985, top=0.92, bottom=0.255, wspace=0.08)
-    draw_measured(left, measured.layer, measured.repeats)
-    draw_measured(right, *measured.cumulative())
+    if measured:
+        draw_measured(left, measured.layer, measured.repeats, measured.label)
+        draw_measured(right, *measured.cumulative(), measured.label)
     _draw_simulated(left, layers.layer, layers.lrd, noise.lrd if noise else None)
     _draw_simulated(right, layers.layer, layers.crd, noise.crd if noise else None)
     left.set_ylabel("Relative density (%)")
@@ -49,7 +52,7 @@ def density_figure(layers: Layers, noise: DensityNoise | None, measured: Measure
     left.set_title("(a) Layer relative density, LRD")
     right.set_title("(b) Cumulative relative density, CRD")
     for axes in (left, right):
-        style.layer_axis(axes, max(layers.last, measured.layer[-1]))
+        style.layer_axis(axes, max(layers.last, measured.layer[-1]) if measured else layers.last)
     handles, labels = left.get_legend_handles_labels()
     figure.legend(handles, labels, loc="lower center", ncol=4, columnspacing=1.1, handlelength=1.3)
     return figure

@@ -14,7 +14,7 @@ from .comparison_charts import maps_figure
 from .evidence import Evidence, Fields, gather
 from .layer_charts import budget_figure, density_figure
 from .layer_results import RESTS_BELOW, STATIC_BELOW, DensityNoise, counting_noise, moved_over_plate
-from .measured import Measured, read_measured
+from .measured import Measured, measured_for
 from .movie import movie_of, pass_of, strip_figure
 from .page import Page, table
 from .quantities import SPACE, count, length, number, percent
@@ -68,12 +68,9 @@ def _layer_rows(layers: Layers, noise: DensityNoise | None) -> list[list[str]]:
 
 
 def _add_densities(page: Page, layers: Layers, noise: DensityNoise | None,
-                   measured: Measured) -> None:
+                   measured: Measured | None) -> None:
     page.heading("Density of the layers")
-    caption = ("Relative density of the layers. Measured: Ti-6Al-4V 45–106 µm, layers of 100 µm, "
-               "100 mm/s, full-size apparatus; mean and standard deviation of three repeats. They "
-               "are by the authors of Gaboriault et al. (2025), published in lethe-utils; that "
-               "they are the runs of that paper is an inference.")
+    caption = "Relative density of the layers." + (f" {measured.caption}" if measured else "")
     if noise is not None:
         caption += (" Bars: one standard deviation of counting noise, for particles that come and "
                     "leave independently; in a packing they do not, so it is an upper estimate.")
@@ -132,10 +129,13 @@ def _add_displacement(page: Page, last: Fields, apparatus: Apparatus, layer: int
                 + _drawn(share, apparatus))
 
 
-def spreading_report(run: Run, layers: Layers) -> Page:
-    """The page for a run that has weighed at least one layer."""
+def spreading_report(run: Run, layers: Layers, given: str = "") -> Page:
+    """The page for a run that has weighed at least one layer.
+
+    :param given: what was measured, as `measured_for` takes it
+    """
     evidence = gather(run)
-    measured = read_measured()
+    measured = measured_for(given, [evidence.apparatus])
     noise = noise_of(layers, evidence)
     n = len(layers)
     page = Page(f"Spreading of {n} {'layer' if n == 1 else 'layers'} of powder", f"Run {run.name}")
@@ -144,7 +144,7 @@ def spreading_report(run: Run, layers: Layers) -> Page:
         page.notice(text)
     page.paragraph(summary_text(layers, evidence, noise, measured))
     _add_densities(page, layers, noise, measured)
-    if evidence.apparatus is not None:
+    if evidence.apparatus is not None and measured and measured.is_of_paper:
         largest = evidence.last["diameter"].max() if evidence.last else 0.
         add_case_section(page, layers, evidence.apparatus, measured, float(largest))
     _add_pictures(page, layers, evidence)

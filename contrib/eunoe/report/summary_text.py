@@ -11,7 +11,7 @@ from .quantities import SPACE, count, length, mass, percent
 from .run_folder import Layers
 
 
-def _density_sentence(layers: Layers, noise: DensityNoise | None, measured: Measured) -> str:
+def _density_sentence(layers: Layers, noise: DensityNoise | None, measured: Measured | None) -> str:
     known = np.isfinite(layers.lrd)
     if not known.any():
         return "A density takes two weighings, so there is none yet. "
@@ -27,9 +27,9 @@ def _density_sentence(layers: Layers, noise: DensityNoise | None, measured: Meas
     text = "The layer relative density (LRD) is " if len(numbers) == 1 else \
         "The mean layer relative density (LRD) is "
     text += with_noise(layers.lrd[known].mean(), noise.mean_lrd if noise else None) + f" in {span}"
-    reference = measured.mean_over(numbers)
-    if np.isfinite(reference):
-        text += f", against {percent(reference)} measured in the same layers at full size"
+    reference = measured.mean_over(numbers) if measured else np.nan
+    if measured and np.isfinite(reference):
+        text += f", against {percent(reference)} measured in the same layers" + (" at full size" if measured.is_of_paper else "")
     if len(numbers) > 1:
         peak = int(np.nanargmax(layers.lrd))
         text += (f"; it is highest in layer {layers.layer[peak]:.0f}, at "
@@ -54,7 +54,7 @@ def _feed_sentence(feed: Feed, has_pictures: bool) -> str:
 
 
 def summary_text(layers: Layers, evidence: Evidence, noise: DensityNoise | None,
-             measured: Measured) -> str:
+             measured: Measured | None) -> str:
     text = (f"After layer {layers.last}, {count(layers.particles[-1])} particles "
             f"({mass(layers.mass[-1])}) lie on the measuring plate")
     if evidence.apparatus is not None:
