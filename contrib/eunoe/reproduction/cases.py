@@ -67,7 +67,7 @@ VARIANTS = {
     "damping": Variant("rolling viscous damping of 0.1, which the input files leave to Lethe",
                        {f"{PARTICLES}/rolling viscous damping particles": "0.1",
                         f"{WALL}/rolling viscous damping wall": "0.1"}),
-    # Sleepers keep what they remember, and zones at rest sleep. As often in a layer as on the paper's L4:
+    # Sleepers give way only when they wake, so that several losses act as one. As often in a layer as on the paper's L4:
     "awake_forget": Variant("without sleep, contacts forget every 1.6 ms", {SLEEP: "false"}, forgets=1.6e-3),
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
     "open": Variant("without rims, fed less", BEFORE, closely=True),
