@@ -26,13 +26,14 @@ from eunoe import commands
 from eunoe.intervals import Interval
 from eunoe.pictures.record import digest, read_record
 from eunoe.reproduction.cases import CASES, VARIANTS, Case
-from eunoe.reproduction.page import BLOCKS
+from eunoe.reproduction.page import BLOCKS, OTHER_ENDS, other_ends
 from eunoe.reproduction.results import Findings, length_name
 from eunoe.reproduction.verdict import agreement
 from eunoe.repository import DOC, ROOT
 
 HERE = Path(__file__).resolve().parent
-MARKED = "".join(f"<!-- {name}: generated -->\nstale\n<!-- end of {name} -->\n" for name in BLOCKS)
+MARKED, OTHER = ("".join(f"<!-- {name}: generated -->\nstale\n<!-- end of {name} -->\n" for name in blocks)
+                 for blocks in (BLOCKS, OTHER_ENDS))
 
 
 class Cases(unittest.TestCase):
@@ -107,6 +108,7 @@ class Campaign(unittest.TestCase):
         self.program.chmod(0o755)
         self.page = self.folder / "page.md"
         self.page.write_text(MARKED)
+        other_ends(self.page).write_text(OTHER)
 
     def words(self, *more: str) -> list[str]:
         return [str(self.program), str(self.states), "--data", str(self.folder / "data"), "--page", str(self.page),
@@ -163,6 +165,7 @@ class Campaign(unittest.TestCase):
         self.assertIn("Made by `contrib/tools reproduction` at revision abc1234 on an ", text)
         self.assertRegex(text, r"\| `PS1_L0\.25` \| 3, 3 \| 1\.5 \|")
         self.assertNotIn("stale", text)
+        self.assertNotIn("stale", other_ends(self.page).read_text())
         self.assertIn("](pictures/reproduction_density.png)", text)
         self.assertNotIn("reproduction_pass.png", text)  # the runs have no pictures of a pass
 

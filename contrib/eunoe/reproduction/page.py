@@ -1,10 +1,11 @@
-"""Renews the generated parts of doc/reproduction.md, which stand between markers."""
+"""Renews the generated parts of doc/reproduction.md, and of the page beside it on plates with other ends, which stand
+between markers."""
 
 from __future__ import annotations
 
 import re
 import statistics
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -20,7 +21,6 @@ from eunoe.tables import Table, as_markdown
 
 from .cases import N_LAYERS, SETS
 from .pictures import picture_name
-from .places import PAGE
 from .results import HELD, OPEN, Findings, Result, length_name, origin_of, plain_label
 from .verdict import verdict_table
 
@@ -277,8 +277,9 @@ PICTURES = {
 }
 BLOCKS = {"verdict": verdict_block, "runs": runs_block, "under way": under_way_block, "scatter": scatter_block,
           "densities": densities_block, "levels": levels_block, "passes": passes_block,
-          "lengths": lengths_block, "sets": sets_block, "rest": rest_block, "supply": supply_block,
-          "open": open_block, "held": held_block, "variants": variants_block, "needed": needed_block}
+          "lengths": lengths_block, "sets": sets_block, "rest": rest_block, "variants": variants_block,
+          "needed": needed_block}
+OTHER_ENDS = {"open": open_block, "supply": supply_block, "held": held_block}
 
 
 def _pictures(name: str, folder: Path) -> str:
@@ -286,17 +287,26 @@ def _pictures(name: str, folder: Path) -> str:
     return "".join(f"\n\n![{text}](pictures/{file})" for file, text in found.items() if (folder / file).exists())
 
 
-def renewed(text: str, findings: Findings, pictures: Path) -> str:
+def other_ends(page: Path) -> Path:
+    """The page beside it."""
+    return page.with_name(f"{page.stem}_other_ends{page.suffix}")
+
+
+def _renewed(page: Path, blocks: dict[str, Callable[[Findings], str]], findings: Findings, pictures: Path) -> str:
     """The page with new text between its markers."""
-    for name, make in BLOCKS.items():
+    text = page.read_text(encoding="utf-8")
+    for name, make in blocks.items():
         begin, end = f"<!-- {name}: generated -->", f"<!-- end of {name} -->"
         pattern = re.compile(f"{begin}\n.*?{end}", re.S)
         if len(pattern.findall(text)) != 1:
-            raise Failure(f"{PAGE.name} must have '{begin}' and '{end}' once, in lines of their own.")
+            raise Failure(f"{page.name} must have '{begin}' and '{end}' once, in lines of their own.")
         block = f"{begin}\n\n{make(findings)}{_pictures(name, pictures)}\n\n{end}"
         text = pattern.sub(lambda _, block=block: block, text)
     return text
 
 
-def renew(file: Path, findings: Findings, pictures: Path) -> None:
-    write_whole(file, renewed(file.read_text(encoding="utf-8"), findings, pictures))
+def renew(page: Path, findings: Findings, pictures: Path) -> None:
+    texts = {each: _renewed(each, blocks, findings, pictures)
+             for each, blocks in ((page, BLOCKS), (other_ends(page), OTHER_ENDS))}
+    for each, text in texts.items():
+        write_whole(each, text)
