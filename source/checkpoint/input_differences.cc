@@ -57,14 +57,17 @@ void note(const std::pair<Path, std::string> &place, const std::string &what, Pr
 } // namespace
 
 void find_input_differences(const std::string &now, const std::string &then,
-                            const std::string &checkpoint, Problems &problems)
+                            const EntryValues &changed, const std::string &checkpoint,
+                            Problems &problems)
 {
   const EntryValues entries_now = values_in(now), entries_then = values_in(then);
   for (const auto &[place, value] : entries_now) {
     const auto before = entries_then.find(place);
-    if (before == entries_then.end())
-      note(place, "is set, and was not known in the run that wrote " + checkpoint + ".", problems);
-    else if (!are_equal(value, before->second))
+    if (before == entries_then.end()) {
+      if (changed.count(place) > 0)
+        note(place, "is set, and was not known in the run that wrote " + checkpoint + ".",
+             problems);
+    } else if (!are_equal(value, before->second))
       note(place,
            "is '" + shortened(value) + "', and was '" + shortened(before->second) +
                "' in the run that wrote " + checkpoint + ".",

@@ -136,8 +136,9 @@ void Checkpoints::open(Log &log)
       log.warning(defect);
 }
 
-void Checkpoints::find(const std::string &input, const ControlParameters &control,
-                       const PhaseJudge &judge, Log &log, Problems &problems)
+void Checkpoints::find(const std::string &input, const EntryValues &changed,
+                       const ControlParameters &control, const PhaseJudge &judge, Log &log,
+                       Problems &problems)
 {
   if (parameters.checkpoint || parameters.restart != "false")
     files = named_files(input, comm);
@@ -167,7 +168,7 @@ void Checkpoints::find(const std::string &input, const ControlParameters &contro
   if (!head.contains("input") || !head["input"].is_string())
     throw checkpoint->damaged("it does not hold the input of its run.");
   Problems differences;
-  find_input_differences(input, head["input"], checkpoint->path, differences);
+  find_input_differences(input, head["input"], changed, checkpoint->path, differences);
   // Those of older versions do not know the files of their run.
   if (head.contains("files"))
     understand([&](const nlohmann::ordered_json &of_run) {

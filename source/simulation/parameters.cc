@@ -148,6 +148,9 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   declare(prm);
   const std::vector<RepeatedSections> repeated = numbered_sections();
   complete_input = set_entries(prm, entries, repeated, problems);
+  for (const InputEntry &entry : entries)
+    if (!entry.is_default)
+      changed[{entry.path, entry.name}] = entry.value;
   if (control.seed < 0)
     return;
   std::vector<InputEntry> seeds = turned_seeds(control.seed, values_in(complete_input), entries,

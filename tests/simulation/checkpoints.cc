@@ -27,7 +27,8 @@ RestartParameters parameters(const std::string &restart)
 
 /// Number of problems at the start of a run of so many steps.
 std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
-                       const std::string &text = input, const std::vector<std::string> &fixed = {})
+                       const std::string &text = input, const std::vector<std::string> &fixed = {},
+                       const EntryValues &changed = {})
 {
   Log log(MPI_COMM_WORLD, true);
   Problems problems;
@@ -36,7 +37,7 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
   control.iteration_end = n_steps;
   control.output_path = folder;
   checkpoints.find(
-      text, control,
+      text, changed, control,
       [&fixed](const Problems &differences, const nlohmann::ordered_json &, Problems &found) {
         for (const Problem &difference : differences.all())
           for (const std::string &section : fixed)
@@ -106,6 +107,15 @@ EUNOE_MPI_TEST()
   check("the same input does not", !later.begins_phase() && later.is_own());
   check("some entries must stay", n_problems(fixed, 100, other_input, {"entry 'a'"}) == 1);
   check("a phase has a step at least", n_problems(no_step, 50, other_input) == 1);
+
+  // As an older version of the program may have written it.
+  const std::string newer = input + "set b = 3\n";
+  Checkpoints standard(may, folder, MPI_COMM_WORLD), set(may, folder, MPI_COMM_WORLD),
+      still_own(need, folder, MPI_COMM_WORLD);
+  check("a new entry at its default is no difference",
+        n_problems(standard, 100, newer) == 0 && n_problems(still_own, 100, newer) == 0 &&
+            !still_own.begins_phase());
+  check("one that is set is", n_problems(set, 100, newer, {}, {{{{}, "b"}, "3"}}) == 1);
 
   const std::string elsewhere = "checkpoints_of_other_run";
   RestartParameters guest = parameters("auto");

@@ -48,6 +48,9 @@ public:
   /// A complete, documented input file that gives the same parameters as those that were read.
   const std::string &as_input_file() const { return complete_input; }
 
+  /// The entries whose values in the input are not their defaults.
+  const EntryValues &changed_entries() const { return changed; }
+
   /// All entries, with one of each of the numbered subsections: see describe_entries.
   static std::string description();
 
@@ -102,6 +105,7 @@ private:
   void set(std::vector<InputEntry> &entries, Problems &problems);
 
   std::string complete_input;
+  EntryValues changed;
 };
 
 } // namespace eunoe
