@@ -78,6 +78,23 @@ void examine_cone(const double angle)
   check("spread of a cone", spread < 0.05 * r, std::to_string(spread / r));
 }
 
+/// Rings that are narrower than the columns of the outlines.
+void examine_fine_rings()
+{
+  constexpr unsigned int n_rings = 200;
+  Silhouettes views(D, 0., 16, 10, 20e-6);
+  // A plain of spheres, 0.1 mm high.
+  for (int i = -120; i <= 120; ++i)
+    for (int k = -120; k <= 120; ++k)
+      if (is_mine(static_cast<unsigned int>(i + 120)))
+        views.add({1e-5 * i, 0.05e-3, 1e-5 * k}, 0.05e-3);
+  views.reduce(MPI_COMM_WORLD);
+  double off = 0.;
+  for (const double height : views.rings(n_rings))
+    off = std::max(off, std::abs(height - 0.1e-3));
+  check_close("rings narrower than columns", off, 0., 2e-6);
+}
+
 /// A sphere far off the axis is seen at another place in every view.
 void examine_sphere()
 {
@@ -135,6 +152,7 @@ EUNOE_MPI_TEST()
 {
   for (const double angle : {20., 37.5, 60.})
     examine_cone(angle);
+  examine_fine_rings();
   examine_sphere();
   examine_map();
 }

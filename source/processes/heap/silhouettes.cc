@@ -4,10 +4,22 @@
 
 namespace eunoe::heap {
 
+namespace {
+
+/// Width of columns of which every rank can hold all, of all views (m).
+double width_of_columns(const double length, const unsigned int n_views, const double finest)
+{
+  constexpr double most_columns = 1e7;
+  return std::max(finest, n_views * length / most_columns);
+}
+
+} // namespace
+
 Silhouettes::Silhouettes(const double disc_diameter, const double overhang,
                          const unsigned int n_views, const unsigned int n_bins, const double finest)
     : disc_diameter(disc_diameter), n_bins(n_bins),
-      columns_per_bin(static_cast<unsigned int>(std::ceil(disc_diameter / n_bins / finest))),
+      columns_per_bin(static_cast<unsigned int>(
+          std::ceil(disc_diameter / n_bins / width_of_columns(disc_diameter, n_views, finest)))),
       width(disc_diameter / (n_bins * columns_per_bin))
 {
   const auto beyond = static_cast<unsigned int>(std::ceil(overhang / width));
@@ -96,8 +108,21 @@ std::vector<double> Silhouettes::rings(const unsigned int n_rings) const
       ++counts[ring];
     }
   }
+  // A ring that is narrower than a column may have none of its own: it takes the nearest ones.
   for (unsigned int ring = 0; ring < n_rings; ++ring)
-    sums[ring] /= std::max(1u, counts[ring]);
+    if (counts[ring] == 0) {
+      const double middle = (ring + 0.5) / n_rings * 0.5 * disc_diameter;
+      for (const double place : {-middle, middle}) {
+        const auto column = static_cast<unsigned int>(
+            std::clamp(std::floor((place - left) / width), 0., n_columns - 1.));
+        for (unsigned int view = 0; view < n_views(); ++view) {
+          sums[ring] += heights[static_cast<std::size_t>(view) * n_columns + column];
+          ++counts[ring];
+        }
+      }
+    }
+  for (unsigned int ring = 0; ring < n_rings; ++ring)
+    sums[ring] /= counts[ring];
   return sums;
 }
 
