@@ -14,7 +14,8 @@ public:
                       {"Whether force and torque of the particles on every wall of the mesh are "
                        "recorded.",
                        "Beginning of the names of the files, one a boundary, with the columns "
-                       "time, f_x, f_y, f_z, T_x, T_y, T_z (N, N m)."},
+                       "time, f_x, f_y, f_z, T_x, T_y, T_z (N, N m).",
+                       "_#.csv"},
                       "force", 1)
   {
   }

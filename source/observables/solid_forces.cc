@@ -53,7 +53,8 @@ const ObservableRegistry::Registration registration(observables(), "solid forces
       RecordSection::Texts{
           "Whether force and torque of the particles on every solid are recorded.",
           "Beginning of the names of the files, one a solid, with the columns time, f_x, f_y, "
-          "f_z, T_x, T_y, T_z (N, N m; torque about the centre of rotation)."},
+          "f_z, T_x, T_y, T_z (N, N m; torque about the centre of rotation).",
+          "_#.csv"},
       "solid_forces");
 });
 

@@ -39,6 +39,12 @@ public:
                   "collision statistics file", "is '" + file + "'.", "Give a name without '/'.");
   }
 
+  std::vector<Table> tables() const override
+  {
+    return calculation ? std::vector<Table>{{path, "collision statistics file", file, file}}
+                       : std::vector<Table>();
+  }
+
   /// Throws a UserError if a boundary is named that is no wall.
   void find_walls(const Domain &domain) const
   {

@@ -33,6 +33,12 @@ void RecordSection::check(const ParameterCheck &check) const
                 "is '" + file + "'.", "Give a name without '/'.");
 }
 
+std::vector<ObservableSection::Table> RecordSection::tables() const
+{
+  return calculation ? std::vector<Table>{{path, "filename", file, file + texts.ending}}
+                     : std::vector<Table>();
+}
+
 void SwitchSection::declare(dealii::ParameterHandler &prm)
 {
   declare::enter(prm, "post-processing");

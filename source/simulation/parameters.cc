@@ -62,21 +62,28 @@ SectionCounts count(const std::vector<InputEntry> &entries)
   return counts;
 }
 
-/// Two records in one file would destroy each other.
+/// Two tables in one file would destroy each other.
 void check_file_names(const std::map<std::string, std::shared_ptr<ObservableSection>> &observables,
-                      const ParameterCheck &check)
+                      const ProcessSection *const process, const ParameterCheck &check)
 {
-  std::map<std::string, const RecordSection *> taken;
-  for (const auto &[name, observable] : observables) {
-    const auto *const record = dynamic_cast<const RecordSection *>(observable.get());
-    if (record == nullptr || !record->calculation)
-      continue;
-    const auto [first, is_new] = taken.emplace(record->file, record);
-    check.require(is_new, record->subsection(), "filename",
-                  "is '" + record->file + "', as " +
-                      describe(first->second->subsection(), "filename") + " is.",
-                  "Give each its own name.");
-  }
+  std::vector<std::string> of_run = {"measurements.csv"};
+  if (process != nullptr)
+    for (const std::string &file : process->results())
+      of_run.push_back(file);
+  std::map<std::string, ObservableSection::Table> taken;
+  for (const auto &[name, observable] : observables)
+    for (const ObservableSection::Table &table : observable->tables()) {
+      check.require(std::find(of_run.begin(), of_run.end(), table.file) == of_run.end(), table.path,
+                    table.entry,
+                    "is '" + table.name + "', and " + table.file +
+                        " is where other results of the run are written.",
+                    "Give another name.");
+      const auto [first, is_new] = taken.emplace(table.file, table);
+      check.require(is_new, table.path, table.entry,
+                    "is '" + table.name + "', as " +
+                        describe(first->second.path, first->second.entry) + " is.",
+                    "Give each its own name.");
+    }
 }
 
 /// A process counts its particles itself: all types may be there.
@@ -193,7 +200,7 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
     // A process makes its own insertion.
     if (process == nullptr || section != &parameters.insertion)
       section->check(check);
-  check_file_names(parameters.observables, check);
+  check_file_names(parameters.observables, process, check);
   parameters.sparse_contacts.check_with(parameters.physics.gravity, check);
   if (process != nullptr)
     ignore_numbers(parameters.physics, check);
@@ -204,7 +211,14 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
                                                              1. / ParticleGuard::steps_per_contact);
   if (process != nullptr) {
     process->check(check);
-    process->check_with(parameters, check);
+    try {
+      process->check_with(parameters, check);
+    } catch (const UserError &) {
+      // Without sizes nothing more can be said. What is wrong with them has been noted with its
+      // place.
+      if (problems.empty())
+        throw;
+    }
   }
   return parameters;
 }

@@ -57,6 +57,15 @@ public:
 
   /// Whether it asks for the cells of the background mesh.
   virtual bool needs_cells() const { return false; }
+
+  /// The table that it writes, and where the input names it.
+  struct Table
+  {
+    ParameterCheck::Path path;
+    std::string entry, name, file; ///< value of the entry, and what it makes a file
+  };
+  /// Those that it is asked for.
+  virtual std::vector<Table> tables() const { return {}; }
 };
 
 using ObservableRegistry = Registry<std::unique_ptr<ObservableSection>>;
@@ -71,6 +80,7 @@ public:
   {
     std::string what; ///< begins with "Whether"
     std::string naming = "Name of the file without its ending.";
+    std::string ending = ".csv"; ///< of the file; # for a number
   };
 
   /// @param path of the subsection
@@ -83,8 +93,7 @@ public:
 
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
-
-  const ParameterCheck::Path &subsection() const { return path; }
+  std::vector<Table> tables() const override;
 
   bool calculation = false;
   std::string file;

@@ -116,6 +116,9 @@ public:
   /// What the process measures.
   virtual std::vector<ObservableDescription> observables() const { return {}; }
 
+  /// Names of the files in the output folder by which the run is known and judged.
+  virtual std::vector<std::string> results() const { return {}; }
+
   /// What the process measures of particles that were not simulated here, in its own frame, as far
   /// as their places tell it. Throws a UserError that says why they cannot be measured.
   /// @param moments the particles at every moment at which the process measures, or at the last one

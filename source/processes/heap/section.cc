@@ -106,4 +106,9 @@ std::vector<ObservableDescription> HeapParameters::observables() const
   return heap::observables();
 }
 
+std::vector<std::string> HeapParameters::results() const
+{
+  return {"heap.csv", "heap_profile.csv", "heap_map.pgm", "apparatus.json"};
+}
+
 } // namespace eunoe::heap

@@ -62,7 +62,7 @@ void PowderSpreading::fill_reservoir(Simulation &simulation, const double platfo
 bool PowderSpreading::has_settled(Simulation &simulation)
 {
   const double waited = simulation.time() - phase_start;
-  if (simulation.step_number() % settling_check != 0 || waited < 1e-3)
+  if (simulation.step_number() % settling_check != 0 || waited < p.settling_wait)
     return false;
   const ParticleArrays &particles = simulation.complete_step();
   unsigned long long count[2] = {0, 0};

@@ -25,6 +25,13 @@ void SpreadingParameters::check_with(const Parameters &parameters,
                     std::to_string(n_types) + ".",
                 "Types are counted from 0.");
   check_gravity_of_process(parameters, check, "in powder spreading y points upwards");
+  const double falling = insertion_speed + settling_wait * norm(parameters.physics.gravity);
+  check.require(
+      settled_speed < falling, {section}, "settled speed",
+      "is " + format(settled_speed) + " m/s, and powder that is inserted falls at " +
+          format(falling) +
+          " m/s when it is looked at first, so that it would count as settled in the air.",
+      "Give less, or a larger 'feedstock insertion speed'.");
   check_lengths(parameters, check);
   // Errors of the stroke do not change the powder.
   const double bed = bed_depth > 0. ? bed_depth : stroke + bed_margin;
@@ -71,6 +78,11 @@ void SpreadingParameters::check_lengths(const Parameters &parameters,
                 "is " + format(bed_level) + " m, above the spreader's clearance of " +
                     format(clearance) + " m, so that a stroke would feed more than its height.",
                 "Give no more than 'spreader clearance delta_s'.");
+  check.advise(bed_level <= mean_clearance() || bed_level > clearance, {section}, "feedstock level",
+               "is " + format(bed_level) + " m, and errors of the clearance leave " +
+                   format(mean_clearance()) +
+                   " m below the spreader, so that a stroke feeds more than its height.",
+               "Give less, unless that is what the error does.");
   // Each of its two contacts gives way by a hundredth of the diameter.
   constexpr double squeezed = 0.98;
   const double lowest = mean_clearance() - 0.5 * spreader_tilt - vibration_amplitude;
@@ -166,6 +178,11 @@ double SpreadingParameters::fastest_solid() const
 std::vector<ObservableDescription> SpreadingParameters::observables() const
 {
   return LayerLog::observables();
+}
+
+std::vector<std::string> SpreadingParameters::results() const
+{
+  return {"layers.csv", "apparatus.json"};
 }
 
 } // namespace eunoe::spreading

@@ -40,6 +40,7 @@ struct HeapParameters : public ProcessSection
   double fastest_solid() const override;
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
   std::vector<ObservableDescription> observables() const override;
+  std::vector<std::string> results() const override;
   std::vector<Measurement> measure(
       const Parameters &parameters,
       const std::vector<std::vector<GivenParticle>> &moments) const override;

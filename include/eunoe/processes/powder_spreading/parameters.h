@@ -44,6 +44,7 @@ struct SpreadingParameters : public ProcessSection
   double bed_level = 0.;
   double insertion_speed = 0.1;
   double settled_speed = 2e-3;
+  static constexpr double settling_wait = 1e-3; ///< before a bed may count as settled (s)
   double settling_time = 0.2;
   unsigned int seed = 1;
 
@@ -74,6 +75,7 @@ struct SpreadingParameters : public ProcessSection
   std::unique_ptr<Process> make(const Parameters &parameters) const override;
   std::size_t powder() const override { return particle_type; }
   std::vector<ObservableDescription> observables() const override;
+  std::vector<std::string> results() const override;
   std::vector<Measurement> measure(
       const Parameters &parameters,
       const std::vector<std::vector<GivenParticle>> &moments) const override;
