@@ -21,8 +21,20 @@ std::string OutputFolder::open()
 
 void OutputFolder::write(const std::string &name, const std::string &text) const
 {
+  if (!opened)
+    return;
+  written.insert(name);
+  on_first_rank(comm, [&] { write_file(file(name), text); });
+}
+
+void OutputFolder::remove_old(const std::vector<std::string> &names) const
+{
   if (opened)
-    on_first_rank(comm, [&] { write_file(file(name), text); });
+    on_first_rank(comm, [&] {
+      for (const std::string &name : names)
+        if (written.count(name) == 0 && tables.count(name) == 0 && sizes_before.count(name) == 0)
+          remove_file(file(name));
+    });
 }
 
 void OutputFolder::write_in_parts(const std::string &name, const std::string &mine) const

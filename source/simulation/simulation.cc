@@ -116,15 +116,17 @@ void Simulation::open_output()
 
 /// Replaces the files of an earlier run that say what it was and that it is finished, and marks its
 /// checkpoints.
-void Simulation::begin_results()
+void Simulation::begin_results(const bool goes_on)
 {
   if (!outputs.folder.is_open())
     return;
   checkpoints.begin_results();
-  on_first_rank(communicator(), [this] {
-    for (const char *const result : {"summary.json", "measurements.csv"})
-      remove_file(outputs.folder.file(result));
-  });
+  std::vector<std::string> old = {"summary.json", "measurements.csv"};
+  if (!goes_on)
+    for (const auto &[name, section] : parameters.processes)
+      for (const std::string &file : section->results())
+        old.push_back(file);
+  outputs.folder.remove_old(old);
   outputs.folder.write("used.prm", parameters.as_input_file());
 }
 
@@ -143,10 +145,11 @@ bool Simulation::run(const std::function<void(Simulation &)> &look)
                  format_count(n_ranks, "rank", "ranks"));
   checkpoints.begin();
   if (checkpoints.opened() != nullptr) {
+    const bool is_own = checkpoints.is_own();
     resume(); // may refuse, and the results of the run before it must be there still
-    begin_results();
+    begin_results(is_own);
   } else {
-    begin_results();
+    begin_results(false);
     start();
   }
   if (look)

@@ -147,6 +147,21 @@ def check_comparison(program: str, folder: Path, reference: Path) -> None:
                         math.degrees(math.atan(4. * area / DISC**2)), rel_tol=1e-9)
 
 
+def check_other_runs(program: str, phase: Path, finished: Path) -> None:
+    """A run that begins where another one has finished leaves nothing by which it would be taken for that one, and a
+    phase in a folder of its own says what its apparatus is."""
+    run_until(program, finished, "filling the tube")
+    left = [name for name in ("heap.csv", "heap_profile.csv", "heap_map.pgm", "measurements.csv", "summary.json")
+            if (finished / name).exists()]
+    assert not left, f"results of the run before: {left}"
+    phase.mkdir()
+    (phase / "heap.csv").write_text("of another run")
+    run_until(program, phase, "lifting the tube", "restart/restart = true", f"restart/restart folder = {finished}",
+              "lagrangian physical properties/particle type 0/friction coefficient particles = 0.3")
+    assert (phase / "apparatus.json").read_bytes() == (finished / "apparatus.json").read_bytes()
+    assert not (phase / "heap.csv").exists(), "results of the run before are in the folder of a phase"
+
+
 def main() -> int:
     program, folder = sys.argv[1], Path(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
@@ -155,6 +170,7 @@ def main() -> int:
     check_results(folder / "one")
     check_comparison(program, folder / "two", folder / "one")
     check_interrupted(program, folder / "one", folder / "interrupted")
+    check_other_runs(program, folder / "phase", folder / "interrupted")
     print("ok")
     return 0
 

@@ -9,6 +9,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 
 namespace eunoe {
 
@@ -37,6 +38,10 @@ public:
   /// The same for a file of which each rank has a part, in their order.
   void write_in_parts(const std::string &name, const std::string &mine) const;
 
+  /// Removes files of an earlier run, but for those that this one has written or goes on with;
+  /// collective.
+  void remove_old(const std::vector<std::string> &names) const;
+
   /// A table "name", new or continued. Throws a UserError on every rank; collective.
   std::shared_ptr<CsvFile> table(const std::string &name, const std::vector<std::string> &columns);
 
@@ -55,6 +60,7 @@ public:
 private:
   MPI_Comm comm;
   bool opened = false;
+  mutable std::set<std::string> written; ///< by `write`
   std::unique_ptr<RunLock> lock;
   std::map<std::string, std::shared_ptr<CsvFile>> tables;
   std::map<std::string, std::shared_ptr<PictureSeries>> series;

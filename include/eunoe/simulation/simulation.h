@@ -106,7 +106,8 @@ public:
 private:
   std::vector<Solid> given_solids(Problems &problems) const;
   void start();
-  void begin_results();
+  /// @param goes_on whether with the tables of an earlier part
+  void begin_results(bool goes_on);
   /// The time step.
   void advance();
   void move_solids();

@@ -5,10 +5,15 @@
 
 namespace eunoe::heap {
 
-void Heap::start(Simulation &simulation)
+void Heap::describe(Simulation &simulation) const
 {
   simulation.output_folder().write(
       "apparatus.json", apparatus.as_json(simulation.get_parameters().physics.types[0].density));
+}
+
+void Heap::start(Simulation &simulation)
+{
+  describe(simulation);
   fill(simulation);
 }
 
@@ -35,8 +40,9 @@ void Heap::save(CheckpointWriter &writer) const
                          {"measured", to_json(results.measured)}};
 }
 
-void Heap::resume(Simulation &, const Checkpoint &checkpoint)
+void Heap::resume(Simulation &simulation, const Checkpoint &checkpoint)
 {
+  describe(simulation);
   const auto &saved = checkpoint.head.at("heap");
   phase = static_cast<Phase>(saved.at("phase").get<int>());
   phase_start = saved.at("phase_start");

@@ -51,6 +51,8 @@ private:
   {
     return p.gap + apparatus.tube->at(simulation.time()).centre.y;
   }
+  /// Writes apparatus.json.
+  void describe(Simulation &simulation) const;
   void fill(Simulation &simulation);
   bool is_at_rest(Simulation &simulation);
   void begin_lifting(Simulation &simulation);
