@@ -66,6 +66,7 @@ public:
     std::copy_if(surroundings.solids.begin(), surroundings.solids.end(), std::back_inserter(solids),
                  [&](const Solid &solid) { return solid.is_active(surroundings.time); });
     domain = &surroundings.domain;
+    refuse_particles(surroundings);
     const PeriodicBox &box = surroundings.domain.periods();
     for (unsigned int d = 0; d < 3; ++d) {
       const double tolerance = 1e-9 * box.length[d];
@@ -105,6 +106,28 @@ public:
   }
 
 private:
+  /// What is packed does not know of particles that are there.
+  void refuse_particles(const Surroundings &surroundings) const
+  {
+    const ParticleArrays &present = surroundings.particles;
+    const Vec3 &low = settings.box_lower, &high = settings.box_upper;
+    unsigned long long inside = 0;
+    for (std::size_t row = 0; row < present.n_owned; ++row) {
+      const Vec3 x = surroundings.domain.periods().wrap(present.position[row].vec());
+      const double radius = present.radius(row);
+      bool reaches_in = !surroundings.leaving[row];
+      for (unsigned int d = 0; d < 3; ++d)
+        reaches_in = reaches_in && x[d] > low[d] - radius && x[d] < high[d] + radius;
+      inside += reaches_in ? 1 : 0;
+    }
+    MPI_Allreduce(MPI_IN_PLACE, &inside, 1, MPI_UNSIGNED_LONG_LONG, MPI_SUM, comm);
+    if (inside > 0 && particles.n_remaining() > 0)
+      throw UserError("subsection 'insertion info': " + std::to_string(inside) +
+                      " particles are where others are to be packed, and these would overlap "
+                      "them. Move the box, empty it with a removal box, or insert by 'plane', "
+                      "which looks for empty cells.");
+  }
+
   static constexpr ParticleId first_of_all = 1;
 
   const InsertionSettings settings;
