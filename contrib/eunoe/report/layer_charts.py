@@ -82,7 +82,7 @@ def _draw_losses(axes: Axes, layers: Layers) -> None:
 
 
 def _draw_force(axes: Axes, layers: Layers) -> None:
-    size, unit = unit_for(layers.force_max.max(), FORCE)
+    size, unit = unit_for(np.nanmax(layers.force_max, initial=0.), FORCE)
     for force, face, label in ((layers.force_max, "white", "largest"),
                                (layers.force_mean, style.BLUE, "mean")):
         axes.plot(layers.layer, force / size, color=style.BLUE, marker="o", markersize=3.8,

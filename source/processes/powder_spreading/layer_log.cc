@@ -4,6 +4,7 @@
 #include <eunoe/processes/powder_spreading/plate_measurement.h>
 
 #include <cmath>
+#include <limits>
 
 namespace eunoe::spreading {
 
@@ -120,6 +121,7 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
   to_gap -= last_out.gap;
   to_collector -= last_out.collector;
   const double now = MPI_Wtime();
+  constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
   record(layer, simulation.time(),
          {{"mass", present.mass.value()},
           {"particles", static_cast<double>(present.number)},
@@ -128,8 +130,8 @@ void LayerLog::weigh(Simulation &simulation, const unsigned int layer, const dou
           {"mass_removed", removed.value()},
           {"mass_to_gap", to_gap.value()},
           {"mass_to_collector", to_collector.value()},
-          {"spreader_force_mean", n_forces > 0 ? force_sum / n_forces : 0.},
-          {"spreader_force_max", force_max},
+          {"spreader_force_mean", n_forces > 0 ? force_sum / n_forces : nothing},
+          {"spreader_force_max", n_forces > 0 ? force_max : nothing},
           {wall_clock, now - last_wall_time}});
   last_present = present.mass;
   last_volume = volume;
