@@ -54,7 +54,9 @@ Apparatus::Apparatus(const SpreadingParameters &p, const double largest_diameter
   const double pile_height = std::sqrt(2. * largest_stroke * x_transfer * slope);
   spreader_height = p.spreader_height > 0. ? p.spreader_height
                                            : std::max(1.2 * front, largest_stroke + pile_height);
-  y_bottom = -std::max(first_bed_depth, -p.plate_level(p.n_layers) + p.plate_recoil + p.lip) -
+  // A later series has a bed of its own, for strokes that may be larger than the first.
+  y_bottom = -std::max({first_bed_depth, depth_for(p.stroke),
+                        -p.plate_level(p.n_layers) + p.plate_recoil + p.lip}) -
              4. * largest_diameter;
   // Loose particles for the bed need five times its height.
   y_top = std::max(p.mean_clearance() + spreader_height + p.spreader_tilt + p.vibration_amplitude,
