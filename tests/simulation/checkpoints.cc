@@ -112,9 +112,9 @@ EUNOE_MPI_TEST()
   const std::string newer = input + "set b = 3\n";
   Checkpoints standard(may, folder, MPI_COMM_WORLD), set(may, folder, MPI_COMM_WORLD),
       still_own(need, folder, MPI_COMM_WORLD);
-  check("a new entry at its default is no difference",
-        n_problems(standard, 100, newer) == 0 && n_problems(still_own, 100, newer) == 0 &&
-            !still_own.begins_phase());
+  check("a new entry at its default is no difference", n_problems(standard, 100, newer) == 0 &&
+                                                           n_problems(still_own, 100, newer) == 0 &&
+                                                           !still_own.begins_phase());
   check("one that is set is", n_problems(set, 100, newer, {}, {{{{}, "b"}, "3"}}) == 1);
 
   const std::string elsewhere = "checkpoints_of_other_run";

@@ -34,9 +34,8 @@ public:
   /// @param input complete text of the present input
   /// @param changed its entries that do not have their defaults
   /// @param control says when the run ends
-  void find(const std::string &input, const EntryValues &changed,
-            const ControlParameters &control, const PhaseJudge &judge, Log &log,
-            Problems &problems);
+  void find(const std::string &input, const EntryValues &changed, const ControlParameters &control,
+            const PhaseJudge &judge, Log &log, Problems &problems);
   /// The one that was opened, null if the run begins anew.
   const Checkpoint *opened() const { return checkpoint.get(); }
   /// Whether it is of a run with another input.
