@@ -263,6 +263,12 @@ def other_insertion(program: Program) -> None:
         program.run("leaving.prm", *begin, often, *part)
         if program.summary("intruder")["particles"] != 5:
             raise Failure(f"{program.summary('intruder')['particles']} grains instead of five")
+    # A packing does not know of grains that are there.
+    packed = (*begin[:2], OUTPUT + "packed", CONTINUE, END + "60", often, insertion + "insertion method = packed", *begin[-3:])
+    box = insertion + "insertion box points coordinates = 1e-3, 1e-3, "
+    expect(program.run("leaving.prm", *packed, box + "1e-3 : 9e-3, 9e-3, 3e-3", code=1),
+           "4 particles are where others are to be packed")
+    program.run("leaving.prm", *packed, box + "6e-3 : 9e-3, 9e-3, 9e-3")
     # Places outside the mesh are refused as long as anything is to come to them.
     outside = (often, insertion + "list z = 5", OUTPUT + "outside", CONTINUE)
     expect(program.run("leaving.prm", *begin, *outside, END + "60", code=2), "are to be inserted outside the mesh")
