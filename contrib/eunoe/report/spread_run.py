@@ -18,6 +18,7 @@ from .static_zones import Zones, zones_of
 
 # Layers of the measured plateau, of its rise and fall, and those by which settings are compared.
 PLATEAU, LATER, COMPARED = (2, 10), (11, 20), (5, 20)
+YOUNG = (2, 4)  # layers of a bed that passes drag as a whole
 SMOOTHED = 3  # layers in the running mean whose largest value is the peak
 
 

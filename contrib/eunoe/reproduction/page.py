@@ -16,7 +16,7 @@ from eunoe.report.common_scatter import CommonScatter, Number
 from eunoe.report.comparison_text import (ALONE, DENSITIES, change_sentence, densities_table, differences_table, measured_group, rest_table,
                                           rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
+from eunoe.report.spread_run import LATER, PLATEAU, YOUNG, Group, SpreadRun
 from eunoe.tables import Table, as_markdown
 
 from .cases import N_LAYERS, SETS
@@ -139,8 +139,8 @@ def levels_block(findings: Findings) -> str:
         **{f"above the level after layer {layer} (% of a layer)": partial(SpreadRun.above_level, layer=layer)
            for layer in (first, PLATEAU[1], last)},
         **{f"bed below, layers {layers[0]} to {layers[1]} (%)": partial(SpreadRun.lrd_below, span=layers)
-           for layers in (PLATEAU, LATER)},
-        "rise of the bed (%)": lambda run: run.lrd_below(LATER) - run.lrd_below(PLATEAU),
+           for layers in (YOUNG, (5, 7), (8, 10), LATER)},
+        "rise of the bed, first to last (%)": lambda run: run.lrd_below(LATER) - run.lrd_below(YOUNG),
         **{f"CRD after layer {layer} (%)": partial(SpreadRun.crd, layer=layer) for layer in (PLATEAU[1], last)}}
     table: Table = [["", *numbers]]
     for group in [*groups, measured_group(read_measured())] if groups else []:

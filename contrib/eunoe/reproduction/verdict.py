@@ -8,7 +8,7 @@ from eunoe.intervals import Interval
 from eunoe.report.common_scatter import CommonScatter
 from eunoe.report.comparison_text import layers_of, measured_group, text_of
 from eunoe.report.measured import read_measured
-from eunoe.report.spread_run import LATER, PLATEAU, Group, SpreadRun
+from eunoe.report.spread_run import LATER, PLATEAU, YOUNG, Group, SpreadRun
 from eunoe.tables import Table
 
 from .cases import SETS
@@ -64,7 +64,7 @@ def _rise(run: SpreadRun) -> float:
 
 
 def _rise_below(run: SpreadRun) -> float:
-    return run.lrd_below(LATER) - run.lrd_below(PLATEAU)
+    return run.lrd_below(LATER) - run.lrd_below(YOUNG)
 
 
 def _peak(run: SpreadRun) -> float:
@@ -109,7 +109,7 @@ def _differences(findings: Findings, scatter: CommonScatter) -> Table:
         groups = findings.lengths(properties)
         for shorter, longer in zip(groups, groups[1:]):
             for title, number, size, unit in (("the rise grows with the length", _rise, 100., " %"),
-                                              ("the rise of the bed below the level of the plates grows with the length",
+                                              ("the rise of the bed, from layers 2 to 4 to 11 to 20, grows with the length",
                                                _rise_below, 100., " %"),
                                               ("the peak grows with the length", _peak, 100., " %"),
                                               ("its layer grows with the length", _layer_of_peak, 1., "")):
