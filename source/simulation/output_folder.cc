@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
+
 namespace eunoe {
 
 std::string OutputFolder::open()
@@ -31,8 +33,11 @@ void OutputFolder::remove_old(const std::vector<std::string> &names) const
 {
   if (opened)
     on_first_rank(comm, [&] {
+      std::error_code failure;
       for (const std::string &name : names)
-        if (written.count(name) == 0 && tables.count(name) == 0 && sizes_before.count(name) == 0)
+        if (written.count(name) == 0 && tables.count(name) == 0 && sizes_before.count(name) == 0 &&
+            std::filesystem::is_regular_file(
+                std::filesystem::symlink_status(file(name), failure))) // no link of the user's
           remove_file(file(name));
     });
 }

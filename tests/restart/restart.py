@@ -100,7 +100,7 @@ def write_failure(reference: Case, folder: Path) -> None:
 
 def sleeping(program: str, folder: Path) -> None:
     """The same bits with particles that sleep and wake."""
-    settings = [*SLEEPY, BRIEF]
+    settings = list(SLEEPY)  # at full length, as few sleep before
     reference = Case(program, CASE, folder / "reference", settings)
     reference.run(1)
     share = json.loads((reference.results / "summary.json").read_text())["share_asleep"]
@@ -116,7 +116,7 @@ def sleeping(program: str, folder: Path) -> None:
     if quiet.dump.read_bytes() != reference.dump.read_bytes():
         raise Failure("With sleep, the state depends on whether forces on solids are written.")
     other = Case(program, CASE, folder / "restarted", settings)
-    other.run(2, *EVERY, "simulation control/iteration end = 5555")
+    other.run(2, *EVERY, "simulation control/iteration end = 11111")
     other.run(4, *EVERY, "restart/restart = true")
     compare(reference, other, "With sleep, restarted")
 
