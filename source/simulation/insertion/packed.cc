@@ -21,7 +21,7 @@ public:
   }
 
   double largest_diameter() const override { return particles.largest_diameter(); }
-  std::size_t supply(std::size_t) const override { return particles.n_remaining(); }
+  std::size_t supply(std::size_t) const override { return n_all; }
   void skip(std::size_t, std::size_t n_particles) override { particles.take(n_particles); }
   bool finished() const override { return particles.n_remaining() == 0; }
 
@@ -132,6 +132,7 @@ private:
 
   const InsertionSettings settings;
   ParticleSupply particles;
+  const std::size_t n_all = particles.n_remaining(); ///< before the first event
   MPI_Comm comm;
   PeriodicBox periods;
   std::vector<Solid> solids; ///< those that act

@@ -30,7 +30,7 @@ public:
   double largest_diameter() const override { return particles.largest_diameter(); }
 
   /// At most; how many cells will be empty cannot be known.
-  std::size_t supply(std::size_t) const override { return particles.n_remaining(); }
+  std::size_t supply(std::size_t) const override { return n_all; }
 
   void skip(std::size_t n, std::size_t n_particles) override
   {
@@ -229,6 +229,7 @@ private:
   const InsertionSettings settings;
   const CuttingPlane plane;
   ParticleSupply particles;
+  const std::size_t n_all = particles.n_remaining(); ///< before the first event
   MPI_Comm comm;
   std::uint64_t n_events = 0;
   std::vector<Cell> cells;

@@ -120,10 +120,10 @@ public:
 
   std::size_t supply(const std::size_t n_events) const override
   {
-    const std::size_t of_event = std::min(of_next_event(), grid.capacity());
-    const std::size_t left = particles.n_remaining();
-    const bool all = of_event > 0 && n_events >= left / of_event + 1;
-    return all ? left : std::min(left, n_events * of_event);
+    // Also of those that came before a restart.
+    const std::size_t of_event = std::min(of_one_event(n_all), grid.capacity());
+    const bool all = of_event > 0 && n_events >= n_all / of_event + 1;
+    return all ? n_all : std::min(n_all, n_events * of_event);
   }
 
   void skip(std::size_t, std::size_t n_particles) override { particles.take(n_particles); }
@@ -187,15 +187,16 @@ private:
                       " points. Make the insertion box smaller, or the distance threshold larger.");
     grid.restrict_to([&](const Vec3 &x) { return acceptance.value(0, x, 0.) > 0.; });
   }
-  std::size_t of_next_event() const
+  std::size_t of_one_event(const std::size_t left) const
   {
-    const std::size_t left = particles.n_remaining();
     return per_event > 0 ? std::min<std::size_t>(per_event, left) : left;
   }
+  std::size_t of_next_event() const { return of_one_event(particles.n_remaining()); }
 
   const InsertionSettings settings;
   const unsigned int per_event;
   ParticleSupply particles;
+  const std::size_t n_all = particles.n_remaining(); ///< before the first event
   MPI_Comm comm;
   VolumeGrid grid;
 };
