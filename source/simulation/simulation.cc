@@ -1,13 +1,12 @@
 // What a simulation is made of, and how it goes through time.
 
-#include <eunoe/core/files.h>
-#include <eunoe/core/first_rank.h>
 #include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
 
 #include "announcements.h"
 #include "judgements.h"
 #include "parts.h"
+#include <nlohmann/json.hpp>
 
 namespace eunoe {
 
