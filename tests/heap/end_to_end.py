@@ -147,6 +147,18 @@ def check_comparison(program: str, folder: Path, reference: Path) -> None:
                         math.degrees(math.atan(4. * area / DISC**2)), rel_tol=1e-9)
 
 
+def check_clock(program: str, folder: Path) -> None:
+    """With a delay the heap is measured so long after the tube has come to a stop, interrupted or not, although it moves."""
+    delay, step = 1e-3, 4.4e-7
+    settings = (f"heap/measurement delay = {delay}", "restart/restart = true")
+    run_until(program, folder, "the heap comes to rest", settings[0])
+    run(program, folder, 2, *settings)
+    results = summary(folder)
+    assert results["first_step"] * step > results["heap_lifted_time"], "interrupted too early to tell"
+    late = results["heap_rest_time"] - results["heap_lifted_time"] - delay
+    assert -1e-12 < late < 2. * step, f"measured {late} s too late"
+
+
 def check_other_runs(program: str, phase: Path, finished: Path) -> None:
     """A run that begins where another one has finished leaves nothing by which it would be taken for that one, and a
     phase in a folder of its own says what its apparatus is."""
@@ -170,6 +182,7 @@ def main() -> int:
     check_results(folder / "one")
     check_comparison(program, folder / "two", folder / "one")
     check_interrupted(program, folder / "one", folder / "interrupted")
+    check_clock(program, folder / "clock")
     check_other_runs(program, folder / "phase", folder / "interrupted")
     print("ok")
     return 0

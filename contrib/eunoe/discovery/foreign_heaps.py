@@ -242,7 +242,8 @@ def parse(words: list[str]) -> argparse.Namespace:
     arguments.add_argument("--rolling", type=float, help="true coefficient; else the case's")
     arguments.add_argument("--cohesion", type=float, default=0.)
     arguments.add_argument("--filling", type=float, default=0.02, help="time for the fall into the tube (s)")
-    arguments.add_argument("--rest", type=float, default=0.05, help="time for coming to rest (s)")
+    arguments.add_argument("--rest", type=float, help="time from the lifting's end to the measurement (s); "
+                           "else the case's measurement delay, or 0.05 if it has none")
     options = arguments.parse_args(words)
     options.folder = options.folder.resolve()
     return options
@@ -251,6 +252,8 @@ def parse(words: list[str]) -> argparse.Namespace:
 def main(words: list[str]) -> int:
     options = parse(words)
     model = model_of(options.case, options.program, options.set)
+    if options.rest is None:
+        options.rest = model.number("heap/measurement delay") or 0.05
     apparatus = Apparatus.of(model)
     occupy(options.folder,
            {"engine": options.engine, "case": str(options.case.resolve()), "set": options.set,

@@ -92,7 +92,8 @@ std::array<double, 3> Apparatus::expected_durations() const
   const double fall = (std::sqrt(v * v + 2. * gravity * loose_height()) - v) / gravity;
   const double lift = (settled_height + clearance()) / p.lifting_velocity;
   // Times in which waves of a collapse die out, from runs.
-  return {fall + 0.02 + p.rest_duration, lift, 0.05 + p.rest_duration};
+  const double rest = p.measurement_delay > 0. ? p.measurement_delay : 0.05 + p.rest_duration;
+  return {fall + 0.02 + p.rest_duration, lift, rest};
 }
 
 void Apparatus::add_solids(std::vector<Solid> &solids, const int material) const

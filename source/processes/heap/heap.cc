@@ -25,7 +25,7 @@ void Heap::step(Simulation &simulation)
     phase = Phase::resting;
     phase_start = simulation.time();
     calm_since = -1.;
-  } else if (phase == Phase::resting && is_at_rest(simulation))
+  } else if (phase == Phase::resting && is_to_be_measured(simulation))
     finish(simulation);
 }
 

@@ -40,6 +40,10 @@ void declare_rest(dealii::ParameterHandler &prm, HeapParameters &p)
       prm, "longest wait", p.longest_wait,
       "Longest wait for rest, after the filling and after the lifting (s); the run then goes "
       "on with a warning.");
+  not_negative(
+      prm, "measurement delay", p.measurement_delay,
+      "Time from the end of the lifting to the measurement (s), whatever still moves then, to "
+      "compare with heaps that were measured by the clock; 0: the heap is measured at rest.");
 }
 
 } // namespace

@@ -52,6 +52,13 @@ bool Heap::is_at_rest(Simulation &simulation)
   return true;
 }
 
+bool Heap::is_to_be_measured(Simulation &simulation)
+{
+  if (p.measurement_delay > 0.)
+    return simulation.time() - phase_start >= p.measurement_delay;
+  return is_at_rest(simulation);
+}
+
 void Heap::begin_lifting(Simulation &simulation)
 {
   const ParticleArrays &particles = simulation.complete_step();
@@ -72,11 +79,13 @@ void Heap::begin_lifting(Simulation &simulation)
 void Heap::finish(Simulation &simulation)
 {
   results = measure(simulation, p, apparatus, height_of_tube(simulation));
+  results.keys["heap_lifted_time"] = phase_start;
   results.keys["heap_rest_time"] = simulation.time();
   phase = Phase::done;
   simulation.get_log().line(
-      "The heap is at rest after " + format(simulation.time()) + " s: base angle " +
-      format(results.keys["heap_base_angle"]) + " degrees (standard deviation over the views " +
+      (p.measurement_delay > 0. ? "The heap is measured after " : "The heap is at rest after ") +
+      format(simulation.time()) + " s: base angle " + format(results.keys["heap_base_angle"]) +
+      " degrees (standard deviation over the views " +
       format(results.keys["heap_base_angle_spread"]) + "), " +
       std::to_string(results.keys["heap_particles_on_disc"].get<std::uint64_t>()) +
       " particles on the disc");

@@ -63,7 +63,8 @@ void HeapParameters::decide(Parameters &parameters) const
   }
   // The process decides when all is done; this is no more than an upper bound.
   parameters.control.end_control = "time";
-  parameters.control.time_end = 2.1 * longest_wait + (a.y_top - a.y_bottom) / lifting_velocity;
+  parameters.control.time_end =
+      2.1 * longest_wait + measurement_delay + (a.y_top - a.y_bottom) / lifting_velocity;
 }
 
 double HeapParameters::fastest_solid() const

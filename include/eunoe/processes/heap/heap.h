@@ -6,7 +6,7 @@
 namespace eunoe::heap {
 
 /// The heap instrument: powder settles in a tube that stands on a disc, the tube is lifted, and
-/// when all is at rest the heap on the disc is measured.
+/// when all is at rest, or at a set time, the heap on the disc is measured.
 class Heap : public Process
 {
 public:
@@ -55,6 +55,8 @@ private:
   void describe(Simulation &simulation) const;
   void fill(Simulation &simulation);
   bool is_at_rest(Simulation &simulation);
+  /// After the lifting: at rest, or by the clock.
+  bool is_to_be_measured(Simulation &simulation);
   void begin_lifting(Simulation &simulation);
   void finish(Simulation &simulation);
 

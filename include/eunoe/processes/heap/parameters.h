@@ -26,6 +26,7 @@ struct HeapParameters : public ProcessSection
   unsigned long long rest_check_frequency = 200;
   double rest_duration = 5e-3;
   double longest_wait = 0.5;
+  double measurement_delay = 0.;
 
   unsigned int n_views = 16, n_bins = 100, n_rings = 5, n_density_layers = 2;
   std::string measured_profile;
