@@ -17,6 +17,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
     print("skipped: numpy, matplotlib or VTK is missing")
@@ -100,6 +101,10 @@ class Campaign(unittest.TestCase):
     def setUp(self) -> None:
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
+        # Most of the time would go into pixels.
+        coarse = mock.patch("eunoe.reproduction.pictures.RESOLUTION", 10.)
+        coarse.start()
+        self.addCleanup(coarse.stop)
         self.folder = Path(temporary.name)
         self.states = self.folder / "states"
         self.states.mkdir()
