@@ -1,6 +1,6 @@
 """Makes a blind suite: hidden truths, their data, and a study of each.
 
-Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full]
+Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|small|full|range]
        [--seeds ci|development|reported|again|third|fourth|fifth|sixth] [--study-seeds N] [--ranks N] [--label NAME]
        [--set "discovery/entry = value" ...] [--part I/N]
 
