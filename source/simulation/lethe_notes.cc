@@ -21,8 +21,10 @@ const std::vector<Default> &defaults()
   static const std::vector<Default> list = {
       {control, "output frequency", "1, a picture every step", "0, none"},
       {insertion, "insertion maximum offset", "1, by which neighbours can overlap", "0"},
-      {insertion, "insertion frequency", "1, an event every step", "0, a single event"},
-      {insertion, "inserted number of particles at each time step", "1", "0, all at once"}};
+      {insertion, "insertion frequency", "0, in older versions 1, an event every step",
+       "0, a single event"},
+      {insertion, "inserted number of particles at each time step", "0, in older versions 1",
+       "0, all at once"}};
   return list;
 }
 

@@ -7,7 +7,8 @@ namespace {
 const EntryPath properties = {"lagrangian physical properties"},
                 type = {"lagrangian physical properties", "particle type *"},
                 insertion = {"insertion info"}, model = {"model parameters"},
-                control = {"simulation control"},
+                control = {"simulation control"}, box = {"box refinement", "box *"},
+                balancing = {"model parameters", "load balancing"},
                 boundary = {"DEM boundary conditions", "boundary condition *"}, mesh = {"mesh"},
                 no_section = {};
 
@@ -21,8 +22,11 @@ const std::vector<Renamed> &renamed()
       {insertion, "insertion file name", "list of input files"},
       {insertion, "clearing particles", "remove particles"},
       {insertion, "clearing box points coordinates", "removal box points coordinates"},
+      {insertion, "insertion order of direction", "insertion direction sequence"},
       {insertion, "insertion random number range", "insertion maximum offset"},
       {insertion, "insertion random number seed", "insertion prn seed"},
+      {control, "output time frequency", "output time"},
+      {box, "initial refinement", "additional refinement"},
       {{"post-processing"}, "Lagrangian post-processing", "lagrangian post-processing"},
       {{"model parameters", "adaptive sparse contacts"},
        "enable dynamic disabling contacts",
@@ -38,6 +42,7 @@ const std::vector<Word> &words()
       {model, "rolling resistance torque method", "viscous_resistance", "viscous"},
       {model, "rolling resistance torque method", "epsd_resistance", "epsd"},
       {control, "output frequency", "-1", "0"},
+      {control, "output time", "-1", "0"},
       {control, "log frequency", "-1", "0"},
       {insertion, "insertion method", "uniform", "volume"},
       {insertion, "insertion method", "non_uniform", "volume"},
@@ -46,10 +51,8 @@ const std::vector<Word> &words()
       {mesh, "grid type", "balanced", "cylinder_balanced"},
       {mesh, "grid type", "squared", "cylinder_squared"},
       {mesh, "grid type", "regularized", "cylinder_regularized"},
-      {{"model parameters", "load balancing"},
-       "load balance method",
-       "dynamic_with_sparse_contacts",
-       "dynamic"}};
+      {balancing, "load balance method", "dynamic_with_sparse_contacts", "dynamic"},
+      {balancing, "load balance method", "dynamic_with_disabling_contacts", "dynamic"}};
   return list;
 }
 
@@ -64,6 +67,10 @@ const std::vector<Components> &components()
         "insertion box maximum x", "insertion box maximum y", "insertion box maximum z"},
        insertion,
        "insertion box points coordinates"},
+      {insertion,
+       {"insertion first direction", "insertion second direction", "insertion third direction"},
+       insertion,
+       "insertion direction sequence"},
       {boundary,
        {"rotational vector x", "rotational vector y", "rotational vector z"},
        boundary,
@@ -112,8 +119,13 @@ const std::vector<Ignored> &ignored()
        {"method", "bdf startup method", "startup time scaling", "adapt", "number mesh adapt",
         "max cfl", "max time step", "stop tolerance", "adaptative time step scaling",
         "respect capillary time-step constraint", "capillary time-step ratio", "subdivision",
-        "output qcriterion", "output vorticity", "output velocity gradient"},
+        "adapt time step to respect CFL", "adapt time step to respect CTR",
+        "max capillary time-step ratio", "time step independent of end time", "output qcriterion",
+        "output vorticity", "output velocity gradient"},
        of_fluids},
+      {control,
+       {"override time step on restart"},
+       "is not needed: the time step is always that of the input."},
       {control, {"output boundaries"}, "is not needed: cell averages draw the mesh."},
       {control, {"log precision"}, "is not needed."},
       {control, {"group files"}, "is not needed: every picture is one file of all ranks."},
@@ -158,6 +170,9 @@ const std::vector<Refused> &refused()
   static const std::string heat = "Heat between particles is out of scope.";
   static const std::vector<Refused> list = {
       {no_section, "dimension", "3", "Simulations are in three dimensions: give 3."},
+      {control, "output times", "-1",
+       "Single moments cannot be chosen: give 'output time', or an 'output time interval' around "
+       "them."},
       {properties, "density gas", "0", "It is 'density' in 'model parameters / drag' now."},
       {model, "solver type", "dem", heat + " Give dem."},
       {model, "disable position integration", "false", heat + " Give false."},

@@ -188,7 +188,23 @@ private:
           problems.add(place(entry), "is '" + shortened(entry.value) + "'.", rule.why);
         return true;
       }
-    return ignores(entry, ignored()) || ignores(entry, ignored_for_heat());
+    return names_variables(entry) || ignores(entry, ignored()) ||
+           ignores(entry, ignored_for_heat());
+  }
+
+  /// deal.II's functions let variables have other names.
+  bool names_variables(const InputEntry &entry)
+  {
+    if (entry.name != "Variable names")
+      return false;
+    std::string names = entry.value;
+    names.erase(std::remove(names.begin(), names.end(), ' '), names.end());
+    if (names == "x,y,z,t")
+      problems.warn(place(entry), "is as always.", "It is ignored.");
+    else
+      problems.add(place(entry), "is '" + shortened(entry.value) + "'.",
+                   "Expressions are in x, y, z and t: give these names there, and leave this out.");
+    return true;
   }
 
   bool ignores(const InputEntry &entry, const std::vector<Ignored> &rules)

@@ -50,6 +50,7 @@ set print parameters = none
 subsection simulation control
   set method           = bdf1
   set group files      = 1
+  set output time frequency = 1e-4
 end
 
 subsection timer
@@ -104,6 +105,9 @@ subsection insertion info
   set insertion random number range                  = 0.2
   set insertion random number seed                   = 7
   set velocity y                                     = 0.5
+  set insertion first direction                      = 1
+  set insertion second direction                     = 0
+  set insertion third direction                      = 2
 end
 
 subsection model parameters
@@ -148,6 +152,10 @@ end
 )";
 
 const std::string present_words = R"(
+subsection simulation control
+  set output time = 1e-4
+end
+
 subsection mesh
   set type               = dealii
   set grid type          = hyper_rectangle
@@ -187,6 +195,7 @@ subsection insertion info
   set insertion maximum offset                       = 0.2
   set insertion prn seed                             = 7
   set initial velocity                               = 0, 0.5, 0
+  set insertion direction sequence                   = 1, 0, 2
 end
 
 subsection model parameters
@@ -247,6 +256,19 @@ EUNOE_MPI_TEST()
       "  set specific heat particles = 1000\n end\n set thermal conductivity gas = 0.01\n"
       "end\nsubsection solid objects\n subsection solid volumes\n"
       "  set number of solids = 0\n end\nend\n");
+  print_problems("subsection simulation control\n set output times = 0.1, 0.3\n end\n"
+                 "subsection insertion info\n set insertion order of direction = 2, 1, 0\n"
+                 " subsection insertion acceptance function\n  set Variable names = x, y, z, t\n"
+                 " end\nend\nsubsection box refinement\n set number of refinement boxes = 1\n"
+                 " subsection box 0\n  set initial refinement = 1\n  subsection mesh\n"
+                 "   set grid type = hyper_rectangle\n"
+                 "   set grid arguments = 0, 0, 0 : 0.1, 0.1, 0.1 : false\n  end\n end\nend\n"
+                 "subsection model parameters\n subsection load balancing\n"
+                 "  set load balance method = dynamic_with_disabling_contacts\n"
+                 "  subsection cell weight function\n   set Variable names = a, b, c, t\n"
+                 "  end\n end\nend\n");
+  print_problems("subsection simulation control\n set output time frequency = -1\n"
+                 " set output times = -1\nend\n");
   print_problems("subsection mesh\n set type = cylinder\n set grid type = balanced\n"
                  " set grid arguments = 4 : 0.01 : 0.02\nend\n");
   print_problems(
