@@ -33,6 +33,7 @@ void SpreadingParameters::check_with(const Parameters &parameters,
           " m/s when it is looked at first, so that it would count as settled in the air.",
       "Give less, or a larger 'feedstock insertion speed'.");
   check_lengths(parameters, check);
+  check_dosing(check);
   // Errors of the stroke do not change the powder.
   const double bed = bed_depth > 0. ? bed_depth : stroke + bed_margin;
   const double first_bed = std::max(bed, first_stroke + bed_margin);
@@ -91,6 +92,32 @@ void SpreadingParameters::check_lengths(const Parameters &parameters,
       "leaves " + format(lowest) + " m below the spreader, less than the largest grain of " +
           format(largest) + " m, which cannot pass below it and is pushed along or jams.",
       "Give a larger clearance, or sieve out the grains with 'maximum diameter cutoff'.");
+  constexpr double packing = 0.6;
+  check.advise(
+      layer_thickness >= packing * squeezed * largest, {section}, "layer thickness delta_l",
+      "is " + format(layer_thickness) +
+          " m: a layer of this solid, packed to 60 %, stands lower than the largest grain of " +
+          format(largest) + " m, which finds no room.",
+      "Give a thicker layer, or sieve out the grains with 'maximum diameter cutoff'.");
+}
+
+void SpreadingParameters::check_dosing(const ParameterCheck &check) const
+{
+  // Areas in x and y, of powder that packs alike on the platform and in the layer. A fresh bed
+  // loses the part of its stroke that passes below the spreader.
+  const double passes_below = std::max(clearance - bed_level, 0.);
+  const double lost = feedstock == "full" ? 0. : passes_below;
+  const auto advise = [&](double fed, double taken, const std::string &entry,
+                          const std::string &what) {
+    check.advise(fed >= taken, {section}, entry,
+                 "feeds " + format(std::max(100. * fed / taken, 0.)) + " % of what " + what +
+                     " takes, so that the end of the plate stays bare.",
+                 "Give more: the paper's strokes feed five times a layer.");
+  };
+  advise((first_stroke - passes_below) * w1, first_thickness * w3 + clearance * (w2 + w3),
+         "first feedstock stroke", "the first layer and the clearance over the plates");
+  if (n_layers > 1)
+    advise((stroke - lost) * w1, layer_thickness * w3, "feedstock stroke delta_f", "a layer");
 }
 
 void SpreadingParameters::decide(Parameters &parameters) const

@@ -100,6 +100,7 @@ struct SpreadingParameters : public ProcessSection
 private:
   /// Whether the powder and the lengths of the apparatus go together.
   void check_lengths(const Parameters &parameters, const ParameterCheck &check) const;
+  void check_dosing(const ParameterCheck &check) const;
   void check_imperfections(const ParameterCheck &check) const;
   /// What happens at the sides of the domain.
   void decide_boundaries(Parameters &parameters) const;
