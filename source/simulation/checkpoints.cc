@@ -160,8 +160,10 @@ void Checkpoints::find(const std::string &input, const EntryValues &changed,
                    "is " + parameters.restart + ", but " +
                        (parameters.folder.empty() ? folder : parameters.folder) +
                        " holds no checkpoint '" + parameters.name() + "'.",
-                   "Check 'output path', 'restart folder' and 'filename', or set restart = auto to "
-                   "start anew where there is none.");
+                   parameters.folder.empty()
+                       ? "Check 'output path' and 'filename', or set restart = auto to start anew "
+                         "where there is none."
+                       : "Check 'restart folder' and 'filename', or leave 'restart folder' out.");
     return;
   }
   const nlohmann::ordered_json &head = checkpoint->head;
