@@ -2,7 +2,7 @@
 of several sizes and several seeds, which draw sizes and places anew, and makes a table of what has finished.
 
 Usage: contrib/tools heap-size path/to/eunoe-particles folder [--discs 2 3] [--fill-ratios 12]
-       [--sets PS1 PS2 PS3] [--seeds 1 2 3] [--ranks 1] [--table-only]
+       [--sets PS1 PS2 PS3] [--seeds 1 2 3] [--ranks 1] [--set ENTRY=VALUE ...] [--table-only]
 
 The disc and the tube have the same diameter (mm); the fill ratio is the mass of the powder over
 that of a heap of 37.5 degrees. A run that has finished is not run again; one that was interrupted
@@ -55,7 +55,7 @@ class Run:
                     "simulation control/output path": options.folder / self.name, **CONTINUED}
         return [*mpirun(options.ranks, *beside(options.jobs)), options.program,
                 str(CASES / "heap" / f"{self.properties}_small.prm"),
-                "--seed", str(self.seed), *overrides(settings)]
+                "--seed", str(self.seed), *overrides(settings), *overrides(options.set)]
 
     def result(self, folder: Path) -> dict | None:
         """The summary of a finished run."""
@@ -111,6 +111,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--fill-ratios", type=float, nargs="+", default=[12.])
     parser.add_argument("--sets", nargs="+", default=list(PAPER))
     parser.add_argument("--ranks", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[], metavar="ENTRY=VALUE", help="entry of all cases")
     options = parser.parse_args(words)
     wanted = [Run(properties, disc, fill_ratio, seed) for disc in sorted(options.discs)
               for fill_ratio in options.fill_ratios for seed in options.seeds
