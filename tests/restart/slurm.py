@@ -1,5 +1,6 @@
 """The job script for SLURM, with a launcher and a queue that stand in for the cluster's: a job that was stopped goes
-back into the queue, the one that comes back continues it, and so does another job that names its folder.
+back into the queue, the one that comes back continues it, so does another job that names its folder, and a job with
+another input goes on from where one has finished.
 
 Usage: slurm.py path/to/eunoe-particles folder
 """
@@ -34,7 +35,7 @@ echo "$@" >> requeued
 """
 
 
-def job(program: str, folder: Path, number: int, **variables: str) -> str:
+def job(program: str, folder: Path, number: int, *options: str, **variables: str) -> str:
     """What a job of this number says; its exit code is to be 0."""
     for name, text in (("srun", SRUN), ("scontrol", SCONTROL)):
         file = folder / "bin" / name
@@ -43,8 +44,8 @@ def job(program: str, folder: Path, number: int, **variables: str) -> str:
         file.chmod(0o755)
     environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "EUNOE_PROGRAM": program,
                    "SLURM_JOB_ID": str(number), **variables}
-    done = subprocess.run(["bash", str(ROOT / "contrib" / "slurm" / "spreading.sbatch"), str(CASE), *SHORT], cwd=folder,
-                          env=environment, text=True, capture_output=True, check=False)
+    done = subprocess.run(["bash", str(ROOT / "contrib" / "slurm" / "spreading.sbatch"), str(CASE), *SHORT, *options],
+                          cwd=folder, env=environment, text=True, capture_output=True, check=False)
     if done.returncode != 0:
         raise Failure(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
     return done.stdout + done.stderr
@@ -69,6 +70,12 @@ def main() -> int:
             raise Failure(f"the results of job {number} are not in {place}")
     if sorted(path.name for path in (folder / "output").iterdir()) != ["falling_particles-7"]:
         raise Failure("a job that goes on with another one's folder has made one of its own")
+    end = json.loads((results / "summary.json").read_text(encoding="utf-8"))["steps"]
+    job(program, folder, 9, "--set", f"restart/restart folder = {results}", "--set", "simulation control/time end = 0.065",
+        "--set", "lagrangian physical properties/friction coefficient wall = 0.4")
+    longer = json.loads((folder / "output" / "falling_particles-9" / "summary.json").read_text(encoding="utf-8"))
+    if longer["first_step"] < end or not (results / "summary.json").exists():
+        raise Failure(f"a job with another input goes on from step {longer['first_step']}, not from {end} of the one before")
     return 0
 
 
