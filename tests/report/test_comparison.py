@@ -8,7 +8,7 @@ import io
 import sys
 import tempfile
 import unittest
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -29,7 +29,7 @@ from eunoe.report.common_scatter import CommonScatter
 from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
                                           supply_table)
 from eunoe.report.layer_results import moved_over_plate
-from eunoe.report.measured import read_measured
+from eunoe.report.measured import Measured, read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
 from eunoe.report.run_folder import Layers, read_run
 from eunoe.report.spread_run import Group, SpreadRun, difference, peak_of
@@ -226,6 +226,9 @@ class Numbers(unittest.TestCase):
         other = difference(group("c", 0.51, 0.611, 0.709, first=2), reference, of)
         self.assertFalse(other.is_significant)
         self.assertTrue(np.isnan(difference(group("d", 0.51), reference, of).half))
+        # Nor where a seed comes twice.
+        twice = Group("e", [*reference.runs, *group("f", 0.3).runs])
+        self.assertAlmostEqual(difference(softer, twice, of).value, 0.61 - 0.525)
 
     def test_a_single_run_has_the_scatter_of_other_groups(self) -> None:
         def rise(run: SpreadRun) -> float:
@@ -268,6 +271,15 @@ class Numbers(unittest.TestCase):
         group = measured_group(read_measured())
         np.testing.assert_allclose(np.mean(group.of_runs(lambda run: run.peak[1])), 17.33, atol=0.7)
         self.assertIn("rises by 5.5 ± 0.8 %.", rise_sentence(group))
+
+    def test_measured_tables_that_begin_elsewhere(self) -> None:
+        for first, begins in ((0, 2), (1, 2), (2, 2)):
+            measured = Measured(np.arange(first, 9.), np.full((9 - first, 2), 0.55))
+            crd = measured_group(measured).runs[0].layers.crd
+            np.testing.assert_allclose(crd, [0.55 if k >= begins else np.nan for k in range(first, 9)])
+        unknown = Measured(np.arange(5., 9.), np.full((4, 2), 0.55))  # the mean from layer 2 on is not known
+        self.assertEqual([len(array) for array in unknown.cumulative()], [0, 0])
+        self.assertTrue(np.isnan(measured_group(unknown).runs[0].layers.crd).all())
 
     def test_rise(self) -> None:
         flat, steps = [0.5] * 20, [0.5] * 10 + [0.6] * 10
@@ -342,6 +354,15 @@ class Page(unittest.TestCase):
         for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size"):
             self.assertIn(words, text)
 
+    def test_runs_that_go_on_with_the_layers_of_others_are_pooled_by_layer(self) -> None:
+        def run(first: int) -> SpreadRun:
+            whole = run_with([0.5 + 0.01 * k for k in range(9)])
+            return SpreadRun("", Layers(**{field.name: getattr(whole.layers, field.name)[first:] for field in fields(Layers)}),
+                             None, None)
+        group = Group("a", [run(0), run(3), run(1)])
+        np.testing.assert_array_equal(group.layer, run(3).layers.layer)
+        np.testing.assert_allclose(group.stacked("lrd"), 3 * [run(0).layers.lrd[3:]])
+
     def test_labels(self) -> None:
         out = self.folder / "page.html"
         self.assertEqual(self.make("--label", "a", "--label", "b", "--label", "a", "--out", str(out))[0], 0)
@@ -354,7 +375,8 @@ class Page(unittest.TestCase):
         for names, labels in (
                 (("A_seed1/run", "A_seed2/run", "B/run", "C_seed3"), ["A/run", "A/run", "B/run", "C"]),
                 (("A/PS1_seed1", "A/PS1_seed2", "B/PS1_seed1"), ["A/PS1", "A/PS1", "B/PS1"]),
-                (("L1/run_seed1", "L2/run_seed2"), ["L1/run", "L2/run"])):
+                (("L1/run_seed1", "L2/run_seed2"), ["L1/run", "L2/run"]),
+                (("x/A/run_seed1", "y/A/run_seed1", "y/B/run_seed1"), ["x/A/run", "y/A/run", "B/run"])):
             self.assertEqual(default_labels([Path(name) for name in names]), labels)
 
     def test_figures_go_to_a_folder(self) -> None:

@@ -167,13 +167,13 @@ class Geometry(unittest.TestCase):
 
     def test_next_spreader_is_under_way_where_passes_overlap(self) -> None:
         a = self.apparatus
-        np.testing.assert_allclose(a.spreader_tips(0, [0.1, 0.12]), [4.0e-3, 2.0e-3])
-        np.testing.assert_allclose(a.spreader_tips(0, [0.1, 0.2]), [4.0e-3])
-        np.testing.assert_allclose(a.spreader_tips(0, [0.1]), [4.0e-3])
+        np.testing.assert_allclose(a.spreader_tips(0, {0: 0.1, 1: 0.12}), [4.0e-3, 2.0e-3])
+        np.testing.assert_allclose(a.spreader_tips(0, {0: 0.1, 1: 0.2}), [4.0e-3])
+        np.testing.assert_allclose(a.spreader_tips(0, {0: 0.1}), [4.0e-3])
 
     def test_platform_has_made_its_stroke_at_the_weighing(self) -> None:
         for layer in range(3):
-            self.assertAlmostEqual(self.apparatus.platform_height(layer, [0.1, 0.2, 0.3]), -2e-4)
+            self.assertAlmostEqual(self.apparatus.platform_height(layer, {0: 0.1, 1: 0.2, 2: 0.3}), -2e-4)
 
     def test_displacement_counts_in_the_plane_of_the_passes(self) -> None:
         _, fields = sample_run.bed(1)
@@ -216,6 +216,38 @@ class Report(InFolder):
             self.assertTrue(text in page, f"The page lacks '{text}'.")
         self.assertFalse('class="notice"' in page)
 
+    def test_run_that_goes_on_with_the_layers_of_another_one(self) -> None:
+        sample_run.write_run(self.folder)
+        head, *rows = (self.folder / "layers.csv").read_text().splitlines()
+        mass = ("1.5e-06", "1.62e-06", "1.752e-06")
+        rows = [",".join([str(21 + k), *[time, mass[k]], *rest])
+                for k, (_, time, _, *rest) in enumerate(row.split(",") for row in rows)]
+        (self.folder / "layers.csv").write_text("\n".join([head, *rows]) + "\n")
+        (self.folder / "apparatus.json").write_text(json.dumps({**sample_run.APPARATUS, "n_layers": 24}))
+        page = self.page()
+        self.assertFalse('class="notice"' in page)
+        layers = read_layers(self.folder / "layers.csv")
+        self.assertTrue(np.isnan(layers.arrived[0]))  # the bed that was there is not new
+        np.testing.assert_allclose(layers.arrived[1:], [1.4e-7, 1.52e-7])
+        noise = counting_noise(layers, 2e-7, 1e-9)
+        self.assertTrue(np.isfinite(noise.mean_lrd) and np.isnan(noise.lrd[0]))
+
+    def test_what_is_left_of_an_earlier_run_is_not_shown(self) -> None:
+        sample_run.write_run(self.folder)
+        (self.folder / "bed.csv").write_text("of an earlier run")
+        (self.folder / "spreading_layers.pvd").unlink()
+        self.page()
+        self.assertFalse((self.folder / "bed.csv").exists())
+
+    def test_last_picture_of_a_longer_run(self) -> None:
+        self.file("used.prm", "set process = general\nsubsection simulation control\n  set output name = out\nend\n")
+        self.file("summary.json", json.dumps(sample_run.SUMMARY))
+        self.file("out_00000.vtu", sample_run.vtu(sample_run.piece(*sample_run.bed(0))))
+        self.file("out.pvd", sample_run.pvd([(0.3, "out_00000.vtu")]))
+        self.assert_says("The last picture")
+        self.file("out.pvd", sample_run.pvd([(0.5, "out_00000.vtu")]))
+        self.assert_says("is of an earlier run in this folder")
+
     def test_run_of_one_layer(self) -> None:
         sample_run.write_run(self.folder, layers=1)
         self.assert_says("takes two weighings")
@@ -252,7 +284,7 @@ class Report(InFolder):
     def test_run_that_was_no_spreading(self) -> None:
         self.file("summary.json", json.dumps(sample_run.SUMMARY))
         self.file("heap_00000.vtu", sample_run.vtu(sample_run.piece(*sample_run.bed(0))))
-        self.file("heap.pvd", sample_run.pvd([(0.5, "heap_00000.vtu")]))
+        self.file("heap.pvd", sample_run.pvd([(0.3, "heap_00000.vtu")]))
         self.assert_says("The last picture")
         self.assert_says("abc1234")
 

@@ -28,7 +28,7 @@ def main(words: list[str]) -> int:
         raise Failure(f"{options.folder} has no picture of layer {layer}; it has those of "
                       f"{', '.join(map(str, pictures)) or 'none'}.")
     figure, _ = overview_figure(read_vtu(pictures[layer], FIELDS),
-                                Apparatus.read(run.folder / "apparatus.json"), layer, list(run.layers.time))
+                                Apparatus.read(run.folder / "apparatus.json"), layer, run.layers.weighings)
     figure.savefig(options.picture, dpi=style.RESOLUTION)
     return 0
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from dataclasses import MISSING, dataclass, fields
 from pathlib import Path
-from typing import Sequence
+from typing import Mapping
 
 import numpy as np
 
@@ -103,13 +103,13 @@ class Apparatus:
         """x of a spreader's lowest line when the layer that it has made is weighed."""
         return self.x_plate_end + self.rear + self.velocity * self.rest_before_weighing
 
-    def spreader_tips(self, layer: int, weighings: Sequence[float]) -> list[float]:
+    def spreader_tips(self, layer: int, weighings: Mapping[int, float]) -> list[float]:
         """x of the lowest lines of all spreaders at work when a layer is weighed.
 
-        :param weighings: times (s) at which layers 0, 1, ... were weighed
+        :param weighings: times (s) at which layers were weighed, by their numbers
         """
         tips = [self.spreader_tip()]
-        if layer + 1 < len(weighings):
+        if layer + 1 in weighings:
             behind = self.velocity * (weighings[layer + 1] - weighings[layer])
             if self.spreader_tip() - behind > self.x_start:
                 tips.append(self.spreader_tip() - behind)
@@ -126,17 +126,18 @@ class Apparatus:
                                 [self.spreader_height]))
         return np.column_stack((x, self.clearance + y))
 
-    def platform_height(self, layer: int, weighings: Sequence[float]) -> float:
+    def platform_height(self, layer: int, weighings: Mapping[int, float]) -> float:
         """Height of the feedstock platform when a layer is weighed.
 
         A pass begins a fixed time before its weighing, and the platform's stroke ends when the
         pass begins; the next pass may have begun already.
 
-        :param weighings: times (s) at which layers 0, 1, ... were weighed
+        :param weighings: times (s) at which layers were weighed, by their numbers, in their order
         """
         path_to_weighing = self.spreader_tip() - self.x_start
-        height = -self.first_bed_depth
-        for k, weighing in enumerate(weighings):
+        first = min(weighings)  # not 0 in a run that goes on with the layers of another one
+        height = -self.first_bed_depth + (self.first_stroke + (first - 1) * self.stroke if first > 0 else 0.)
+        for k, weighing in weighings.items():
             stroke = self.first_stroke if k == 0 else self.stroke
             rise = stroke / self.platform_velocity
             feed = weighing - path_to_weighing / self.velocity - rise

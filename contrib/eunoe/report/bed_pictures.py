@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Mapping, Sequence
 
 import numpy as np
 from matplotlib import colormaps
@@ -109,7 +109,7 @@ def layers_figure(pictures: dict[int, Fields], apparatus: Apparatus,
 
 
 def overview_figure(particles: Fields, apparatus: Apparatus, layer: int,
-                    weighings: Sequence[float]) -> tuple[Figure, float]:
+                    weighings: Mapping[int, float]) -> tuple[Figure, float]:
     """The whole apparatus at a weighing; and the share of the powder that is drawn."""
     window = whole_window(apparatus)
     figure, panels = make_panels(window, 1)

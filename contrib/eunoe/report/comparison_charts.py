@@ -78,7 +78,7 @@ def mechanism_figure(groups: Sequence[Group]) -> Figure:
     figure = Figure(figsize=(style.WIDTH, 4.9), layout="constrained")
     panels = list(figure.subplots(2, 2).flat)
     for number, group in enumerate(groups):
-        scraped = np.array([run.scraped[:len(group.layer)] for run in group.runs])
+        scraped = group.over_layers(lambda run: run.scraped)
         draw_group(panels[2], number, group.layer, scraped, group.label, 100.)
         if not group.mapped:
             continue
@@ -125,12 +125,10 @@ def _draw_zones(axes: Axes, group: Group) -> None:
     for side in ("left", "right"):
         places = []
         for run in group.mapped:
-            filled = run.maps.tracked.sum(axis=2) > 0
-            ends = [run.maps.x[[row.argmax(), len(row) - row[::-1].argmax()]] for row in filled]
             # A bed that rests as a whole has no zones that end within it.
             length = np.where(run.zones.covered < 1. - 1e-9, getattr(run.zones, side), 0.)
             places.append([(end[0] + zone if side == "left" else end[1] - zone) if zone > 0. else np.nan
-                           for end, zone in zip(ends[:n], length[:n])])
+                           for end, zone in zip(run.zones.ends[:n], length[:n])])
         mean = np.array(places).mean(axis=0)
         axes.plot(MM * mean, group.mapped[0].maps.layers[:n], color=style.INK, linewidth=0.9)
 

@@ -48,16 +48,15 @@ def _without_seed(name: str) -> str:
 
 def default_labels(folders: Sequence[Path]) -> list[str]:
     """The folders' names; names that differ in the seed alone have one label. Where several folders have runs of one
-    such name, as A/run_seed1 and B/run_seed2, that of the folder around them comes before it."""
-    places = [folder.resolve() for folder in folders]
-    parents: dict[str, set[Path]] = {}
-    for place in places:
-        parents.setdefault(_without_seed(place.name), set()).add(place.parent)
-    labels = []
-    for place in places:
-        name = _without_seed(place.name)
-        labels.append(name if len(parents[name]) == 1 else f"{_without_seed(place.parent.name)}/{name}")
-    return labels
+    such name, as A/run_seed1 and B/run_seed2, those of the folders around them come before it, as many as tell them
+    apart."""
+    names = [tuple(map(_without_seed, folder.resolve().parts)) for folder in folders]
+
+    def label(name: tuple[str, ...], length: int = 1) -> str:
+        alike = {other for other in names if other[-length:] == name[-length:]}
+        return "/".join(name[-length:]) if len(alike) == 1 else label(name, length + 1)
+
+    return [label(name) for name in names]
 
 
 def groups_of(folders: Sequence[Path], labels: Sequence[str], problems: list[str]) -> list[Group]:

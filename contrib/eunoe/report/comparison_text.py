@@ -21,10 +21,11 @@ from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
 def measured_group(measured: Measured) -> Group:
     """The repeats of the measurement as runs, of which only densities are known."""
     runs = []
+    from_layer, cumulative = measured.cumulative()
     for number, repeat in enumerate(measured.repeats.T, start=1):
         unknown = np.full(len(repeat), math.nan)
         crd = unknown.copy()
-        crd[1:] = measured.cumulative()[1][:, number - 1]
+        crd[np.isin(measured.layer, from_layer)] = cumulative[:, number - 1]
         known = {"layer": measured.layer, "lrd": repeat, "crd": crd}
         layers = Layers(**{field.name: known.get(field.name, unknown) for field in fields(Layers)})
         runs.append(SpreadRun(f"repeat {number}", layers, None, None))

@@ -82,6 +82,9 @@ def _add_picture(page: Page, run: Run) -> None:
         page.notice("There are no pictures of the particles.")
         return
     time, file = picture
+    if run.summary and time > float(run.summary.get("simulated_time", time)) * (1. + 1e-9):
+        page.notice(f"{file.name} is of an earlier run in this folder: this one has no pictures of the particles.")
+        return
     particles = read_vtu(file, ("diameter", "velocity"))
     if len(particles["points"]) == 0 or len(particles) < 3:
         page.notice(f"{file.name} has no particles or lacks a field.")

@@ -35,11 +35,12 @@ def counting_noise(layers: Layers, full_layer_mass: float, grain: float) -> Dens
     """
     variance = (layers.arrived + layers.removed) * grain / full_layer_mass**2
     variance[layers.layer < 1] = np.nan
-    later = np.where(layers.layer >= 2, variance, 0.)
+    # Of a run that goes on with the layers of another one no noise is known up to its first weighing.
+    later = np.where((layers.layer >= 2) & np.isfinite(variance), variance, 0.)
     with np.errstate(invalid="ignore", divide="ignore"):
         crd = np.sqrt(np.cumsum(later)) / (layers.layer - 1.)
     crd[layers.layer < 2] = np.nan
-    known = variance[layers.layer >= 1]
+    known = variance[np.isfinite(variance)]
     mean = np.sqrt(known.sum()) / len(known) if len(known) else np.nan
     return DensityNoise(np.sqrt(variance), crd, float(mean))
 

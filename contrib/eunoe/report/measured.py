@@ -82,8 +82,8 @@ class Measured:
         return self.repeats.mean(axis=1)
 
     def cumulative(self) -> tuple[np.ndarray, np.ndarray]:
-        """CRD of layers 2, 3, ... of every repeat: the mean of the LRD from layer 2 on."""
-        later = self.layer >= 2
+        """CRD of layers 2, 3, ... of every repeat: the mean of the LRD from layer 2 on. Without layer 2 there is none."""
+        later = (self.layer >= 2) & (self.layer[0] <= 2)
         count = self.layer[later] - 1.
         return self.layer[later], np.cumsum(self.repeats[later], axis=0) / count[:, np.newaxis]
 

@@ -44,9 +44,15 @@ class Layers:
         return int(self.layer[-1])
 
     @property
+    def weighings(self) -> dict[int, float]:
+        """Times (s) by the numbers of the layers."""
+        return {int(layer): float(time) for layer, time in zip(self.layer, self.time)}
+
+    @property
     def arrived(self) -> np.ndarray:
-        """Mass that came onto the plate since the last weighing and stayed (kg)."""
-        return np.diff(self.mass, prepend=0.) + self.removed
+        """Mass that came onto the plate since the last weighing and stayed (kg); NaN for the first layer of a run that
+        goes on with the layers of another one."""
+        return np.diff(self.mass, prepend=0. if self.layer[0] == 0. else np.nan) + self.removed
 
 
 COLUMNS = {

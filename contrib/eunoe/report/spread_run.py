@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -116,12 +116,16 @@ class Group:
     @property
     def layer(self) -> np.ndarray:
         """Numbers of the layers that all runs have."""
-        return min((run.layers.layer for run in self.runs), key=len)
+        return reduce(np.intersect1d, (run.layers.layer for run in self.runs))
+
+    def over_layers(self, values: Callable[[SpreadRun], np.ndarray]) -> np.ndarray:
+        """What each run has for each of its layers, for those that all have: a row for each run."""
+        layer = self.layer
+        return np.array([values(run)[np.isin(run.layers.layer, layer)] for run in self.runs])
 
     def stacked(self, values: str) -> np.ndarray:
         """A column of layers.csv, a row for each run."""
-        n = len(self.layer)
-        return np.array([getattr(run.layers, values)[:n] for run in self.runs])
+        return self.over_layers(lambda run: getattr(run.layers, values))
 
     @property
     def mapped(self) -> list[SpreadRun]:
@@ -143,7 +147,7 @@ def difference(group: Group, reference: Group, number) -> Interval:
     all runs have partners they are compared pair by pair; else both groups scatter by themselves (Welch)."""
     ours, theirs = ({run.seed: run for run in runs} for runs in (group.runs, reference.runs))
     seeds = [seed for seed in ours if seed in theirs]
-    have_partners = (None not in ours and len(ours) == len(group.runs) and len(seeds) == min(len(ours), len(theirs))
+    have_partners = (None not in ours and len(ours) == len(group.runs) and len(theirs) == len(reference.runs) and len(seeds) == min(len(ours), len(theirs))
                      and len({run.plate_length for run in (*group.runs, *reference.runs)}) == 1)
     if have_partners:
         return mean_of([number(ours[seed]) - number(theirs[seed]) for seed in seeds])

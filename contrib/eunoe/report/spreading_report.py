@@ -46,8 +46,8 @@ def _progress_notice(run: Run, layers: Layers, apparatus: Apparatus | None) -> s
                 "layers are weighed so far.")
     if float(run.summary.get("simulated_time", np.inf)) < layers.time[-1] * (1. - 1e-9):
         return "summary.json is of an earlier run in this folder: layers.csv is newer."
-    if apparatus and len(layers) < apparatus.n_layers:
-        return (f"{len(layers)} of {apparatus.n_layers} layers are weighed: the run was stopped, or it "
+    if apparatus and layers.last + 1 < apparatus.n_layers:
+        return (f"{layers.last + 1} of {apparatus.n_layers} layers are weighed: the run was stopped, or it "
                 "goes on and summary.json is of an earlier run in this folder.")
     return ""
 
@@ -108,12 +108,12 @@ def _add_pictures(page: Page, layers: Layers, evidence: Evidence) -> None:
                 + _drawn(share, apparatus))
 
 
-def _weighing_times(layers: Layers, apparatus: Apparatus) -> list[float]:
+def _weighing_times(layers: Layers, apparatus: Apparatus) -> dict[int, float]:
     """Times of all weighings so far and of the next, for which the platform may already rise
-    (s)."""
-    times = list(layers.time)
-    if 1 < len(times) < apparatus.n_layers:
-        times.append(2. * times[-1] - times[-2])
+    (s), by the numbers of the layers."""
+    times = layers.weighings
+    if len(layers) > 1 and layers.last + 1 < apparatus.n_layers:
+        times[layers.last + 1] = 2. * layers.time[-1] - layers.time[-2]
     return times
 
 
@@ -163,6 +163,8 @@ def spreading_report(run: Run, layers: Layers, given: str = "") -> Page:
 def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None) -> None:
     """Of runs whose layers all have pictures; also as a table, bed.csv."""
     pictures = run.layer_pictures()
+    table_of_maps = run.folder / "bed.csv"
+    table_of_maps.unlink(missing_ok=True)  # perhaps of an earlier run
     if apparatus is None or len(pictures) < max(len(layers), 3):
         return
     try:
@@ -175,7 +177,7 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
                 f"grey: less than {length(RESTS_BELOW)}; lines: inner ends of the zones at rest; (b) what the pass "
                 "added, as density of its layer.")
     try:
-        write_for_others(run.folder / "bed.csv", maps)
+        write_for_others(table_of_maps, maps)
     except OSError as error:
         page.notice(f"The maps are not in numbers in bed.csv: {error.strerror}.")
     else:

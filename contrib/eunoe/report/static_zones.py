@@ -26,6 +26,7 @@ class Zones:
     left: np.ndarray  # from the first column of the bed
     right: np.ndarray
     bed: np.ndarray  # from the first to the last column
+    ends: np.ndarray  # x where the bed begins and ends, a row for each weighing; NaN where there is none
     resting: np.ndarray  # share of all particles
 
     @property
@@ -70,6 +71,7 @@ def zones_of(maps: BedMaps) -> Zones:
     shares = maps.resting_of_columns()
     filled = maps.tracked.sum(axis=2) >= FEWEST
     left, right, bed = np.zeros((3, len(maps.layers)))
+    ends = np.full((len(maps.layers), 2), np.nan)
     for k, columns in enumerate(filled):
         places = np.flatnonzero(columns)
         if len(places) == 0:
@@ -78,8 +80,9 @@ def zones_of(maps: BedMaps) -> Zones:
         # An emptier column within the bed neither rests nor ends a zone.
         resting = (shares[k] >= RESTS) | ~columns
         bed[k] = width[inside].sum()
+        ends[k] = maps.x[places[0]], maps.x[places[-1] + 1]
         n_left, n_right = _run_of(resting[inside]), _run_of(resting[inside][::-1])
         left[k] = width[inside][:n_left].sum()
         # A bed that rests as a whole is counted once.
         right[k] = 0. if n_left == len(width[inside]) else width[inside][::-1][:n_right].sum()
-    return Zones(maps.layers, left, right, bed, maps.resting_of_layers())
+    return Zones(maps.layers, left, right, bed, ends, maps.resting_of_layers())

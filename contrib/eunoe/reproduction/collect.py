@@ -75,6 +75,8 @@ def collect(campaign: Campaign, case: Case, data: Path = DATA) -> Path | None:
             shutil.copyfile(folder / name, target / name)
     if maps is not None:
         write_table(target / BED, maps)
+    else:
+        (target / BED).unlink(missing_ok=True)
     record = record_of(case, folder, len(run.layers), n_bins_of(apparatus))
     write_whole(target / RECORD, json.dumps(record, indent=1) + "\n")
     return target
