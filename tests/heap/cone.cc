@@ -2,11 +2,13 @@
 // its known projected area and place in every view, on any number of ranks.
 
 #include <eunoe/processes/heap/silhouettes.h>
+#include <eunoe/processes/heap/standing_height.h>
 
 #include "tests.h"
 
 using namespace test;
 using heap::Silhouettes;
+using heap::StandingHeight;
 
 namespace {
 
@@ -146,6 +148,23 @@ void examine_map()
   check("seen in none", grey(0.95e-3, 0.05e-3) == 255, std::to_string(grey(0.95e-3, 0.05e-3)));
 }
 
+/// A column of grains, of which no two neighbours touch exactly, and one that flies above it.
+void examine_standing_height()
+{
+  constexpr double d = 0.1e-3;
+  StandingHeight stands(3e-3, d), empty(3e-3, d);
+  for (unsigned int k = 0; k < 12; ++k)
+    if (is_mine(k))
+      stands.see((0.5 + 0.99 * k) * d);
+  for (const double flies : {1.5e-3, 2.9e-3, 5e-3})
+    stands.see(flies);
+  stands.reduce(MPI_COMM_WORLD);
+  empty.reduce(MPI_COMM_WORLD);
+  const double top = stands(), highest = (0.5 + 0.99 * 11) * d;
+  check("the column stands", highest < top && top < highest + 1.01 * d, std::to_string(top));
+  check("nothing stands", empty() == 0.);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -155,4 +174,5 @@ EUNOE_MPI_TEST()
   examine_fine_rings();
   examine_sphere();
   examine_map();
+  examine_standing_height();
 }

@@ -1,4 +1,5 @@
 #include <eunoe/processes/heap/measurement.h>
+#include <eunoe/processes/heap/standing_height.h>
 #include <eunoe/processes/solid_fraction.h>
 
 #include <limits>
@@ -162,16 +163,24 @@ Findings measure(Simulation &simulation, const HeapParameters &parameters,
   const auto sizes = simulation.get_parameters().physics.types[0].sizes.make();
   Shape shape(parameters, apparatus, *sizes);
   const ParticleArrays &p = simulation.complete_step();
-  Tally clinging, drained;
-  for (std::size_t row = 0; row < p.n_owned; ++row) {
+  const MPI_Comm comm = simulation.communicator();
+  const auto is_over_disc = [&](const std::size_t row) {
     const Vec3 x = p.position[row].vec();
-    const double radius = p.radius(row);
-    if (apparatus.is_on_disc(x, radius) && !apparatus.clings_to_tube(x.y, radius, tube_height))
-      shape.add(x, radius, p.mass(row));
+    return apparatus.is_on_disc(x, p.radius(row)) &&
+           !apparatus.clings_to_tube(x.y, p.radius(row), tube_height);
+  };
+  StandingHeight stands(apparatus.y_top, 2. * sizes->largest());
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (is_over_disc(row))
+      stands.see(p.position[row].y);
+  stands.reduce(comm);
+  const double top = stands();
+  Tally clinging, drained;
+  for (std::size_t row = 0; row < p.n_owned; ++row)
+    if (is_over_disc(row) && p.position[row].y < top)
+      shape.add(p.position[row].vec(), p.radius(row), p.mass(row));
     else
       clinging.count(p.mass(row));
-  }
-  const MPI_Comm comm = simulation.communicator();
   shape.reduce(comm);
   for (const Tally &outlet : simulation.get_ledger().through_outlet) {
     drained.number += outlet.number;
@@ -197,9 +206,18 @@ std::vector<Measurement> measure(const HeapParameters &parameters,
                                  const std::vector<GivenParticle> &particles)
 {
   const Apparatus apparatus(parameters, physics);
-  Shape shape(parameters, apparatus, *physics.types[0].sizes.make());
+  const auto sizes = physics.types[0].sizes.make();
+  Shape shape(parameters, apparatus, *sizes);
+  double largest = sizes->largest();
+  for (const GivenParticle &particle : particles)
+    largest = std::max(largest, particle.radius);
+  StandingHeight stands(apparatus.y_top, 2. * largest);
   for (const GivenParticle &particle : particles)
     if (apparatus.is_on_disc(particle.centre, particle.radius))
+      stands.see(particle.centre.y);
+  const double top = stands();
+  for (const GivenParticle &particle : particles)
+    if (apparatus.is_on_disc(particle.centre, particle.radius) && particle.centre.y < top)
       shape.add(particle.centre, particle.radius, particle.mass);
   const nlohmann::ordered_json found = shape.keys();
   if (found.at("heap_particles_on_disc") == 0)
