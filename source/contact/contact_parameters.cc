@@ -56,6 +56,36 @@ void ContactParameters::check(const ParameterCheck &check) const
   laws.check(check);
 }
 
+void ContactParameters::check_with(const PhysicalProperties &physics,
+                                   const ParameterCheck &check) const
+{
+  const bool pairs = contact_models().make(method).has_adhesion,
+             walls = contact_models().make(model_of_walls()).has_adhesion;
+  const std::string entry = "surface energy particles", of_wall = "surface energy wall";
+  const ParameterCheck::Path properties = {"lagrangian physical properties"};
+  double largest = 0.;
+  for (std::size_t type = 0; type < physics.types.size(); ++type) {
+    const double energy = physics.types[type].material.surface_energy;
+    largest = std::max(largest, energy);
+    check.advise(energy <= 0. || pairs || walls,
+                 {properties[0], "particle type " + std::to_string(type)}, entry,
+                 "is " + format(energy) + " J/m2, and no law has adhesion: particles use '" +
+                     method + "'.",
+                 "Choose 'DMT' or 'hertz_JKR' as 'particle particle contact force method', or give "
+                 "no surface energy.");
+  }
+  check.advise(largest > 0. || !pairs, {section}, "particle particle contact force method",
+               "is '" + method +
+                   "', and all particles have a surface energy of 0, so that nothing attracts.",
+               "Set '" + entry + "'.");
+  check.advise(largest <= 0. || !walls || physics.wall.surface_energy > 0. ||
+                   check.is_written(properties, of_wall),
+               properties, of_wall,
+               "is 0 while particles have one, so that they do not stick to walls and solids: a "
+               "contact takes the geometric mean of both.",
+               "Set it, to 0 if that is meant.");
+}
+
 std::string ContactParameters::model_of_walls() const
 {
   if (contact_models().make(method).wall_name == wall_method)

@@ -202,6 +202,7 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
       section->check(check);
   check_file_names(parameters.observables, process, check);
   parameters.sparse_contacts.check_with(parameters.physics.gravity, check);
+  parameters.contacts.check_with(parameters.physics, check);
   if (process != nullptr)
     ignore_numbers(parameters.physics, check);
   // Sizes and materials make sense only now.

@@ -57,14 +57,22 @@ FEW = ["insertion info/insertion frequency = 1000",
 OUTSIDE = "the solid lies outside the mesh during the whole run"
 
 MODEL = "model parameters/"
+DMT = MODEL + "particle particle contact force method = DMT"
+DMT_OF_WALLS = MODEL + "particle wall contact force method = DMT"
+ENERGY = TYPE + "surface energy particles = 1e-3"
+ENERGY_OF_WALL = "lagrangian physical properties/surface energy wall = "
 SLEEP = MODEL + "adaptive sparse contacts/"
 CONDITION = "DEM boundary conditions/"
 
 # Name: settings, and the warnings that they must give once each.
 DOUBTFUL = {
     "nothing doubtful": ([], []),
-    "walls with other laws": ([MODEL + "particle particle contact force method = DMT"],
-                              ["is 'nonlinear' while particles use 'DMT', so that they touch walls"]),
+    "walls with other laws": ([DMT, ENERGY], ["is 'nonlinear' while particles use 'DMT', so that they touch walls"]),
+    "adhesion of all": ([DMT, DMT_OF_WALLS, ENERGY, ENERGY_OF_WALL + "1e-3"], []),
+    "a surface energy that no law reads": ([ENERGY], ["is 0.001 J/m2, and no law has adhesion"]),
+    "adhesion without a surface energy": ([DMT, DMT_OF_WALLS], ["and all particles have a surface energy of 0"]),
+    "walls without a surface energy": ([DMT, DMT_OF_WALLS, ENERGY], ["so that they do not stick to walls and solids"]),
+    "walls that are not to stick": ([DMT, DMT_OF_WALLS, ENERGY, ENERGY_OF_WALL + "0"], []),
     "a list that comes once": ([*LIST, TYPE + "number of particles = 5"],
                                ["entry 'insertion frequency': is 0, so that the particles come once: 2 of 5."]),
     "no such boundary": ([CONDITION + "number of boundary conditions = 1",

@@ -21,6 +21,7 @@ struct NamedContactModel
 {
   std::string wall_name; ///< of the same laws between particles and walls
   ContactModelNames laws;
+  bool has_adhesion = false; ///< by the surface energy
 };
 
 /// Models by the names of the input. A model is registered beside the law that distinguishes it.

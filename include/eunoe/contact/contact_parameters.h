@@ -2,6 +2,7 @@
 #define eunoe_contact_contact_parameters_h
 
 #include <eunoe/contact/contact_model.h>
+#include <eunoe/state/physical_properties.h>
 
 namespace eunoe {
 
@@ -11,6 +12,8 @@ class ContactParameters : public ParameterSection
 public:
   void declare(dealii::ParameterHandler &prm) override;
   void check(const ParameterCheck &check) const override;
+  /// Whether adhesion that the materials ask for is in the laws, and the reverse.
+  void check_with(const PhysicalProperties &physics, const ParameterCheck &check) const;
 
   /// The laws of two particles.
   /// @param largest_diameter of the particles (m)

@@ -78,7 +78,7 @@ private:
 const ContactLawRegistry::Registration registration(contact_laws("cohesion"), "dmt",
                                                     [] { return std::make_unique<DmtSection>(); });
 const ContactModelRegistry::Registration model(contact_models(), "DMT", [] {
-  return NamedContactModel{"DMT", {"hertz", {"dmt"}, "mindlin_limit_overlap"}};
+  return NamedContactModel{"DMT", {"hertz", {"dmt"}, "mindlin_limit_overlap"}, true};
 });
 
 } // namespace

@@ -129,7 +129,7 @@ private:
 
 NamedContactModel jkr_model()
 {
-  return {"JKR", {"jkr", {}, "mindlin_limit_overlap"}};
+  return {"JKR", {"jkr", {}, "mindlin_limit_overlap"}, true};
 }
 
 const ContactLawRegistry::Registration registration(contact_laws("normal"), "jkr",
