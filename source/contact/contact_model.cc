@@ -72,8 +72,10 @@ ContactModel::ContactModel(Materials materials_, const ContactModelNames &names,
   for (const auto &law : laws) {
     first_history.push_back(n_history);
     n_history += law->history_size();
-    for (int first = 0; first < (is_of_walls ? materials.n_types() : materials.size()); ++first)
-      for (int second = is_of_walls ? materials.n_types() : 0; second < materials.size(); ++second)
+    const int walls_begin = materials.n_types(), walls_end = materials.size();
+    for (int first = 0; first < walls_begin; ++first)
+      for (int second = is_of_walls ? walls_begin : 0;
+           second < (is_of_walls ? walls_end : walls_begin); ++second)
         largest_range = std::max(largest_range, law->range(materials.kind(first, second)));
   }
   if (n_history > PairBlock::max_history)

@@ -103,6 +103,13 @@ EUNOE_TEST()
   }
   check_relative("pull-off force of a pair", largest, 2. * M_PI * 70e-5 * c.radius, 1e-12);
 
+  // A wall that hardly attracts, whose own range would be long, does not lengthen that of pairs.
+  Material wall = m;
+  wall.surface_energy = 1e-12;
+  const ContactModelNames names{"hertz", {"dmt"}, "mindlin_limit_overlap", "none"};
+  check("range of pairs beside a wall",
+        Laws({m, wall}, 1, names).model.range() == Laws({m}, 1, names).model.range());
+
   m.surface_energy = 0.;
   Laws none({m}, 1, {"hertz", {"dmt"}, "mindlin_limit_overlap", "none"});
   check("no surface energy, no cohesion", cohesion(none, 1e-3, 1e-9) == 0. &&
