@@ -321,6 +321,9 @@ void Simulation::do_what_is_due()
     const Timers::Scope scope(progress.timers, Section::process);
     process->step(*this);
   }
+  // Before the first step nothing has computed what solids bear.
+  if (clock.step() == 0 && outputs.want_solid_loads(0))
+    system.add_solid_loads(solids.list(), clock.time(), solids.new_loads());
   outputs.step(*this);
   if (outputs.are_pictures_due(clock))
     outputs.draw(*this);

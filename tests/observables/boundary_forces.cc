@@ -136,6 +136,24 @@ void test_torque()
   check("nothing on the walls", table_of("torque_0.csv").rows.back()[1] == 0.);
 }
 
+/// What is inserted in contact with the floor loads it before the first step: Hertz's force.
+void test_first_row()
+{
+  const double overlap = 1e-6, radius = 0.5e-3, young = 1e6, poisson = 0.3;
+  Case sphere(floor_case("  set diameter = 1e-3\n",
+                         " set insertion method = list\n set list x = 2e-3\n set list y = 4.5e-3\n"
+                         " set list z = 0.499e-3\n set list diameters = 1e-3\n",
+                         1e-4, " set filename = first\n set output frequency = 10\n"));
+  sphere.run();
+  const Table table = table_of("first_4.csv");
+  const auto &row = table.rows.front();
+  check("the first row is of the start", row[0] == 0.);
+  check_relative("force before the first step", -row[3],
+                 4. / 3. * young / (2. * (1. - poisson * poisson)) * std::sqrt(radius) *
+                     std::pow(overlap, 1.5),
+                 1e-9);
+}
+
 /// A boundary with several sides has one table: the sum over all of them.
 void test_sides_of_one_id()
 {
@@ -157,5 +175,6 @@ EUNOE_MPI_TEST()
   test_packing();
   test_ranks();
   test_torque();
+  test_first_row();
   test_sides_of_one_id();
 }
