@@ -380,8 +380,13 @@ class Scores(InFolder):
     def test_a_truth_that_was_changed_is_not_scored(self) -> None:
         self.add("a", "single", "named", {"cohesion": 1e-4})
         (self.folder / "a" / "sealed" / "truth.json").write_text(json.dumps({"effects": {}}))
-        with self.assertRaises(AssertionError):
+        with self.assertRaises(Failure):
             read(self.folder / "a", "study")
+
+    def test_a_truth_that_a_study_must_not_see_is_scored(self) -> None:
+        self.add("a", "single", "named", {"cohesion": 1e-4})
+        (self.folder / "a" / "sealed").rename(self.folder / ".sealed_a")
+        self.assertEqual(read(self.folder / "a", "study")["case"]["amplitudes"], {"cohesion": 1e-4})
 
     def test_wilson(self) -> None:
         # From the formula's published table: 5 of 10 and 0 of 20.

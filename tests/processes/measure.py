@@ -63,7 +63,7 @@ def check_heap(folder: Path) -> None:
     rows = read_particles(folder / "particles.csv")
     turned = np.column_stack((rows[:, 0] * 1e3 + 5., -rows[:, 2] * 1e3, rows[:, 1] * 1e3 + 1., rows[:, 3] * 1e3))
     np.savetxt(folder / "turned.csv", turned, delimiter=",", header="x,y,z,d", comments="", fmt="%.17g")
-    moved = measured(str(HEAP), str(folder / "turned.csv"), "--up", "z", "--origin", "5", "0", "1", "--scale", "1e-3")
+    moved = measured(str(HEAP), str(folder / "turned.csv"), "--up", "z", "--origin", "5", "-1e-12", "1", "--scale", "1e-3")
     # A grain that falls on the heap does not belong to it yet.
     np.savetxt(folder / "falls.csv", np.vstack((rows, [1e-4, 1.2e-3, 0., 7e-5])), delimiter=",", header="x,y,z,d", comments="",
                fmt="%.17g")

@@ -33,9 +33,8 @@ HEAD = ["load balancing", "ranks", "imbalance, mean", "worst", "times shared out
 def imbalances(folder: Path, n_ranks: int) -> list[float]:
     """The imbalance in each picture of a run that has particles in it."""
     result = []
-    for series in folder.glob("*.pvd"):
-        if series.stem.endswith(("_solids", "_layers")):
-            continue
+    # Other pictures, of cells, contacts or layers, are beside those of the particles, whose name they begin with.
+    for series in sorted(folder.glob("*.pvd"), key=lambda path: len(path.stem))[:1]:
         for picture in read_pvd(series):
             owned = points_of_pieces(picture.file)
             if sum(owned) > 0:

@@ -17,7 +17,6 @@ from __future__ import annotations
 
 import argparse
 import collections
-import itertools
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
@@ -124,7 +123,7 @@ Side = list[Fingerprint]
 
 def places(side: Side) -> Iterator[Fingerprint]:
     """From nothing to the end of the range, linear between the recorded amplitudes."""
-    for before, after in itertools.pairwise([side[0].times(0.), *side]):
+    for before, after in zip([side[0].times(0.), *side], side):
         for place in range(1, PLACES_OF_A_PIECE + 1):
             share = place / PLACES_OF_A_PIECE
             yield before.times(1. - share).plus(after.times(share))

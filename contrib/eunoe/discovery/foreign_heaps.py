@@ -212,11 +212,12 @@ def make_heap(seed: int, model: Model, apparatus: Apparatus, options: argparse.N
     work = options.folder / f"work_{seed}"
     work.mkdir(parents=True, exist_ok=True)
     write_particles(work / "loose.data", apparatus, model, seed, "Atoms" if options.engine == "liggghts" else "Atoms # sphere")
-    values = {**variables(model, apparatus, options), "data": work / "loose.data", "places": work / "heap.dump"}
+    values = {**variables(model, apparatus, options), "data": "loose.data", "places": "heap.dump"}
     for name, triangles in apparatus.surfaces().items():
         write_stl(work / f"{name}.stl", triangles)
         if options.engine == "liggghts":
-            values[name] = work / f"{name}.stl"
+            values[name] = f"{name}.stl"
+    # Files by their bare names: the programs take a blank in a path for the end of it.
     words = [word for name, value in values.items() for word in ("-var", name, str(value))]
     done = subprocess.run([program, "-in", str(DECKS / f"heap_{options.engine}.in"), *words], cwd=work, check=False,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")

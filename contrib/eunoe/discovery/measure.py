@@ -22,6 +22,7 @@ import argparse
 import csv
 import io
 import math
+import re
 import statistics
 import subprocess
 import tempfile
@@ -42,6 +43,8 @@ SIGNS = {"x": (-1., 1., 1.), "y": (1., 1., 1.), "z": (1., 1., -1.)}
 
 def parse(words: list[str]) -> argparse.Namespace:
     arguments = parser(__doc__)
+    # Older Pythons take a number like -1e-3 for an option.
+    arguments._negative_number_matcher = re.compile(r"^-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
     arguments.add_argument("case", type=Path)
     arguments.add_argument("files", nargs="+", help="particles; commas between those of several layers")
     arguments.add_argument("--program", default=str(PROGRAM))

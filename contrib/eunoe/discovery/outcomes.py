@@ -9,6 +9,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from statistics import median
 
+from eunoe.launch import Failure
+
 from .case import STRENGTHS, Case
 
 SOMETHING = ("named", "tie", "off catalogue")
@@ -103,15 +105,22 @@ class Outcome:
         return self.truth - set(self.case.excluded)
 
 
+def place_of_truth(folder: Path) -> Path:
+    """While a study runs, and after it was killed, the truth is away."""
+    away = folder.parent / f".sealed_{folder.name}"
+    return away if away.exists() else folder / "sealed"
+
+
 def read(folder: Path, label: str) -> dict | None:
     """The case and what is scored of the answer: a line of JSON, as the suites without simulations print it."""
     path = folder / label / "discovery.json"
     if not path.exists() or not (folder / "case.json").exists():
         return None
     content = json.loads(path.read_text(encoding="utf-8"))
-    sealed = json.loads((folder / "sealed" / "truth.json").read_text(encoding="utf-8"))
+    sealed = json.loads((place_of_truth(folder) / "truth.json").read_text(encoding="utf-8"))
     case = Case.load(folder)
-    assert sealed["effects"] == case.amplitudes, f"{folder}: the sealed truth is another one"
+    if sealed["effects"] != case.amplitudes:
+        raise Failure(f"{folder}: the sealed truth is not the one of case.json.")
     content["candidates"] = content["candidates"][:MOST_CANDIDATES]
     content["gaps"] = {"held-out": {key: value for key, value in content["gaps"].get("held-out", {}).items()
                                     if key != "envelopes"}}

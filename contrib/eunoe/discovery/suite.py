@@ -72,6 +72,10 @@ def part(text: str) -> tuple[int, int]:
     return number, of
 
 
+class Busy(Failure):
+    """Another command is at it."""
+
+
 class Suite:
     def __init__(self, options: argparse.Namespace) -> None:
         self.options = options
@@ -133,7 +137,7 @@ class Suite:
         """Data and study of a case."""
         with alone_with(self.folder / f"{case.name}.lock") as lock:
             if lock is None:
-                raise Failure(f"Another command is making {case.name} in {self.folder}.")
+                raise Busy(f"Another command is making {case.name} in {self.folder}.")
             self.make_study(case, self.make_data(case, lock), label, settings, lock)
 
     def run(self) -> None:
@@ -145,24 +149,35 @@ class Suite:
         strengths = self.pilot("study", [] if is_ablation else self.options.set)
         number, of = self.options.part
         cases = make_cases(effects, self.options.tier, self.options.seeds, self.options.study_seeds)
-        for case in cases[number - 1::of]:
-            if self.options.only not in case.name:
+        wanted = [case for case in cases if self.options.only in case.name and self.gives_amplitudes(case, strengths)]
+        for case in wanted:
+            if cases.index(case) % of != number - 1:
                 continue
-            found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
-            weak = [name for name, (_, reached) in found.items() if reached < abs(case.strengths[name])]
-            if weak and (not TIERS[self.options.tier].drawn or min(s for _, s in found.values()) == 0.):
-                print(f"{case.name}: left out, as {', '.join(weak)} cannot be so strong in its range")
-                continue
-            for name, (amplitude, reached) in found.items():
-                case.amplitudes[name] = amplitude
-                case.strengths[name] = math.copysign(reached, case.strengths[name])
             print(case.name, flush=True)
             try:
                 self.make(case, self.options.label, self.options.set)
+            except Busy as error:
+                print(f"  {error}")
             except Failure as error:
                 print(f"  {error}")
-        if number == of and not self.options.only:
+                self.failed.append(case.name)
+        # All is scored by the strengths that the studies themselves find when the table is full.
+        answered = all((self.folder / case.name / "study" / "discovery.json").exists() or case.name in self.failed
+                       for case in wanted)
+        if answered and not self.options.only and not is_ablation:
             self.pilot(PILOT_AT_THE_END, self.options.set)
+
+    def gives_amplitudes(self, case: Case, strengths: Strengths) -> bool:
+        """Amplitudes from strengths; false if an effect cannot be so strong."""
+        found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
+        weak = [name for name, (_, reached) in found.items() if reached < abs(case.strengths[name])]
+        if weak and (not TIERS[self.options.tier].drawn or min(s for _, s in found.values()) == 0.):
+            print(f"{case.name}: left out, as {', '.join(weak)} cannot be so strong in its range")
+            return False
+        for name, (amplitude, reached) in found.items():
+            case.amplitudes[name] = amplitude
+            case.strengths[name] = math.copysign(reached, case.strengths[name])
+        return True
 
 
 def main(words: list[str]) -> int:

@@ -18,6 +18,7 @@ import shutil
 import signal
 import subprocess
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 from eunoe.launch import SHARED, Failure, mpirun, overrides, parser_with_case, rank_numbers
@@ -44,7 +45,8 @@ class Case:
 
     def run(self, ranks: int, *settings: str) -> None:
         process = self.start(ranks, *settings)
-        output = process.communicate()[0]
+        with none_left(self, process):
+            output = process.communicate()[0]
         if process.returncode != 0:
             raise Failure(f"The run ended with exit code {process.returncode}:\n{output}")
 
@@ -100,6 +102,16 @@ def compare(reference: Case, other: Case, what: str, has_same_mesh: bool = True)
                 raise Failure(f"{what}: {name} differs from that of the run left alone.")
 
 
+@contextlib.contextmanager
+def none_left(case: Case, process: subprocess.Popen) -> Iterator[None]:
+    """Someone who interrupts this command interrupts the run, which has a session of its own."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        kill_all(case, process)
+        raise
+
+
 def kill_all(case: Case, process: subprocess.Popen) -> str:
     """Kills the launcher and every rank. The launcher puts ranks into process groups of their own,
     so killing its group is not enough.
@@ -153,8 +165,9 @@ def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
         restarts += before > 0
         process = case.start(draw.choice(ranks), *checkpoints, mode)
         try:
-            output = process.communicate(
-                timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
+            with none_left(case, process):
+                output = process.communicate(
+                    timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
         except subprocess.TimeoutExpired:
             output = kill_all(case, process)
             done += 1
