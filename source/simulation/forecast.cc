@@ -127,12 +127,14 @@ Forecast Simulation::foresee(const bool writes) const
                            ") m/s2" + (norm_square(g) > 0. ? "" : ", so that nothing falls"));
   if (sleeper.is_enabled())
     describe_sleep(parameters, diameters, forecast);
-  double smallest_radius = std::numeric_limits<double>::max();
-  for (const DiameterRange &range : diameters)
-    smallest_radius = std::min(smallest_radius, 0.5 * range.smallest);
+  DiameterRange of_all = {0, std::numeric_limits<double>::max(), 0.};
+  for (const DiameterRange &range : diameters) {
+    of_all.smallest = std::min(of_all.smallest, range.smallest);
+    of_all.largest = std::max(of_all.largest, range.largest);
+  }
   const double of_walls = fastest_wall(parameters, domain);
-  const double fastest = judge_solids(parameters, solids.list(), domain, smallest_radius, forecast);
-  judge_jump(of_walls, parameters, smallest_radius, "", "", forecast.problems);
+  const double fastest = judge_solids(parameters, solids.list(), domain, of_all, forecast);
+  judge_jump(of_walls, parameters, 0.5 * of_all.smallest, "", "", forecast.problems);
   judge_searches(std::max(fastest, of_walls), criterion.allowed_displacement(), clock.time_step(),
                  forecast);
   if (insertion != nullptr && !is_continued)

@@ -54,7 +54,25 @@ struct Path
   bool meets_mesh = false;
   double largest_speed = 0., when = 0.; ///< of a corner of its box (m/s, s)
   std::optional<double> ends;           ///< when its motion is no number any more (s)
+  /// A direction with a period, near an end of which the solid ends, and when (s).
+  std::optional<std::pair<unsigned int, double>> open_end;
 };
+
+/// A direction with a period in which a box ends nearer than @p reach to an end of the period,
+/// inside or outside, so that a particle there meets its edge, or what its image should meet is
+/// missing.
+std::optional<unsigned int> open_end(const Box &box, const PeriodicBox &periods, const double reach)
+{
+  for (unsigned int d = 0; d < 3; ++d) {
+    const double lower = periods.origin[d], upper = lower + periods.length[d];
+    const bool apart = box.upper[d] < lower - reach || box.lower[d] > upper + reach,
+               inside = box.lower[d] > lower + reach && box.upper[d] < upper - reach,
+               through = box.lower[d] < lower - reach && box.upper[d] > upper + reach;
+    if (periods.is_periodic(d) && !apart && !inside && !through)
+      return d;
+  }
+  return std::nullopt;
+}
 
 /// The box around the mesh, which may move.
 struct MeshPath
@@ -69,22 +87,37 @@ struct MeshPath
   }
 };
 
+/// When a motion is looked at, in parts of the interval between looks: not evenly, as a vibration
+/// may have a period of so many intervals.
+double look(const unsigned int k)
+{
+  constexpr double golden = 0.6180339887498949;
+  const double share = k == 0 || k == n_looks ? 0. : golden * k - std::floor(golden * k);
+  return k + 0.5 * share;
+}
+
 /// Follows the prescribed motion in few large steps.
-Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh, const double duration)
+/// @param reach of particles (m)
+Path follow(const SolidObject &object, const Box &own, const MeshPath &mesh,
+            const PeriodicBox &periods, const double reach, const double duration)
 {
   const double interval = std::max(duration, 1e-12) / n_looks;
   const std::shared_ptr<const Motion> motion = object.make_motion(interval);
   Path path;
   for (unsigned int k = 0; k <= n_looks; ++k) {
-    const RigidState state = motion->at(k * interval);
-    path.meets_mesh = path.meets_mesh || overlap(box_at(own, state), mesh.at(k * interval));
+    const double time = look(k) * interval;
+    const RigidState state = motion->at(time);
+    const Box box = box_at(own, state);
+    path.meets_mesh = path.meets_mesh || overlap(box, mesh.at(time));
+    if (const auto direction = open_end(box, periods, reach); direction && !path.open_end)
+      path.open_end = {*direction, time};
     for (const Vec3 &corner : corners_at(own, state)) {
       const double speed = norm(state.velocity_at(corner));
       if (!path.ends && !std::isfinite(speed + norm(corner)))
-        path.ends = k * interval;
+        path.ends = time;
       if (speed > path.largest_speed) {
         path.largest_speed = speed;
-        path.when = k * interval;
+        path.when = time;
       }
     }
   }
@@ -112,8 +145,9 @@ bool judge_size(const std::string &where, const Box &box, const Box &space, Prob
 } // namespace
 
 double judge_solids(const Parameters &parameters, const std::vector<Solid> &solids,
-                    const Domain &domain, const double smallest_radius, Forecast &forecast)
+                    const Domain &domain, const DiameterRange &diameters, Forecast &forecast)
 {
+  const double smallest_radius = 0.5 * diameters.smallest;
   double fastest = 0.;
   const MeshPath mesh = {domain.box_from_centre(), parameters.grid_motion.make()};
   const Box space = mesh.at(0.);
@@ -130,7 +164,8 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
         "subsection 'solid objects' / subsection 'solid surfaces' / subsection '" + solid.name +
         "':";
     const bool fits = judge_size(where, box, space, forecast.problems);
-    const Path path = follow(parameters.solids.objects[*solid.object], own, mesh, duration);
+    const Path path = follow(parameters.solids.objects[*solid.object], own, mesh, domain.periods(),
+                             diameters.largest, duration);
     if (path.ends)
       forecast.problems.add(where,
                             "from t = " + format(*path.ends) +
@@ -145,6 +180,15 @@ double judge_solids(const Parameters &parameters, const std::vector<Solid> &soli
                                  ".",
                              "Correct its 'scale' (0.001 for a file in millimetres), its 'initial "
                              "translation' or its velocity, or enlarge the mesh.");
+    if (path.meets_mesh && path.open_end && diameters.largest > 0.)
+      forecast.problems.warn(
+          where,
+          "at t = " + format(path.open_end->second) + " s it ends near a periodic end in " +
+              "xyz"[path.open_end->first] +
+              ". Solids have no periodic images: a grain that crosses that end meets the solid's "
+              "edge, or nothing.",
+          "Let it reach the largest diameter, " + format(diameters.largest) +
+              " m, beyond both ends, or stay as far away from them.");
     judge_jump(path.largest_speed, parameters, smallest_radius,
                " at t = " + format(path.when) + " s", fits ? "" : mend_scale, forecast.problems);
     fastest = std::max(fastest, path.largest_speed);

@@ -34,10 +34,10 @@ void judge_jump(double speed, const Parameters &parameters, double smallest_radi
                 const std::string &when, const std::string &mend, Problems &problems);
 
 /// Size, place and path of the solids of the input against the mesh.
-/// @param smallest_radius of a particle (m)
+/// @param diameters of all particles
 /// @return the largest speed that one of them reaches (m/s)
 double judge_solids(const Parameters &parameters, const std::vector<Solid> &solids,
-                    const Domain &domain, double smallest_radius, Forecast &forecast);
+                    const Domain &domain, const DiameterRange &diameters, Forecast &forecast);
 
 /// What is inserted: whether there is anything, where it comes to lie, whether it all comes.
 /// @param events particles of the first events, this rank's share

@@ -54,9 +54,13 @@ VELOCITY = "solid objects/solid surfaces/solid object 0/translational velocity/F
 TYPE = "lagrangian physical properties/particle type 0/"
 FEW = ["insertion info/insertion frequency = 1000",
        "insertion info/inserted number of particles at each time step = 5", TYPE + "number = 20"]
+OPEN_END = "Solids have no periodic images"
 OUTSIDE = "the solid lies outside the mesh during the whole run"
 
 MODEL = "model parameters/"
+PERIOD = ["DEM boundary conditions/number of boundary conditions = 1",
+          *(f"DEM boundary conditions/boundary condition 0/{entry}" for entry in (
+              "type = periodic", "periodic id 0 = 4", "periodic id 1 = 5", "periodic direction = 2"))]
 DMT = MODEL + "particle particle contact force method = DMT"
 DMT_OF_WALLS = MODEL + "particle wall contact force method = DMT"
 ENERGY = TYPE + "surface energy particles = 1e-3"
@@ -103,6 +107,14 @@ DOUBTFUL = {
     "a solid outside": ([*SOLID, BOX + "1, 1, 1 : 1.01, 1.01, 1.01"], [OUTSIDE]),
     "a solid that comes in": ([*SOLID, BOX + "0.021, 0.005, 0.005 : 0.022, 0.006, 0.006",
                                VELOCITY + "-0.1; 0; 0", "simulation control/iteration end = 10000"], []),
+    "a solid from end to end of a period": ([*PERIOD, *SOLID, BOX + "0.005, 0.005, 0 : 0.015, 0.01, 0.02"], [OPEN_END]),
+    "a solid beyond both ends of a period": ([*PERIOD, *SOLID, BOX + "0.005, 0.005, -0.0011 : 0.015, 0.01, 0.0211"], []),
+    "a solid that crosses the end of a period": ([*PERIOD, *SOLID, BOX + "0.005, 0.005, 0.01 : 0.01, 0.01, 0.012",
+                                                  VELOCITY + "0; 0; 0.01", "simulation control/iteration end = 600000"],
+                                                 [OPEN_END]),
+    # 500 looks at even intervals would see it at rest only.
+    "a vibration": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.005, 0.005, 0.005", VELOCITY + "0; 5*sin(2*pi*50*t); 0",
+                     "simulation control/iteration end = 5000000"], ["searches for contacts will take much of the time"]),
     "a tiny solid": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.00401, 0.00401, 0.00401"],
                      ["the solid is only 1e-05 m long, while the mesh is 0.02 m long"]),
     "a fast solid": ([*SOLID, BOX + "0.004, 0.004, 0.004 : 0.005, 0.005, 0.005", VELOCITY + "5; 0; 0"],
@@ -133,7 +145,8 @@ DOUBTFUL = {
     "two at once": ([ENTRY + " = 2e-3", *SOLID, BOX + "1, 1, 1 : 1.01, 1.01, 1.01"],
                     ["exceeds 25 % of the Rayleigh time", OUTSIDE]),
 }
-LONG = {"a run without end", "a solid that comes in", "events upon each other", "pictures without end", "too few events"}
+LONG = {"a run without end", "a solid that comes in", "events upon each other", "pictures without end", "too few events",
+        "a solid that crosses the end of a period", "a vibration"}
 
 STOP = "model parameters/excessive overlap = stop"
 AUTO = ENTRY + " = auto"
