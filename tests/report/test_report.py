@@ -6,6 +6,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import os
 import re
 import sys
 import tempfile
@@ -232,12 +233,15 @@ class Report(InFolder):
         noise = counting_noise(layers, 2e-7, 1e-9)
         self.assertTrue(np.isfinite(noise.mean_lrd) and np.isnan(noise.lrd[0]))
 
-    def test_what_is_left_of_an_earlier_run_is_not_shown(self) -> None:
+    def test_what_is_left_of_an_earlier_run_is_told(self) -> None:
         sample_run.write_run(self.folder)
-        (self.folder / "bed.csv").write_text("of an earlier run")
+        bed = self.file("bed.csv", "of an earlier run")
         (self.folder / "spreading_layers.pvd").unlink()
-        self.page()
-        self.assertFalse((self.folder / "bed.csv").exists())
+        after = (self.folder / "layers.csv").stat().st_mtime
+        for time, is_old in ((after - 10., True), (after + 10., False)):
+            os.utime(bed, (time, time))
+            self.assertEqual("bed.csv is older than layers.csv" in self.page(), is_old)
+        self.assertEqual(bed.read_text(), "of an earlier run")
 
     def test_last_picture_of_a_longer_run(self) -> None:
         self.file("used.prm", "set process = general\nsubsection simulation control\n  set output name = out\nend\n")

@@ -164,8 +164,10 @@ def _add_maps(page: Page, run: Run, layers: Layers, apparatus: Apparatus | None)
     """Of runs whose layers all have pictures; also as a table, bed.csv."""
     pictures = run.layer_pictures()
     table_of_maps = run.folder / "bed.csv"
-    table_of_maps.unlink(missing_ok=True)  # perhaps of an earlier run
     if apparatus is None or len(pictures) < max(len(layers), 3):
+        # It may be all that is left of the pictures, so it stays.
+        if table_of_maps.exists() and table_of_maps.stat().st_mtime < (run.folder / "layers.csv").stat().st_mtime:
+            page.notice("bed.csv is older than layers.csv: it may be of an earlier run in this folder.")
         return
     try:
         maps = read_maps(pictures, apparatus)
