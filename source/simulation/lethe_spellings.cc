@@ -188,8 +188,8 @@ private:
           problems.add(place(entry), "is '" + shortened(entry.value) + "'.", rule.why);
         return true;
       }
-    return names_variables(entry) || ignores(entry, ignored()) ||
-           ignores(entry, ignored_for_heat());
+    return ignores(entry, ignored()) || ignores(entry, ignored_for_heat()) ||
+           names_variables(entry);
   }
 
   /// deal.II's functions let variables have other names.
