@@ -11,6 +11,14 @@ namespace {
 /// Between the normals of a contact at two steps, below which it is another one.
 constexpr double least_cosine = 0.9;
 
+/// Velocity of a solid's surface where its normal is @p n.
+Vec3 surface_velocity(const Solid &solid, const Vec3 &point, const Vec3 &n)
+{
+  const Vec3 v = solid.state.velocity_at(point);
+  // The facets of a drum that turns in place approach nobody, although w x r has a part along n.
+  return solid.motion->slides_in_place() ? v - dot(v, n) * n : v;
+}
+
 } // namespace
 
 SolidContacts::SolidContacts(const ContactModel &model)
@@ -281,7 +289,7 @@ void SolidContacts::add_to(Batch &b, const ParticleArrays &particles, const Soli
   const double radius = particles.radius(p);
   const Vec3 n = solid.to_space(contact.normal);
   const Vec3 point = position.vec() + contact.distance * n;
-  const Vec3 v = velocity.vec() - solid.state.velocity_at(point) + cross(radius * spin.vec(), n);
+  const Vec3 v = velocity.vec() - surface_velocity(solid, point, n) + cross(radius * spin.vec(), n);
   const double closing = dot(v, n);
   const Vec3 slip = v - closing * n;
   const Vec3 w = spin.vec() - solid.state.angular_velocity;

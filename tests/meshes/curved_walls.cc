@@ -143,6 +143,38 @@ void drum()
   check_relative("torque on the drum", torque, -friction * mass * g * (apothem(refinement)), slope);
 }
 
+/// How much of its speed a sphere without friction keeps that hits a facet of a drum beside its
+/// middle, where w x r has a part along the facet's normal.
+double rebound_beside_middle(double rotational_speed)
+{
+  const unsigned int refinement = 2;
+  const double angle = middle_of_facet(0.3, refinement), speed = 0.1, aside = 0.25;
+  const Vec3 out = {0., std::cos(angle), std::sin(angle)}, along = cross({1., 0., 0.}, out);
+  const double width = 2. * R * std::sin(M_PI / (4 << refinement));
+  const Vec3 start = (apothem(refinement) - 1.1 * r) * out + aside * width * along;
+  Case test_case(
+      control(5e-6, 8e-3) + cylinder(refinement) + powder(2. * r, 0.3, 0., "0, 0, 0") +
+      "subsection DEM boundary conditions\n set number of boundary conditions = 1\n"
+      " subsection boundary condition 0\n  set type = rotational\n  set boundary id = 0\n"
+      "  set rotational speed = " +
+      std::to_string(rotational_speed) +
+      "\n  set rotational vector = 1, 0, 0\n  set point on rotational vector = 3, 0, 0\n "
+      "end\nend\n" +
+      places({start}, {speed * out}));
+  test_case.run();
+  const std::vector<double> row = particle_table(*test_case)[0];
+  return -dot({row[c_vx], row[c_vy], row[c_vz]}, out) / speed;
+}
+
+void turning_facets_push_nobody()
+{
+  const double at_rest = rebound_beside_middle(0.);
+  check_relative("restitution on a drum at rest", at_rest, 0.3, 0.03);
+  for (const double speed : {-10., 10.})
+    check_relative("the same while it turns at " + std::to_string(speed),
+                   rebound_beside_middle(speed), at_rest, 1e-9);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -152,4 +184,5 @@ EUNOE_MPI_TEST()
   bounces("32 facets", 3, Vec3(), "");
   bounces("shifted", 3, {0.02, -0.03, 0.04}, " set initial translation = 0.02, -0.03, 0.04\n");
   drum();
+  turning_facets_push_nobody();
 }

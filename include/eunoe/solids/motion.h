@@ -47,6 +47,10 @@ public:
 
   /// False for a solid that never turns, whose frame is then only shifted.
   virtual bool rotates() const { return false; }
+
+  /// True where the surface slides along itself while the solid stands still, so that it has no
+  /// velocity along its normal.
+  virtual bool slides_in_place() const { return false; }
 };
 
 /// A solid at rest, whose surface may still slide or turn in place like a conveyor or a drum.
@@ -60,6 +64,10 @@ public:
   }
 
   RigidState at(double) const override { return state; }
+  bool slides_in_place() const override
+  {
+    return norm_square(state.velocity) + norm_square(state.angular_velocity) > 0.;
+  }
 
 private:
   const RigidState state;
