@@ -64,8 +64,9 @@ def check_heap(folder: Path) -> None:
     turned = np.column_stack((rows[:, 0] * 1e3 + 5., -rows[:, 2] * 1e3, rows[:, 1] * 1e3 + 1., rows[:, 3] * 1e3))
     np.savetxt(folder / "turned.csv", turned, delimiter=",", header="x,y,z,d", comments="", fmt="%.17g")
     moved = measured(str(HEAP), str(folder / "turned.csv"), "--up", "z", "--origin", "5", "-1e-12", "1", "--scale", "1e-3")
-    # A grain that falls on the heap does not belong to it yet.
-    np.savetxt(folder / "falls.csv", np.vstack((rows, [1e-4, 1.2e-3, 0., 7e-5])), delimiter=",", header="x,y,z,d", comments="",
+    # A grain that falls on the heap does not belong to it yet, although it is near.
+    falling = rows[:, 1].max() + 2.5 * rows[:, 3].max()
+    np.savetxt(folder / "falls.csv", np.vstack((rows, [1e-4, falling, 0., 7e-5])), delimiter=",", header="x,y,z,d", comments="",
                fmt="%.17g")
     falls = measured(str(HEAP), str(folder / "falls.csv"))
     for other, tolerance in ((picture, 1e-5), (moved, 1e-9), (falls, 1e-9)):

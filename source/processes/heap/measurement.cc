@@ -169,7 +169,7 @@ Findings measure(Simulation &simulation, const HeapParameters &parameters,
     return apparatus.is_on_disc(x, p.radius(row)) &&
            !apparatus.clings_to_tube(x.y, p.radius(row), tube_height);
   };
-  StandingHeight stands(apparatus.y_top, 2. * sizes->largest());
+  StandingHeight stands(apparatus.y_top, sizes->largest());
   for (std::size_t row = 0; row < p.n_owned; ++row)
     if (is_over_disc(row))
       stands.see(p.position[row].y);
@@ -210,8 +210,8 @@ std::vector<Measurement> measure(const HeapParameters &parameters,
   Shape shape(parameters, apparatus, *sizes);
   double largest = sizes->largest();
   for (const GivenParticle &particle : particles)
-    largest = std::max(largest, particle.radius);
-  StandingHeight stands(apparatus.y_top, 2. * largest);
+    largest = std::max(largest, 2. * particle.radius);
+  StandingHeight stands(apparatus.y_top, largest);
   for (const GivenParticle &particle : particles)
     if (apparatus.is_on_disc(particle.centre, particle.radius))
       stands.see(particle.centre.y);
