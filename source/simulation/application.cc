@@ -48,10 +48,10 @@ void measure(const Parameters &parameters, const std::string &files, MPI_Comm co
   std::vector<std::string> names;
   boost::split(names, files, boost::is_any_of(","));
   std::vector<std::vector<GivenParticle>> moments;
-  const double density = parameters.physics.types.at(process->powder()).density;
+  const ParticleType &powder = parameters.physics.types.at(process->powder());
   for (std::string &name : names) {
     boost::trim(name);
-    moments.push_back(read_given_particles(name, density, comm));
+    moments.push_back(read_given_particles(name, powder, comm));
   }
   std::string table;
   try {

@@ -41,9 +41,28 @@ struct Places
   }
 };
 
+/// Ratio of mean diameters above which places or sizes are in another unit than the case's, or
+/// radii are given as diameters.
+constexpr double most_different = 1.7;
+
+void check_sizes(const std::vector<GivenParticle> &particles, const ParticleType &type,
+                 const std::string &file)
+{
+  double cubes = 0.;
+  for (const GivenParticle &particle : particles)
+    cubes += std::pow(2. * particle.radius, 3.);
+  const double given = std::cbrt(cubes / static_cast<double>(particles.size()));
+  const double expected = std::cbrt(type.sizes.make()->mean_cube());
+  if (given > most_different * expected || expected > most_different * given)
+    throw UserError(file + ": the particles have a mean diameter of " + format(1e6 * given) +
+                    " um (of equal volume), those of the case " + format(1e6 * expected) +
+                    " um. Give metres (contrib/tools measure --scale turns other units), the right "
+                    "column for diameters or radii, and a case of this powder.");
+}
+
 } // namespace
 
-std::vector<GivenParticle> read_given_particles(const std::string &file, const double density,
+std::vector<GivenParticle> read_given_particles(const std::string &file, const ParticleType &type,
                                                 MPI_Comm comm)
 {
   const Table table = parse_table(read_file(file, comm), file);
@@ -53,7 +72,8 @@ std::vector<GivenParticle> read_given_particles(const std::string &file, const d
     GivenParticle particle;
     particle.centre = {row[places.x], row[places.y], row[places.z]};
     particle.radius = places.radius >= 0 ? row[places.radius] : 0.5 * row[places.diameter];
-    particle.mass = places.mass >= 0 ? row[places.mass] : sphere_mass(particle.radius, density);
+    particle.mass =
+        places.mass >= 0 ? row[places.mass] : sphere_mass(particle.radius, type.density);
     const bool is_finite = std::isfinite(norm_square(particle.centre)) &&
                            std::isfinite(particle.radius) && std::isfinite(particle.mass);
     if (!is_finite || particle.radius <= 0. || particle.mass <= 0.)
@@ -65,6 +85,7 @@ std::vector<GivenParticle> read_given_particles(const std::string &file, const d
   }
   if (particles.empty())
     throw UserError(file + ": it has no particles. Give a row for each of them.");
+  check_sizes(particles, type, file);
   return particles;
 }
 

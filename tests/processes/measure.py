@@ -102,6 +102,10 @@ def check_spreading(folder: Path) -> None:
     for key, value in again.items():
         # When a run weighs, in the first step after the time for it, the plate has begun its next stroke.
         assert abs(value - own[key]) <= 1e-6 * abs(own[key]), (key, value, own[key])
+    beside = read_particles(folder / "particles.csv") + (0., 0., 1., 0.)
+    np.savetxt(folder / "beside.csv", beside, delimiter=",", header="x,y,z,d", comments="", fmt="%.17g")
+    done = tool(str(SPREADING), str(folder / "beside.csv"))
+    assert done.returncode == 1 and "On the measuring plate there is a particle at z = 1" in done.stderr, done.stderr
     layers = sorted(folder.glob("*_layers*.vtu"))
     layers = [file for file in layers if "solids" not in file.name]
     assert len(layers) == last + 1, layers
@@ -142,6 +146,7 @@ def check_refusals(folder: Path) -> None:
             ("words.csv", "x,y,z,d\n1,2,3,4\n1,2,3\n", "words.csv:3: this is no row of 4 numbers"),
             ("flat.csv", "x,y,z,d\n0,0,0,0\n", "particle 1 has no finite place or no positive size"),
             ("far.csv", "x,y,z,d\n1,1,1,1e-4\n", "far.csv: None of the 1 particles lies on the disc"),
+            ("large.csv", "x,y,z,diameter\n0,1e-4,0,2e-4\n", "a mean diameter of 200 um"),
             ("empty.vtu", "nothing", "cannot be read"),
             ("empty.csv", "", "it is empty")):
         (folder / name).write_text(content, encoding="utf-8")

@@ -50,6 +50,20 @@ struct OnPlate
   }
 };
 
+/// What lies beside the slice would count to the masses of its plate.
+void check_depth(const std::vector<GivenParticle> &particles, const Apparatus &apparatus,
+                 const double plate_height)
+{
+  for (const GivenParticle &particle : particles)
+    if (apparatus.is_over_plate(particle.centre, plate_height) &&
+        (particle.centre.z < -particle.radius ||
+         particle.centre.z > apparatus.depth + particle.radius))
+      throw UserError(
+          "On the measuring plate there is a particle at z = " + format(particle.centre.z) +
+          " m, and the apparatus reaches from z = 0 to its depth, " + format(apparatus.depth) +
+          " m. Give what lies between these, or a case of that depth.");
+}
+
 /// Masses and relative densities, of all layers one after the other.
 void append_layers(const std::vector<OnPlate> &layers, const double full,
                    std::vector<Measurement> &measured)
@@ -120,8 +134,11 @@ std::vector<Measurement> SpreadingParameters::measure(
                     " layers. Give the file after the last layer, or one for each layer.");
   const Apparatus apparatus(*this, parameters.physics.largest_diameter());
   std::vector<OnPlate> layers;
-  for (std::size_t k = 0; k < moments.size(); ++k)
-    layers.emplace_back(moments[k], apparatus, plate_level(n_layers - moments.size() + k));
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    const double level = plate_level(n_layers - moments.size() + k);
+    check_depth(moments[k], apparatus, level);
+    layers.emplace_back(moments[k], apparatus, level);
+  }
   if (layers.back().present.number == 0)
     throw UserError(
         "None of the " + std::to_string(moments.back().size()) +
