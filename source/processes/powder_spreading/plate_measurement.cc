@@ -2,6 +2,7 @@
 #include <eunoe/processes/powder_spreading/plate_measurement.h>
 #include <eunoe/simulation/parameters.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,11 +10,15 @@ namespace eunoe::spreading {
 
 namespace {
 
-/// Number of layers, of the thickness of one, that the bed on the plate is high.
+/// Number of layers, of the thickness of one, up to where the last pass can leave powder.
 unsigned int layers_of_bed(const SpreadingParameters &p)
 {
-  const double first = p.layer_thickness > 0. ? p.first_thickness / p.layer_thickness : 0.;
-  return p.n_layers + static_cast<unsigned int>(std::lround(first));
+  if (p.layer_thickness <= 0.)
+    return p.n_layers;
+  const double under_spreader = (p.first_thickness + p.clearance) / p.layer_thickness;
+  const double rounding = 1e-6;
+  return p.n_layers - 1 +
+         std::max(1u, static_cast<unsigned int>(std::ceil(under_spreader - rounding)));
 }
 
 /// Columns of the surface's heights, in parts of the smallest diameter.
