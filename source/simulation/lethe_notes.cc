@@ -44,8 +44,15 @@ public:
 
   bool has(const EntryPath &path, const std::string &name, const std::string &value) const
   {
+    return value_of(path, name, "") == value;
+  }
+
+  /// Value of an entry, or of its default.
+  std::string value_of(const EntryPath &path, const std::string &name,
+                       const std::string &by_default) const
+  {
     const InputEntry *const entry = find(path, name);
-    return entry != nullptr && entry->value == value;
+    return entry == nullptr ? by_default : entry->value;
   }
 
   /// Number of entries anywhere with a name and a value.
@@ -59,6 +66,24 @@ public:
 private:
   const std::vector<InputEntry> &entries;
 };
+
+/// Where contacts follow other laws in Lethe.
+void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
+{
+  const EntryPath model = {"model parameters"};
+  const std::string law = input.value_of(model, "particle particle contact force method", ""),
+                    of_walls =
+                        input.value_of(model, "particle wall contact force method", "nonlinear");
+  if (law == "DMT")
+    notes.emplace_back("Lethe: particles that attract each other across a gap by DMT also feel the "
+                       "force and the torque of the last other contact that was computed; here "
+                       "they feel their attraction alone.");
+  if (of_walls == "nonlinear" && (law == "hertz" || law == "hertz_mindlin_limit_force"))
+    notes.push_back("Lethe: walls of the law 'nonlinear' recompute the tangential displacement at "
+                    "the Coulomb limit and damp it, as 'hertz_mindlin_limit_overlap' does; here "
+                    "they have the law of the particles, '" +
+                    law + "'.");
+}
 
 } // namespace
 
@@ -89,10 +114,7 @@ std::vector<std::string> notes_for_lethe(const std::vector<InputEntry> &entries)
   if (balance != nullptr && balance->value != "none")
     notes.emplace_back("Lethe: contacts of particles lose their history at every load balancing; "
                        "here they keep it.");
-  if (input.has(model, "particle particle contact force method", "DMT"))
-    notes.emplace_back("Lethe: particles that attract each other across a gap by DMT also feel the "
-                       "force and the torque of the last other contact that was computed; here "
-                       "they feel their attraction alone.");
+  add_notes_on_laws(input, notes);
   if (input.count("custom distribution interpolation", "true") > 0)
     notes.emplace_back("Lethe: interpolated custom distributions given by volume were sampled "
                        "wrongly until July 2026.");

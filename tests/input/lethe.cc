@@ -2,6 +2,8 @@
 // entries for fluids are ignored and those out of scope refused, each with one line. What has
 // another default there, or other results, is said.
 
+#include <eunoe/simulation/lethe_notes.h>
+
 #include "tests.h"
 
 using namespace eunoe;
@@ -232,6 +234,33 @@ void print_problems(const std::string &text)
     test::print("note: " + note);
 }
 
+/// The notes on an input that has no others than those on what @p text says.
+void print_notes(const std::string &name, const std::string &text)
+{
+  const std::string without_notes =
+      "set dimension = 3\nsubsection simulation control\n set output frequency = 10\nend\n"
+      "subsection insertion info\n set insertion method = list\nend\n"
+      "subsection model parameters\n set integration method = explicit_euler\nend\n";
+  Problems problems;
+  const std::vector<InputEntry> entries = parse_input(without_notes + text, "case.prm", problems);
+  test::check("notes on " + name, problems.empty(), problems.text());
+  for (const std::string &note : notes_for_lethe(entries))
+    test::print("note: " + note);
+}
+
+/// What @p entries in 'model parameters' say.
+std::string model(const std::string &entries)
+{
+  return "subsection model parameters\n" + entries + "end\n";
+}
+
+/// Laws of particles, by Lethe's names, and of walls.
+std::string laws(const std::string &particles, const std::string &walls)
+{
+  return model(" set particle particle contact force method = " + particles +
+               "\n set particle wall contact force method = " + walls + "\n");
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -289,4 +318,9 @@ EUNOE_MPI_TEST()
   print_problems("set dimension = 3\nsubsection simulation control\n set output frequency = 10\n"
                  "end\nsubsection insertion info\n set insertion frequency = 7\nend\n"
                  "subsection mesh\n set expand particle-wall contact search = true\nend\n");
+
+  print_notes("walls by default", model(" set particle particle contact force method = hertz\n"));
+  print_notes("limited force", laws("hertz_mindlin_limit_force", "nonlinear"));
+  print_notes("limited overlap", laws("hertz_mindlin_limit_overlap", "nonlinear"));
+  print_notes("linear walls", laws("hertz", "linear"));
 }
