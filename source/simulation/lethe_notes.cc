@@ -1,6 +1,7 @@
 #include <eunoe/simulation/lethe_notes.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace eunoe {
 
@@ -55,6 +56,57 @@ public:
     return entry == nullptr ? by_default : entry->value;
   }
 
+  double number(const EntryPath &path, const std::string &name, const double by_default) const
+  {
+    const InputEntry *const entry = find(path, name);
+    return entry == nullptr ? by_default : std::strtod(entry->value.c_str(), nullptr);
+  }
+
+  bool has_rolling_resistance() const
+  {
+    const std::string method =
+        value_of({"model parameters"}, "rolling resistance torque method", "constant");
+    return method != "none" && method != "no_resistance";
+  }
+
+  /// Whether particles meet a rolling resistance at walls: a pair takes the harmonic mean of its
+  /// coefficients, so neither may be 0.
+  bool has_rolling_resistance_at_walls() const
+  {
+    const std::string properties = "lagrangian physical properties";
+    if (!has_rolling_resistance() || number({properties}, "rolling friction wall", 0.1) == 0.)
+      return false;
+    const double n_types = number({properties}, "number of particle types", 1.);
+    for (unsigned int type = 0; type < n_types; ++type)
+      if (number({properties, "particle type " + std::to_string(type)},
+                 "rolling friction particles", 0.1) != 0.)
+        return true;
+    return false;
+  }
+
+  bool has_turning_walls() const
+  {
+    const EntryPath grid = {"grid motion"};
+    if (has(grid, "motion type", "rotational") && number(grid, "grid rotational speed", 0.) != 0.)
+      return true;
+    return std::any_of(entries.begin(), entries.end(), [this](const InputEntry &entry) {
+      return entry.path.size() == 2 && entry.path[0] == "DEM boundary conditions" &&
+             has(entry.path, "type", "rotational") &&
+             number(entry.path, "rotational speed", 0.) != 0.;
+    });
+  }
+
+  bool has_turning_solids() const
+  {
+    return std::any_of(entries.begin(), entries.end(), [this](const InputEntry &entry) {
+      const EntryPath &path = entry.path;
+      return path.size() > 2 && path[0] == "solid objects" && path[1] != "solid volumes" &&
+             path.back() == "angular velocity" && entry.name == "Function expression" &&
+             // Three expressions, of which one is not 0.
+             value_of(path, entry.name, "").find_first_not_of("0.;+- \t") != std::string::npos;
+    });
+  }
+
   /// Number of entries anywhere with a name and a value.
   std::ptrdiff_t count(const std::string &name, const std::string &value) const
   {
@@ -83,6 +135,11 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
                     "the Coulomb limit and damp it, as 'hertz_mindlin_limit_overlap' does; here "
                     "they have the law of the particles, '" +
                     law + "'.");
+  if (input.has_rolling_resistance_at_walls() &&
+      (input.has_turning_walls() || input.has_turning_solids()))
+    notes.emplace_back("Lethe: rolling resistance at walls and solids goes by the spin of the "
+                       "particle alone; here by its spin relative to theirs, so that a particle "
+                       "that turns with them meets none.");
 }
 
 } // namespace

@@ -261,6 +261,27 @@ std::string laws(const std::string &particles, const std::string &walls)
                "\n set particle wall contact force method = " + walls + "\n");
 }
 
+const std::string turning_wall =
+    "subsection DEM boundary conditions\n set number of boundary conditions = 1\n"
+    " subsection boundary condition 0\n  set type = rotational\n"
+    "  set rotational speed = 2\n end\nend\n";
+
+/// A solid as in files of 2022, with an angular velocity.
+std::string solid(const std::string &angular_velocity)
+{
+  return "subsection solid objects\n set number of solids = 1\n subsection solid object 0\n"
+         "  subsection angular velocity\n   set Function expression = " +
+         angular_velocity + "\n  end\n end\nend\n";
+}
+
+/// Coefficients of rolling friction of particles and walls.
+std::string rolling_friction(const std::string &particles, const std::string &walls)
+{
+  return "subsection lagrangian physical properties\n subsection particle type 0\n"
+         "  set rolling friction particles = " +
+         particles + "\n end\n set rolling friction wall = " + walls + "\nend\n";
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -323,4 +344,10 @@ EUNOE_MPI_TEST()
   print_notes("limited force", laws("hertz_mindlin_limit_force", "nonlinear"));
   print_notes("limited overlap", laws("hertz_mindlin_limit_overlap", "nonlinear"));
   print_notes("linear walls", laws("hertz", "linear"));
+  print_notes("a drum", turning_wall);
+  print_notes("a drum without rolling resistance",
+              turning_wall + model(" set rolling resistance torque method = no_resistance\n"));
+  print_notes("a drum without rolling friction", turning_wall + rolling_friction("0.1", "0"));
+  print_notes("particles without rolling friction", turning_wall + rolling_friction("0.0", "0.1"));
+  print_notes("a solid at rest", solid("0; 0.0 ;0"));
 }
