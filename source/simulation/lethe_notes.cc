@@ -140,6 +140,11 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
     notes.emplace_back("Lethe: rolling resistance at walls and solids goes by the spin of the "
                        "particle alone; here by its spin relative to theirs, so that a particle "
                        "that turns with them meets none.");
+  if (input.has_turning_solids())
+    notes.emplace_back("Lethe: the surface of a solid that turns with w moves with (|x - c| w) x n "
+                       "there, where x is the particle's centre, c the centre of rotation and n "
+                       "the normal of the contact; here with w x r, where r leads from c to the "
+                       "surface. They agree only where n is radial and r perpendicular to w.");
 }
 
 } // namespace

@@ -350,4 +350,7 @@ EUNOE_MPI_TEST()
   print_notes("a drum without rolling friction", turning_wall + rolling_friction("0.1", "0"));
   print_notes("particles without rolling friction", turning_wall + rolling_friction("0.0", "0.1"));
   print_notes("a solid at rest", solid("0; 0.0 ;0"));
+  print_notes("a solid that turns", solid("0; 0; if(t < 1, 0, 2)"));
+  print_notes("a solid that turns without rolling friction",
+              solid("w; 0; 0") + rolling_friction("0.1", "0"));
 }
