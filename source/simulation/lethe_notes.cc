@@ -135,6 +135,16 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
                     "the Coulomb limit and damp it, as 'hertz_mindlin_limit_overlap' does; here "
                     "they have the law of the particles, '" +
                     law + "'.");
+  const bool pairs_have_necks = law == "hertz_JKR" || law == "JKR";
+  if (pairs_have_necks || of_walls == "JKR")
+    notes.push_back(
+        "Lethe: JKR acts while the bodies overlap, and forms no neck; tangential and rolling "
+        "stiffness and all damping go by sqrt(R d) instead of the contact radius, and the limit of "
+        "rolling lacks twice the pull-off force." +
+        std::string(pairs_have_necks
+                        ? " Between particles the Coulomb limit does not count the damping, and "
+                          "the tangential displacement grows on beyond it."
+                        : ""));
   if (input.has_rolling_resistance_at_walls() &&
       (input.has_turning_walls() || input.has_turning_solids()))
     notes.emplace_back("Lethe: rolling resistance at walls and solids goes by the spin of the "

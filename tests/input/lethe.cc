@@ -344,6 +344,8 @@ EUNOE_MPI_TEST()
   print_notes("limited force", laws("hertz_mindlin_limit_force", "nonlinear"));
   print_notes("limited overlap", laws("hertz_mindlin_limit_overlap", "nonlinear"));
   print_notes("linear walls", laws("hertz", "linear"));
+  print_notes("necks", laws("hertz_JKR", "nonlinear"));
+  print_notes("necks at walls", laws("hertz_mindlin_limit_overlap", "JKR"));
   print_notes("a drum", turning_wall);
   print_notes("a drum without rolling resistance",
               turning_wall + model(" set rolling resistance torque method = no_resistance\n"));
