@@ -145,6 +145,10 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
                         ? " Between particles the Coulomb limit does not count the damping, and "
                           "the tangential displacement grows on beyond it."
                         : ""));
+  if (law == "linear" && input.has_rolling_resistance())
+    notes.emplace_back("Lethe: with 'linear', versions of 2026 exchange rolling friction and "
+                       "rolling viscous damping between particles; here each entry is what it is "
+                       "called.");
   if (input.has_rolling_resistance_at_walls() &&
       (input.has_turning_walls() || input.has_turning_solids()))
     notes.emplace_back("Lethe: rolling resistance at walls and solids goes by the spin of the "

@@ -346,6 +346,9 @@ EUNOE_MPI_TEST()
   print_notes("linear walls", laws("hertz", "linear"));
   print_notes("necks", laws("hertz_JKR", "nonlinear"));
   print_notes("necks at walls", laws("hertz_mindlin_limit_overlap", "JKR"));
+  print_notes("linear particles", laws("linear", "linear"));
+  print_notes("linear particles without rolling resistance",
+              laws("linear", "linear") + model(" set rolling resistance torque method = none\n"));
   print_notes("a drum", turning_wall);
   print_notes("a drum without rolling resistance",
               turning_wall + model(" set rolling resistance torque method = no_resistance\n"));
