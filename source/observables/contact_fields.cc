@@ -3,7 +3,9 @@
 namespace eunoe {
 namespace {
 
-/// Coordination number and forces per contact of every particle, in its pictures.
+/// Coordination number and forces per contact of every particle, in its pictures. Contacts count
+/// that have an overlap, so that the number is that of touching surfaces, not of attracting
+/// neighbours; a solid may have several with one particle.
 class ContactFields : public Observable
 {
 public:
@@ -34,8 +36,10 @@ public:
 
 const ObservableRegistry::Registration registration(observables(), "contact fields", [] {
   return std::make_unique<SectionOf<ContactFields, SwitchSection>>(
-      "contact fields", "Whether the particles in pictures have their coordination number and mean "
-                        "normal and tangential force of their contacts.");
+      "contact fields",
+      "Whether the particles in pictures have their coordination number, which counts "
+      "contacts with an overlap, and the mean normal and tangential force of "
+      "these contacts.");
 });
 
 } // namespace
