@@ -78,7 +78,12 @@ void ContactParameters::check_with(const PhysicalProperties &physics,
                "is '" + method +
                    "', and all particles have a surface energy of 0, so that nothing attracts.",
                "Set '" + entry + "'.");
-  check.advise(largest <= 0. || !walls || physics.wall.surface_energy > 0. ||
+  // Which surfaces there are, and so which of these materials are in use, is not known yet.
+  double largest_of_walls = 0.;
+  const Materials all = physics.materials();
+  for (int m = physics.wall_material(); m < all.size(); ++m)
+    largest_of_walls = std::max(largest_of_walls, all[m].surface_energy);
+  check.advise(largest <= 0. || !walls || largest_of_walls > 0. ||
                    check.is_written(properties, of_wall),
                properties, of_wall,
                "is 0 while particles have one, so that they do not stick to walls and solids: a "

@@ -65,6 +65,8 @@ DMT = MODEL + "particle particle contact force method = DMT"
 DMT_OF_WALLS = MODEL + "particle wall contact force method = DMT"
 ENERGY = TYPE + "surface energy particles = 1e-3"
 ENERGY_OF_WALL = "lagrangian physical properties/surface energy wall = "
+OWN = "lagrangian physical properties/wall material 0/"
+OWN_MATERIAL = ["lagrangian physical properties/number of wall materials = 1", OWN + "surfaces = boundary"]
 SLEEP = MODEL + "adaptive sparse contacts/"
 CONDITION = "DEM boundary conditions/"
 
@@ -77,6 +79,11 @@ DOUBTFUL = {
     "adhesion without a surface energy": ([DMT, DMT_OF_WALLS], ["and all particles have a surface energy of 0"]),
     "walls without a surface energy": ([DMT, DMT_OF_WALLS, ENERGY], ["so that they do not stick to walls and solids"]),
     "walls that are not to stick": ([DMT, DMT_OF_WALLS, ENERGY, ENERGY_OF_WALL + "0"], []),
+    "walls of a material with a surface energy": (
+        [DMT, DMT_OF_WALLS, ENERGY, *OWN_MATERIAL, OWN + "surface energy wall = 1e-3"], []),
+    "walls of a material without a surface energy": (
+        [DMT, DMT_OF_WALLS, ENERGY, *OWN_MATERIAL, OWN + "friction coefficient wall = 0.2"],
+        ["so that they do not stick to walls and solids"]),
     "a list that comes once": ([*LIST, TYPE + "number of particles = 5"],
                                ["entry 'insertion frequency': is 0, so that the particles come once: 2 of 5."]),
     "no such boundary": ([CONDITION + "number of boundary conditions = 1",
