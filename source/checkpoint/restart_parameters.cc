@@ -14,7 +14,9 @@ void RestartParameters::declare(dealii::ParameterHandler &prm)
   declare::entry(
       prm, "checkpoint", checkpoint,
       "Whether checkpoints are written: at intervals, at the end, and when the run is asked to "
-      "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3.");
+      "stop (SIGTERM, SIGINT, SIGUSR1); it then ends with exit code 3. Send SIGUSR1 to Open MPI's "
+      "mpirun: after SIGTERM or SIGINT it kills the processes within seconds, before a large run "
+      "has written.");
   declare::count(prm, "frequency", frequency, "Steps between checkpoints; 0: by the clock alone.");
   declare::not_negative(prm, "wall time interval", minutes,
                         "Minutes of wall-clock time between checkpoints; 0: by steps alone.");
