@@ -2,6 +2,7 @@
 
 #include <eunoe/contact/contact_grid.h>
 #include <eunoe/core/box_parts.h>
+#include <eunoe/core/exact_sum.h>
 #include <eunoe/core/gather.h>
 #include <eunoe/core/sparse_exchange.h>
 
@@ -9,6 +10,7 @@
 #include "judgements.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -207,23 +209,66 @@ void judge_overlap(const Overlap &overlap, const std::string &what, const FaultP
     problems.warn(insertion_info + ":", text, mend);
 }
 
-/// Whether the particles of one event are out of the way before the next comes into the same box.
-/// @param event this rank's share of one event
-void judge_interval(const Parameters &parameters, const std::vector<NewParticle> &event,
-                    const double largest_diameter, MPI_Comm comm, Problems &problems)
+/// Unit vector along which the particles of an event leave: that of their velocities, or of gravity
+/// where one of them has none; zero if nothing moves it.
+/// @param event this rank's share
+Vec3 direction_of(const std::vector<NewParticle> &event, const double slowest, const Vec3 &gravity,
+                  MPI_Comm comm)
 {
+  std::array<ExactSum, 3> sums;
+  for (const NewParticle &particle : event)
+    for (unsigned int d = 0; d < 3; ++d)
+      sums[d] += particle.velocity[d];
+  Vec3 sum;
+  for (unsigned int d = 0; d < 3; ++d) {
+    sums[d].reduce(comm);
+    sum[d] = sums[d].value();
+  }
+  const Vec3 along = slowest > 0. && norm(sum) > 0. ? sum : gravity;
+  return norm(along) > 0. ? along / norm(along) : Vec3();
+}
+
+/// Distance from the first to the last centre of an event in a direction (m).
+/// @param event this rank's share
+double extent_along(const Vec3 &direction, const std::vector<NewParticle> &event, MPI_Comm comm)
+{
+  // The lowest as the largest of the negatives, so that one call serves both.
+  const double none = -std::numeric_limits<double>::infinity();
+  double ends[2] = {none, none};
+  for (const NewParticle &particle : event) {
+    const double at = dot(direction, particle.position);
+    ends[0] = std::max(ends[0], -at);
+    ends[1] = std::max(ends[1], at);
+  }
+  MPI_Allreduce(MPI_IN_PLACE, ends, 2, MPI_DOUBLE, MPI_MAX, comm);
+  return ends[0] + ends[1];
+}
+
+/// Whether the particles of one event are out of the way before the next comes into the same box.
+/// All of an event move alike, so that its last particle is out of the way when they have moved by
+/// its length.
+/// @param event this rank's share of one event
+void judge_interval(const Parameters &parameters, std::vector<NewParticle> event,
+                    const double largest_diameter, const Domain &domain, Problems &problems)
+{
+  MPI_Comm comm = domain.communicator();
+  leave_out_what_is_outside(event, domain);
   double slowest = std::numeric_limits<double>::infinity();
   for (const NewParticle &particle : event)
     slowest = std::min(slowest, norm(particle.velocity));
   MPI_Allreduce(MPI_IN_PLACE, &slowest, 1, MPI_DOUBLE, MPI_MIN, comm);
+  const Vec3 &gravity = parameters.physics.gravity;
   const double time = parameters.insertion.frequency * parameters.control.time_step;
-  const double way = slowest * time + 0.5 * norm(parameters.physics.gravity) * time * time;
-  if (way < largest_diameter)
+  const double way = slowest * time + 0.5 * norm(gravity) * time * time;
+  const double length =
+      largest_diameter + extent_along(direction_of(event, slowest, gravity, comm), event, comm);
+  if (way < length)
     problems.warn(insertion_info + " / entry 'insertion frequency':",
                   "between two events, the particles move by no more than " + format(way) +
-                      " m, less than their diameter, so that those of the next come to lie in "
-                      "them.",
-                  "Raise the frequency, which is a number of steps, or the initial velocity.");
+                      " m, while an event is " + format(length) +
+                      " m long in that direction, so that those of the next come to lie in them.",
+                  "Raise the frequency, which is a number of steps, or the initial velocity, or "
+                  "insert fewer at a time.");
 }
 
 /// Whether particles come, and as many as the types have.
@@ -304,8 +349,7 @@ void judge_insertion(const Parameters &parameters, const Insertion &insertion,
   judge_number(parameters, insertion, problems);
   if (insertion.repeats_places() && !events.empty() && !parameters.insertion.removes &&
       number_of_events(parameters) > 1 && insertion.supply(2) > insertion.supply(1))
-    judge_interval(parameters, events[0], insertion.largest_diameter(), domain.communicator(),
-                   problems);
+    judge_interval(parameters, events[0], insertion.largest_diameter(), domain, problems);
   Overlap of_pairs, with_solids;
   for (std::size_t e = 0; e < events.size(); ++e) {
     std::vector<NewParticle> inside;
