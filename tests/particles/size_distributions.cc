@@ -209,6 +209,36 @@ void test_tables()
   check_close("interpolated: a step of the CDF", finest, 0.3, error);
 }
 
+/// Diameters without a share at the ends of a table are no sizes, and without them the same random
+/// numbers give the same diameters.
+void test_empty_ends()
+{
+  const auto table = [](const std::string &diameters, const std::string &shares,
+                        const std::string &more) {
+    SizeDistributionParameters p;
+    p.type = "custom";
+    set(p, "set custom distribution diameters values = " + diameters +
+               "\nset custom distribution diameters probabilities = " + shares + "\n" + more);
+    return p;
+  };
+  const auto ends = [](const SizeDistributionParameters &p, double smallest, double largest) {
+    return p.make()->smallest() == smallest && p.make()->largest() == largest;
+  };
+  const std::string interpolated = "set custom distribution interpolation = true\n",
+                    cdf = "set custom distribution probability function type = CDF\n";
+  const std::string four = "10e-6, 20e-6, 30e-6, 40e-6", pdf = "0, 0.3, 0.7, 0";
+  check("empty classes are no sizes", ends(table(four, pdf, ""), 20e-6, 30e-6));
+  check("and change no draw",
+        draw(table(four, pdf, "")) == draw(table("20e-6, 30e-6", "0.3, 0.7", "")));
+  check("empty pieces are no sizes", ends(table(four, pdf, interpolated), 10e-6, 30e-6));
+  check("and change no draw either",
+        draw(table(four, pdf, interpolated)) ==
+            draw(table("10e-6, 20e-6, 30e-6", "0, 0.3, 0.7", interpolated)));
+  const std::string five = four + ", 50e-6", sums = "0, 0, 0.3, 1, 1";
+  check("nor empty classes of a CDF", ends(table(five, sums, cdf), 30e-6, 40e-6));
+  check("nor its empty pieces", ends(table(five, sums, cdf + interpolated), 20e-6, 40e-6));
+}
+
 } // namespace
 
 EUNOE_TEST()
@@ -218,6 +248,7 @@ EUNOE_TEST()
   test_lognormal();
   test_weighting();
   test_tables();
+  test_empty_ends();
   SizeDistributionParameters p;
   p.average_diameter = 1e-3;
   check("uniform", draw(p).front() == 1e-3 && draw(p).back() == 1e-3);

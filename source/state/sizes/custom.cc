@@ -74,10 +74,11 @@ std::unique_ptr<SizeDistribution> make_classes(const SizeDistributionParameters 
   std::vector<double> diameters, numbers;
   for (std::size_t c = 0; c < table.diameters.size(); ++c) {
     const double d = table.diameters[c];
-    if (d < low || d > high)
+    const double share = table.shares[c] * p.weight(d);
+    // A class without particles is no size: tables of laser diffraction have them at both ends.
+    if (d < low || d > high || share == 0.)
       continue;
     diameters.push_back(d);
-    const double share = table.shares[c] * p.weight(d);
     numbers.push_back(p.basis == "volume" ? share / (d * d * d) : share);
   }
   if (diameters.empty())

@@ -25,6 +25,13 @@ public:
     const double all = cumulative.back();
     for (double &share : cumulative)
       share /= all;
+    std::size_t first = 0, last = d.size() - 1;
+    while (first < last && !(numbers[first] > 0.))
+      ++first;
+    while (last > first && !(numbers[last] > 0.))
+      --last;
+    least = d[first > 0 ? first - 1 : 0]; // where the first piece begins
+    most = d[last];
   }
 
   double diameter(double u) const override
@@ -37,13 +44,14 @@ public:
     const double share = width > 0. ? (u - cumulative[k - 1]) / width : 0.;
     return d[k - 1] + share * (d[k] - d[k - 1]);
   }
-  double smallest() const override { return d.front(); }
-  double largest() const override { return d.back(); }
+  double smallest() const override { return least; }
+  double largest() const override { return most; }
   double mean_cube() const override { return cube; }
 
 private:
   std::vector<double> d, cumulative;
   double cube = 0.;
+  double least, most; ///< ends of the pieces that have particles (m)
 };
 
 } // namespace eunoe
