@@ -21,6 +21,17 @@ bool ParameterCheck::is_changed(const Path &path, const std::string &entry) cons
   return set != nullptr && !set->is_default;
 }
 
+bool ParameterCheck::is_changed_beside(const Path &path, const std::string &entry,
+                                       const std::string &choice) const
+{
+  if (!is_changed(path, entry))
+    return false;
+  const InputEntry *const set = find(path, entry), *const chosen = find(path, choice);
+  // "case.prm:12"
+  const auto file_of = [](const InputEntry &e) { return e.where.substr(0, e.where.rfind(':')); };
+  return chosen == nullptr || set > chosen || file_of(*set) == file_of(*chosen);
+}
+
 bool ParameterCheck::has_changes(const std::string &subsection) const
 {
   return std::any_of(entries.begin(), entries.end(), [&](const InputEntry &entry) {

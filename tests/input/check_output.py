@@ -140,6 +140,19 @@ DOUBTFUL = {
                             "insertion info/insertion frequency = 100", "simulation control/iteration end = 100"],
                            ["between two events, the particles move by no more than 1.962e-07 m",
                             "and a list of velocities 1: the other particles have 0 there."]),
+    "a deviation of equal sizes": (
+        [TYPE + "standard deviation = 1e-4"],
+        ["entry 'standard deviation' has no effect, as the 'size distribution type' is 'uniform'."]),
+    "a deviation of 0": ([TYPE + "standard deviation = 0"], []),
+    "classes beside a normal distribution": (
+        [TYPE + "size distribution type = normal", TYPE + "standard deviation = 1e-5",
+         TYPE + "custom diameters = 1e-3, 2e-3"],
+        ["entry 'custom diameters' has no effect, as the 'size distribution type' is 'normal'."]),
+    "another distribution than a file before had": (
+        [TYPE + "custom diameters = 1e-3, 2e-3", TYPE + "size distribution type = uniform"], []),
+    "a file of sizes that is not read": (
+        [ENTRY + " = 1e-6", TYPE + "size distribution type = custom", TYPE + "custom distribution filename = sizes.txt"],
+        ["entry 'custom distribution filename' has no effect, as 'custom distribution from file' is false."]),
     "pictures without end": (["simulation control/output frequency = 1",
                               "simulation control/iteration end = 2000000"],
                              ["pictures would be written."]),

@@ -42,6 +42,12 @@ public:
     return find(path, entry) != nullptr;
   }
 
+  /// Whether the user changed an entry although another one, the choice, leaves it without effect:
+  /// in the file that makes the choice, or behind it. What an included file says before a later
+  /// choice is meant for the cases that keep to its own.
+  bool is_changed_beside(const Path &path, const std::string &entry,
+                         const std::string &choice) const;
+
   /// Whether the user changed any entry in a subsection of the top level.
   bool has_changes(const std::string &subsection) const;
 

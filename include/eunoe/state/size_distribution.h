@@ -37,6 +37,11 @@ public:
 
   virtual void declare(dealii::ParameterHandler &) {}
 
+  /// Names of its own entries, and of the shared ones that it does not read, so that a user is told
+  /// of entries without effect.
+  virtual std::vector<std::string> own_entries() const { return {}; }
+  virtual std::vector<std::string> unread_entries() const { return {}; }
+
   /// Asked of the chosen kind only.
   /// @param path of the particle type
   virtual void check(const SizeDistributionParameters &, const ParameterCheck &,
@@ -78,6 +83,9 @@ struct SizeDistributionParameters
   }
 
 private:
+  /// Warns of entries that the chosen kind does not read.
+  void check_unread(const ParameterCheck &check, const ParameterCheck::Path &path) const;
+
   static constexpr double weighting_scale = 50e-6;
 
   std::map<std::string, std::shared_ptr<SizeDistributionSection>> kinds;

@@ -176,10 +176,20 @@ void check_sum(const SizeTable &table, const bool is_cdf, const ParameterCheck &
                 mend);
 }
 
+/// The lists of the input, the first under both of its names.
+std::vector<std::string> entries_of_lists()
+{
+  return {"custom distribution diameters values", "custom diameters",
+          "custom distribution diameters probabilities"};
+}
+
 class Custom : public SizeDistributionSection
 {
 public:
   void declare(dealii::ParameterHandler &prm) override;
+  std::vector<std::string> own_entries() const override;
+  /// Files for Lethe often have an 'average diameter' beside their classes.
+  std::vector<std::string> unread_entries() const override { return {"standard deviation"}; }
   void check(const SizeDistributionParameters &shared, const ParameterCheck &check,
              const ParameterCheck::Path &path) const override;
   std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &shared) const override;
@@ -220,6 +230,15 @@ void Custom::declare(dealii::ParameterHandler &prm)
                  "instead of belonging to its diameter alone.");
 }
 
+std::vector<std::string> Custom::own_entries() const
+{
+  std::vector<std::string> names = entries_of_lists();
+  names.insert(names.end(), {"custom distribution from file", "custom distribution filename",
+                             "custom distribution probability function type",
+                             "custom distribution interpolation"});
+  return names;
+}
+
 SizeTable Custom::table() const
 {
   if (from_file && !of_file)
@@ -250,6 +269,13 @@ void Custom::check(const SizeDistributionParameters &shared, const ParameterChec
       from_file ? "custom distribution filename" : "custom distribution diameters values";
   const std::string of_shares =
       from_file ? of_diameters : "custom distribution diameters probabilities";
+  const std::string choice = "custom distribution from file";
+  const std::vector<std::string> unread =
+      from_file ? entries_of_lists() : std::vector<std::string>{"custom distribution filename"};
+  for (const std::string &entry : unread)
+    check.advise(!check.is_changed_beside(path, entry, choice), path, entry,
+                 "has no effect, as '" + choice + "' is " + (from_file ? "true." : "false."),
+                 "Remove the entry, or set that to " + std::string(from_file ? "false." : "true."));
   SizeTable read;
   try {
     read = table();

@@ -1,6 +1,9 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/state/size_distribution.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace eunoe {
 
 SizeDistributionRegistry &size_distributions()
@@ -49,7 +52,30 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
 void SizeDistributionParameters::check(const ParameterCheck &check,
                                        const ParameterCheck::Path &path) const
 {
+  check_unread(check, path);
+  const std::vector<std::string> unread = kinds.at(type)->unread_entries();
+  const std::pair<std::string, double> cut_offs[] = {{"minimum diameter cutoff", smallest},
+                                                     {"maximum diameter cutoff", largest}};
+  for (const auto &[name, value] : cut_offs)
+    if (std::find(unread.begin(), unread.end(), name) == unread.end())
+      check.require(value > 0. || value == -1., path, name, "is " + format(value) + " m.",
+                    "Give a positive diameter, or -1 for the default.");
   kinds.at(type)->check(*this, check, path);
+}
+
+void SizeDistributionParameters::check_unread(const ParameterCheck &check,
+                                              const ParameterCheck::Path &path) const
+{
+  const std::string choice = "size distribution type";
+  std::vector<std::string> unread = kinds.at(type)->unread_entries();
+  for (const auto &[name, kind] : kinds)
+    if (name != type)
+      for (const std::string &entry : kind->own_entries())
+        unread.push_back(entry);
+  for (const std::string &entry : unread)
+    check.advise(!check.is_changed_beside(path, entry, choice), path, entry,
+                 "has no effect, as the '" + choice + "' is '" + type + "'.",
+                 "Remove the entry, or choose a type that reads it.");
 }
 
 void SizeDistributionParameters::check_average(const ParameterCheck &check,

@@ -20,6 +20,12 @@ private:
 class UniformSection : public SizeDistributionSection
 {
 public:
+  std::vector<std::string> unread_entries() const override
+  {
+    return {"standard deviation", "minimum diameter cutoff", "maximum diameter cutoff",
+            "distribution weighting basis"};
+  }
+
   void check(const SizeDistributionParameters &shared, const ParameterCheck &check,
              const ParameterCheck::Path &path) const override
   {
