@@ -282,6 +282,11 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
   const bool counts = !insertion.gives_particles();
   const std::string number = "subsection 'lagrangian physical properties' / subsection 'particle "
                              "type 0' / entry 'number of particles':";
+  if (const double most = parameters.physics.types[0].number; insertion.is_cut_short())
+    problems.warn(number,
+                  "is " + format_whole(most) + ", so that only the first " +
+                      format_count(most, "particle", "particles") + " of the files come.",
+                  "Give 0 for all of them.");
   if (coming > most_particles)
     problems.add(insertion_info + ":", format(coming) + " particles would come into the run.",
                  "At most " + format(most_particles) + " are possible.");

@@ -51,6 +51,9 @@ SOLID = ["solid objects/solid surfaces/number of solids = 1",
          "solid objects/solid surfaces/solid object 0/mesh/grid type = box"]
 BOX = "solid objects/solid surfaces/solid object 0/mesh/grid arguments = "
 VELOCITY = "solid objects/solid surfaces/solid object 0/translational velocity/Function expression = "
+# Two particles of 1 mm, and a third one in the second.
+FILE = ["insertion info/insertion method = file", "insertion info/list of input files = three.csv"]
+THREE = "p_x; p_y; p_z; diameters\n0.01; 0.01; 0.01; 1e-3\n0.01; 0.01; 0.012; 1e-3\n0.01; 0.01; 0.0121; 1e-3\n"
 TYPE = "lagrangian physical properties/particle type 0/"
 FEW = ["insertion info/insertion frequency = 1000",
        "insertion info/inserted number of particles at each time step = 5", TYPE + "number = 20"]
@@ -128,6 +131,8 @@ DOUBTFUL = {
                      ["searches for contacts will take much of the time"]),
     "particles that touch": ([*LIST, "insertion info/list z = 0.01, 0.0109"],
                              ["a particle overlaps another by 0.2 of its radius"]),
+    "a file that is cut short": ([*FILE, TYPE + "number of particles = 2"],
+                                 ["'number of particles': is 2, so that only the first 2 particles of the files come."]),
     "a particle in a wall": ([*LIST, "insertion info/list z = 0.0004, 0.01"],
                              ["a particle overlaps a wall or solid by 0.2 of its radius"]),
     "a fast particle": (["insertion info/initial velocity = 0, 0, -100"],
@@ -174,6 +179,7 @@ AUTO = ENTRY + " = auto"
 RAYLEIGH = math.pi * 0.5e-3 * math.sqrt(2500. / (1e8 / 2.6)) / (0.1631 * 0.3 + 0.8766)
 # Name: settings, exit code 2, and a part of the sentence.
 REFUSED = {
+    "a whole file": ([*FILE, TYPE + "number of particles = 0"], "a particle overlaps another by 1.8 of its radius"),
     "no particles and no solids": ([TYPE + "number = 0"],
                                    "no particles come into the run, and there are no solids to be seen."),
     "particles in one place": ([*LIST, "insertion info/list z = 0.01, 0.0101"],
@@ -333,6 +339,7 @@ def main(many_runs: str, folder: Path) -> int:
     folder.mkdir(parents=True)
     program = ManyRuns(many_runs, folder / "printed")
     (folder / "case.prm").write_text(BASE)
+    (folder / "three.csv").write_text(THREE)
     check_doubtful(program, folder)
     check_facts(program, folder)
     check_refused(program, folder)

@@ -59,6 +59,9 @@ public:
   /// not count.
   virtual bool gives_particles() const { return false; }
 
+  /// Whether some of these particles never come, as their type has fewer.
+  virtual bool is_cut_short() const { return false; }
+
   /// Whether every event comes to the same places.
   virtual bool repeats_places() const { return false; }
 

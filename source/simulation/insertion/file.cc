@@ -53,20 +53,35 @@ public:
     return std::min(most, events / files.size() * round + last_round);
   }
 
+  bool is_cut_short() const override
+  {
+    std::size_t given = 0;
+    for (std::size_t k = 0; k < n_in_first_round(); ++k)
+      given += files[k].n;
+    return most < given;
+  }
+
   std::vector<Vec3> known_places() const override
   {
     std::vector<Vec3> places;
-    for (const Contents &file : files)
-      for (const NewParticle &particle : file.share)
-        places.push_back(particle.position);
+    std::size_t left = most;
+    for (std::size_t k = 0; k < n_in_first_round(); ++k) {
+      for (const NewParticle &particle : files[k].share)
+        if (particle.id < left)
+          places.push_back(particle.position);
+      left -= std::min(left, files[k].n);
+    }
     return places;
   }
 
   std::vector<std::vector<NewParticle>> known_events() const override
   {
     std::vector<std::vector<NewParticle>> events;
-    for (const Contents &file : files)
-      events.push_back(file.share);
+    std::size_t left = most;
+    for (std::size_t k = 0; k < n_in_first_round() && left > 0; ++k) {
+      events.push_back(first_of(files[k].share, left));
+      left -= std::min(left, files[k].n);
+    }
     return events;
   }
 
@@ -90,10 +105,7 @@ public:
     n_supplied += n;
     const ParticleId first = ids.take(n);
     // A file that is not needed again is not kept.
-    std::vector<NewParticle> particles = repeats ? file.share : std::move(file.share);
-    particles.erase(std::remove_if(particles.begin(), particles.end(),
-                                   [n](const NewParticle &particle) { return particle.id >= n; }),
-                    particles.end());
+    std::vector<NewParticle> particles = first_of(repeats ? file.share : std::move(file.share), n);
     for (NewParticle &particle : particles)
       particle.id += first;
     return particles;
@@ -106,6 +118,18 @@ private:
     std::size_t n;
     std::vector<NewParticle> share;
   };
+
+  /// Files that come before the first comes again.
+  std::size_t n_in_first_round() const { return repeats ? files.size() : 1; }
+
+  /// Those of this rank's share that are among the first @p n of their file.
+  static std::vector<NewParticle> first_of(std::vector<NewParticle> share, const std::size_t n)
+  {
+    share.erase(std::remove_if(share.begin(), share.end(),
+                               [n](const NewParticle &particle) { return particle.id >= n; }),
+                share.end());
+    return share;
+  }
 
   void read(const std::string &file, MPI_Comm comm)
   {
