@@ -1,6 +1,7 @@
 #include <eunoe/core/declare.h>
 #include <eunoe/core/expressions.h>
 #include <eunoe/core/log.h>
+#include <eunoe/core/quoted_text.h>
 #include <eunoe/core/random.h>
 #include <eunoe/domain/domain.h>
 #include <eunoe/simulation/insertion.h>
@@ -86,32 +87,15 @@ public:
     grid.pitch = filling.distance_threshold * largest_diameter();
     grid.offset = settings.maximum_offset * largest_diameter();
     grid.order = filling.directions;
+    const std::size_t n_points = grid.capacity();
     if (settings.acceptance != "1")
       restrict_grid();
-
-    const std::size_t room = grid.capacity(), wanted = particles.n_remaining();
-    const std::string box =
-        "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
-        "room for " +
-        format_count(static_cast<double>(room), "particle", "particles") + ", but ";
-    const Vec3 extent = grid.upper - grid.lower;
-    const double narrowest = std::min({extent.x, extent.y, extent.z});
-    if (wanted > 0 && room == 0 && largest_diameter() > narrowest)
-      throw UserError(
-          box + "grains are up to " + format(largest_diameter()) + " m wide, and it is " +
-          format(narrowest) +
-          " m at its narrowest. Lengths are in metres: correct the diameter or the box.");
-    if (wanted > 0 && room == 0)
-      throw UserError(box + "there are particles to insert. Enlarge the box.");
-    if (settings.frequency == 0 && room < of_next_event())
-      throw UserError(box + std::to_string(of_next_event()) +
-                      " are to be inserted at once. Enlarge the box, or set an 'insertion "
-                      "frequency' for several events.");
-    if (settings.frequency == 0 && of_next_event() < wanted)
+    refuse_what_has_no_room(n_points);
+    if (settings.frequency == 0 && of_next_event() < particles.n_remaining())
       throw UserError(
           "subsection 'insertion info' / entry 'inserted number of particles at each time step' "
           "is " +
-          std::to_string(per_event) + ", but all " + std::to_string(wanted) +
+          std::to_string(per_event) + ", but all " + std::to_string(particles.n_remaining()) +
           " particles come in a single event, as the 'insertion frequency' is 0. Set it to 0 for "
           "all at once, or set an 'insertion frequency'.");
   }
@@ -175,6 +159,37 @@ private:
       share.push_back(p);
     }
     return share;
+  }
+
+  /// @param n_points of the grid before the acceptance function left some out
+  void refuse_what_has_no_room(const std::size_t n_points) const
+  {
+    const std::size_t room = grid.capacity(), wanted = particles.n_remaining();
+    if (wanted > 0 && room == 0 && n_points > 0)
+      throw UserError("subsection 'insertion info' / subsection 'insertion acceptance function' / "
+                      "entry 'Function expression' is '" +
+                      shortened(settings.acceptance) + "', which is positive at none of the " +
+                      format_count(static_cast<double>(n_points), "point", "points") +
+                      " of the insertion box. Lengths are in metres: correct the expression or "
+                      "the box.");
+    const std::string box =
+        "subsection 'insertion info' / entry 'insertion box points coordinates' gives a box with "
+        "room for " +
+        format_count(static_cast<double>(room), "particle", "particles") +
+        (room < n_points ? " where the acceptance function is positive, but " : ", but ");
+    const Vec3 extent = grid.upper - grid.lower;
+    const double narrowest = std::min({extent.x, extent.y, extent.z});
+    if (wanted > 0 && room == 0 && largest_diameter() > narrowest)
+      throw UserError(
+          box + "grains are up to " + format(largest_diameter()) + " m wide, and it is " +
+          format(narrowest) +
+          " m at its narrowest. Lengths are in metres: correct the diameter or the box.");
+    if (wanted > 0 && room == 0)
+      throw UserError(box + "there are particles to insert. Enlarge the box.");
+    if (settings.frequency == 0 && room < of_next_event())
+      throw UserError(box + std::to_string(of_next_event()) +
+                      " are to be inserted at once. Enlarge the box, or set an 'insertion "
+                      "frequency' for several events.");
   }
 
   void restrict_grid()
