@@ -7,6 +7,7 @@
 #include <eunoe/simulation/insertion.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace eunoe {
 
@@ -60,7 +61,7 @@ void VolumeGrid::restrict_to(const std::function<bool(const Vec3 &)> &accepts)
   for (std::size_t k = 0; k < n; ++k)
     if (accepts(cell(k) + middle))
       list.push_back(static_cast<std::uint32_t>(k));
-  accepted = list;
+  accepted = std::move(list); // it may be hundreds of megabytes
   restricted = true;
 }
 
@@ -139,7 +140,7 @@ public:
   std::vector<NewParticle> next(ParticleIds &ids) override
   {
     const std::size_t n = std::min(of_next_event(), grid.capacity());
-    const std::vector<NewParticle> share = some(ids.take(n), 1);
+    std::vector<NewParticle> share = some(ids.take(n), 1);
     particles.take(n);
     return share;
   }
