@@ -129,6 +129,21 @@ void test_touching()
   check("not where they would touch", numbers[3] == 16 && numbers[4] == 32);
 }
 
+/// A plate of 1 mm in one of the cells, in which a particle would lie.
+void test_solids()
+{
+  Case with_plate(case_on_plane(1, 16,
+                                " set insertion plane point = 0, 0, 7e-3\n"
+                                " set insertion plane normal vector = 0, 0, 1\n") +
+                  shape_input("box", "1e-3, 1e-3, 7e-3 : 4e-3, 4e-3, 8e-3"));
+  with_plate.run();
+  const auto all = particle_table(*with_plate);
+  const bool has_one = std::any_of(all.begin(), all.end(), [](const std::vector<double> &p) {
+    return p[c_x] > 0. && p[c_x] < 5e-3 && p[c_y] > 0. && p[c_y] < 5e-3;
+  });
+  check("not in a solid", all.size() == 15 && !has_one);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -136,4 +151,5 @@ EUNOE_MPI_TEST()
   test_places();
   test_events();
   test_touching();
+  test_solids();
 }

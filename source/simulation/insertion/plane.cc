@@ -5,8 +5,11 @@
 #include <eunoe/simulation/insertion.h>
 #include <eunoe/solids/box_tree.h>
 
+#include "obstacles.h"
+
 #include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace eunoe {
 namespace {
@@ -17,7 +20,8 @@ struct CuttingPlane
   Vec3 point, normal = {1., 0., 0.};
 };
 
-/// Lethe's "plane": at every event one particle in each empty cell that a plane cuts.
+/// Lethe's "plane": at every event one particle in each empty cell that a plane cuts, where it
+/// touches no surface.
 class Plane : public Insertion
 {
 public:
@@ -198,6 +202,30 @@ private:
     return inside || norm_square(box.shortest(x - cell.place)) < least * least;
   }
 
+  /// Marks the cells in whose place the largest particle would overlap the surface of a solid or a
+  /// wall. Whether a place is within a solid is not asked: solids may be vessels.
+  void take_where_solids_are(const Surroundings &surroundings, std::vector<int> &taken) const
+  {
+    // Of the radius: a particle in a corner of its cell touches the walls.
+    constexpr double tolerance = 1e-6;
+    std::vector<Solid> acting;
+    std::copy_if(surroundings.solids.begin(), surroundings.solids.end(), std::back_inserter(acting),
+                 [&](const Solid &solid) { return solid.is_active(surroundings.time); });
+    const auto [begin, end] = share_of(cells.size(), comm);
+    std::vector<Vec3> places;
+    for (std::size_t c = begin; c < end; ++c)
+      places.push_back(cells[c].place);
+    const double radius = 0.5 * largest_diameter();
+    Obstacles obstacles(std::move(acting));
+    obstacles.search(places, std::vector<double>(places.size(), radius), 0, places.size(), 0.);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      double overlap = 0.;
+      obstacles.push(k, places[k], radius, overlap);
+      if (overlap > tolerance * radius)
+        taken[begin + k] = 1;
+    }
+  }
+
   void find_free(const Surroundings &surroundings)
   {
     const ParticleArrays &p = surroundings.particles;
@@ -221,6 +249,7 @@ private:
                 taken[static_cast<std::size_t>(c)] = 1;
             });
     }
+    take_where_solids_are(surroundings, taken);
     dealii::Utilities::MPI::max(taken, comm, taken);
     for (std::size_t c = 0; c < cells.size(); ++c)
       cells[c].is_free = taken[c] == 0;
