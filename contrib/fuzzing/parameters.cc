@@ -12,7 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
   if (!problems.empty())
     return 0;
   eunoe::Problems problems_again;
-  const auto again = eunoe::Parameters::read(parameters.as_input_file(), "", {}, problems_again);
+  const auto again = eunoe::Parameters::read(parameters.as_input_file(), "", {}, problems_again,
+                                             fuzzing::loader(text));
   if (!problems_again.empty() || again.as_input_file() != parameters.as_input_file()) {
     std::fprintf(stderr, "The printed input is not read as the same:\n%s\n%s\n",
                  problems_again.text().c_str(), parameters.as_input_file().c_str());

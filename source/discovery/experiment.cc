@@ -113,8 +113,12 @@ std::string Experiment::recipe(const std::vector<std::string> &overrides) const
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
 {
   const std::string &file = parameters.case_file;
-  return Parameters::read(texts.at(file), file, overrides, problems,
-                          [this](const std::string &path) { return texts.at(path); });
+  return Parameters::read(
+      texts.at(file), file, overrides, problems, [this](const std::string &path) {
+        // A factor may name a file that the base case does not.
+        const auto known = texts.find(path);
+        return known != texts.end() ? known->second : read_file(path, MPI_COMM_SELF);
+      });
 }
 
 Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems)

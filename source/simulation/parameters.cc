@@ -194,6 +194,8 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
   Parameters parameters(count(entries));
   parameters.lethe_notes = notes;
   parameters.set(entries, problems);
+  if (load)
+    parameters.physics.read_files(load);
   const ParameterCheck check(entries, file, problems);
   const ProcessSection *const process = parameters.process();
   for (const ParameterSection *const section : parameters.sections())

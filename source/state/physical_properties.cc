@@ -217,6 +217,12 @@ void PhysicalProperties::declare(dealii::ParameterHandler &prm)
   declare::leave(prm);
 }
 
+void PhysicalProperties::read_files(const FileLoader &load)
+{
+  for (ParticleType &type : types)
+    type.sizes.read_files(load);
+}
+
 void PhysicalProperties::check(const ParameterCheck &check) const
 {
   check.advise(gravity.x != 0. || gravity.y != 0. || gravity.z != 0. ||

@@ -4,8 +4,10 @@
 
 #include "../tests.h"
 
+#include <cstdio>
 #include <fstream>
 #include <map>
+#include <sstream>
 
 using namespace test;
 
@@ -154,6 +156,12 @@ void test_tables()
   set(p, "set custom distribution from file = true\n"
          "set custom distribution filename = sizes.txt\n"
          "set custom distribution probability function type = CDF\n");
+  p.read_files([](const std::string &file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  });
+  std::remove("sizes.txt"); // what was read belongs to the parameters
   const auto share_below = [&p](double d) {
     double below = 0.;
     for (const double drawn : draw(p))

@@ -25,6 +25,13 @@ subsection mesh
   set type = gmsh
   set file name = hexahedra.msh
 end
+subsection lagrangian physical properties
+  subsection particle type 0
+    set size distribution type = custom
+    set custom distribution from file = true
+    set custom distribution filename = sizes.txt
+  end
+end
 subsection insertion info
   set insertion method = list
   set list x = 0.5
@@ -57,12 +64,13 @@ def lone_error(program: str) -> None:
 
 
 def one_sees_the_files(program: str, folder: Path) -> None:
-    """Only the first rank sees the mesh and the input, as on nodes that share no folder."""
+    """Only the first rank sees the mesh, the sizes and the input, as on nodes that share no folder."""
     shutil.rmtree(folder, ignore_errors=True)
     for name in ("first", "second"):
         (folder / name).mkdir(parents=True)
     shutil.copy(BOX, folder / "first")
     (folder / "first" / "case.prm").write_text(CASE)
+    (folder / "first" / "sizes.txt").write_text("diameter; share\n0.001; 1\n")
     launch = mpirun(2, *SHARED)[:-2]  # each rank has a number and a folder of its own
     command = []
     for before, name in ((launch, "first"), ([":"], "second")):
@@ -70,10 +78,10 @@ def one_sees_the_files(program: str, folder: Path) -> None:
     try:
         run = subprocess.run(command, timeout=HANGING, text=True, capture_output=True, check=False)
     except subprocess.TimeoutExpired:
-        fail("A mesh that one rank sees: it hangs")
+        fail("Files that one rank sees: it hangs")
         return
     if run.returncode != 0 or not (folder / "first" / "results" / "summary.json").is_file():
-        fail(f"A mesh that one rank sees: exit code {run.returncode}\n{run.stdout}{run.stderr}")
+        fail(f"Files that one rank sees: exit code {run.returncode}\n{run.stdout}{run.stderr}")
     if any((folder / "second").iterdir()):
         fail("A rank that does not write has left files.")
 

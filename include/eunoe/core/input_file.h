@@ -22,7 +22,8 @@ struct InputEntry
 /// Name of an entry for messages: "subsection 'a' / subsection 'b' / entry 'c'".
 std::string describe(const std::vector<std::string> &path, const std::string &entry);
 
-/// Gives the text of a file that another one includes; throws a UserError if it cannot be read.
+/// Gives the text of a file that an input includes or names; throws a UserError if it cannot be
+/// read.
 using FileLoader = std::function<std::string(const std::string &path)>;
 
 /// Splits the text of a `.prm` file into its entries; what is not understood is added to

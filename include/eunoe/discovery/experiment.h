@@ -52,7 +52,7 @@ private:
   std::vector<ObservableDescription> described;
   RunEstimate cost;
   std::vector<Problem> doubtful;
-  std::map<std::string, std::string> texts; ///< of the case file and those that it includes
+  std::map<std::string, std::string> texts; ///< of the case file and those that it is made of
   EntryValues base;                         ///< all entries of the base case
 };
 

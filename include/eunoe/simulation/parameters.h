@@ -40,7 +40,7 @@ public:
 
   /// Reads an input file, then the overrides ("subsection/entry = value") in their order; all that
   /// is wrong goes to @p problems.
-  /// @param load gives the files that the input file includes
+  /// @param load gives the files that the input file includes, and those of size distributions
   static Parameters read(const std::string &text, const std::string &file,
                          const std::vector<std::string> &overrides, Problems &problems,
                          const FileLoader &load = {});

@@ -68,6 +68,8 @@ struct PhysicalProperties : public ParameterSection
   double shortest_contact_time(const ParticleType &type, double radius) const;
 
   void declare(dealii::ParameterHandler &prm) override;
+  /// Reads what the particle types have in files; collective if @p load is.
+  void read_files(const FileLoader &load);
   void check(const ParameterCheck &check) const override;
 };
 

@@ -37,6 +37,10 @@ public:
 
   virtual void declare(dealii::ParameterHandler &) {}
 
+  /// Reads the files that the entries name; collective if @p load is. What is wrong with them is
+  /// for `check` to tell.
+  virtual void read_files(const FileLoader & /*load*/) {}
+
   /// Names of its own entries, and of the shared ones that it does not read, so that a user is told
   /// of entries without effect.
   virtual std::vector<std::string> own_entries() const { return {}; }
@@ -72,6 +76,9 @@ struct SizeDistributionParameters
   SizeDistributionParameters();
 
   void declare(dealii::ParameterHandler &prm);
+  /// Reads what the chosen kind has in files; collective if @p load is. Their contents belong to
+  /// the parameters then: files may change before powder is filled in again.
+  void read_files(const FileLoader &load);
   void check(const ParameterCheck &check, const ParameterCheck::Path &path) const;
   std::unique_ptr<SizeDistribution> make() const;
   /// For kinds that need an average diameter.

@@ -5,7 +5,6 @@
 #include "tabulated.h"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -120,12 +119,13 @@ std::unique_ptr<SizeDistribution> make_spread(const SizeDistributionParameters &
   return std::make_unique<Tabulated>(std::move(diameters), numbers);
 }
 
-/// Rows of two numbers; lines of words before them are a header.
-SizeTable read_table(const std::string &file)
+const std::string give_rows =
+    "Give rows of a diameter (m) and a probability, separated by ';', ',' or space.";
+
+/// Rows of two numbers; lines of words before them are a header. Throws std::invalid_argument.
+SizeTable parse_sizes(const std::string &text, const std::string &file)
 {
-  std::ifstream stream(file);
-  if (!stream)
-    throw std::invalid_argument("is " + shortened(file) + ", which cannot be read.");
+  std::istringstream stream(text);
   SizeTable table;
   unsigned int number = 0;
   for (std::string line; std::getline(stream, line);) {
@@ -144,10 +144,12 @@ SizeTable read_table(const std::string &file)
       table.shares.push_back(share);
     } else if (is_row || !table.diameters.empty())
       throw std::invalid_argument("is " + shortened(file) + ", whose line " +
-                                  std::to_string(number) + " is not a diameter and a probability.");
+                                  std::to_string(number) +
+                                  " is not a diameter and a probability. " + give_rows);
   }
   if (table.diameters.empty())
-    throw std::invalid_argument("is " + shortened(file) + ", which has no row of numbers.");
+    throw std::invalid_argument("is " + shortened(file) + ", which has no row of numbers. " +
+                                give_rows);
   return table;
 }
 
@@ -187,6 +189,7 @@ class Custom : public SizeDistributionSection
 {
 public:
   void declare(dealii::ParameterHandler &prm) override;
+  void read_files(const FileLoader &load) override;
   std::vector<std::string> own_entries() const override;
   /// Files for Lethe often have an 'average diameter' beside their classes.
   std::vector<std::string> unread_entries() const override { return {"standard deviation"}; }
@@ -195,8 +198,7 @@ public:
   std::unique_ptr<SizeDistribution> make(const SizeDistributionParameters &shared) const override;
 
 private:
-  /// Throws std::invalid_argument if the file cannot be read. It is read once: it may change before
-  /// powder is filled in again.
+  /// Throws std::invalid_argument if there is no table of the file.
   SizeTable table() const;
 
   std::vector<double> diameters = {0.001, 0.0005};
@@ -205,7 +207,8 @@ private:
   std::string file = "custom_distribution.txt";
   std::string function_type = "PDF"; ///< of each diameter, or "CDF": up to it
   bool interpolates = false;         ///< sizes between the listed ones
-  mutable std::optional<SizeTable> of_file;
+  std::optional<SizeTable> of_file;
+  std::string failure = "has not been read."; ///< why there is no table of the file
 };
 
 void Custom::declare(dealii::ParameterHandler &prm)
@@ -239,10 +242,24 @@ std::vector<std::string> Custom::own_entries() const
   return names;
 }
 
+void Custom::read_files(const FileLoader &load)
+{
+  of_file.reset();
+  if (!from_file)
+    return;
+  try {
+    of_file = parse_sizes(load(file), file);
+  } catch (const std::invalid_argument &error) {
+    failure = error.what();
+  } catch (const UserError &error) {
+    failure = "gives no sizes: " + std::string(error.what());
+  }
+}
+
 SizeTable Custom::table() const
 {
   if (from_file && !of_file)
-    of_file = read_table(file);
+    throw std::invalid_argument(failure);
   SizeTable result = from_file ? *of_file : SizeTable{diameters, fractions};
   // What a CDF gains at each diameter.
   if (function_type == "CDF")
@@ -280,8 +297,7 @@ void Custom::check(const SizeDistributionParameters &shared, const ParameterChec
   try {
     read = table();
   } catch (const std::invalid_argument &error) {
-    check.require(false, path, of_diameters, error.what(),
-                  "Give rows of a diameter (m) and a probability, separated by ';', ',' or space.");
+    check.require(false, path, of_diameters, error.what(), "");
     return;
   }
   const std::size_t n = read.diameters.size();

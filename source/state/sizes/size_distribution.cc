@@ -49,6 +49,11 @@ void SizeDistributionParameters::declare(dealii::ParameterHandler &prm)
     section->declare(prm);
 }
 
+void SizeDistributionParameters::read_files(const FileLoader &load)
+{
+  kinds.at(type)->read_files(load);
+}
+
 void SizeDistributionParameters::check(const ParameterCheck &check,
                                        const ParameterCheck::Path &path) const
 {
