@@ -16,12 +16,13 @@ from eunoe.studies.series import summary_of
 from eunoe.vtk_files import VtkError
 
 from .cases import Case
+from .kept import RECORD
 from .places import DATA
 from .runs import LAYERS, Campaign, layers_weighed, processor_of, revision_of, settings_of
 
 LEAST_LAYERS = 3  # of a run that goes on; fewer say nothing
 TABLES = (LAYERS, "measurements.csv", "apparatus.json")
-BED, RECORD = "bed.csv", "run.json"
+BED = "bed.csv"
 # Of summary.json.
 KEPT = ("version", "git_revision", "ranks", "first_step", "steps", "time_step", "simulated_time", "particle_steps",
         "particle_steps_per_second", "loop_seconds", "share_asleep", "inserted_mass", "inside_mass", "lost_particles",
@@ -34,12 +35,6 @@ def record_of(case: Case, folder: Path, layers: int, n_bins: int) -> dict[str, A
     return {"case": case.name, "finished": bool(summary), "layers": layers, "processor": processor_of(folder),
             "settings": settings_of(case), "git_revision": revision_of(folder), "x_bins": n_bins,
             **{key: summary[key] for key in KEPT if key in summary}}
-
-
-def is_kept(case: Case, data: Path) -> bool:
-    """Whether the results of a run that finished, perhaps elsewhere, are there."""
-    record = data / case.name / RECORD
-    return record.exists() and bool(read_json(record)["finished"])
 
 
 def _is_new(case: Case, is_finished: bool, layers: int, target: Path) -> bool:

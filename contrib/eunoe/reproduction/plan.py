@@ -8,8 +8,8 @@ from eunoe.studies.series import summary_of
 from eunoe.tables import Table
 
 from .cases import N_LAYERS, Case
-from .collect import is_kept
 from .cost import Cost, cost_of
+from .kept import is_kept
 from .runs import LAYERS, Campaign, layers_weighed
 
 

@@ -14,7 +14,8 @@ from eunoe.report.run_folder import read_layers
 from eunoe.report.spread_run import Group, SpreadRun
 
 from .cases import CASES, VARIANTS, Case
-from .collect import BED, RECORD
+from .collect import BED
+from .kept import RECORD
 from .places import DATA
 from .runs import UNKNOWN
 

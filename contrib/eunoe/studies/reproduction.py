@@ -26,6 +26,7 @@ from pathlib import Path
 from eunoe.folders import alone_with
 from eunoe.launch import Failure, parser
 from eunoe.reproduction.cases import CASES, Case, chosen
+from eunoe.reproduction.kept import is_kept
 from eunoe.reproduction.places import DATA, PAGE
 from eunoe.reproduction.plan import measured_speed, plan_of
 from eunoe.reproduction.runs import STOPPED, Campaign
@@ -80,7 +81,7 @@ def rebuild(options: argparse.Namespace, campaign: Campaign | None) -> None:
 
 def go_on(options: argparse.Namespace, campaign: Campaign, cases: list[Case]) -> bool:
     """Runs, takes over the results of each run when it has finished, and rebuilds; false if one of that failed."""
-    from eunoe.reproduction.collect import collect, is_kept
+    from eunoe.reproduction.collect import collect
 
     untaken = set()
 
