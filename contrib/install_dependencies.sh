@@ -29,8 +29,8 @@ checks=(
   python3-pyflakes # unused and undefined names in Python
 )
 fuzzing=(
-  clang              # compiler with libFuzzer
-  libclang-rt-14-dev # run-time libraries of the sanitizers and of libFuzzer
+  clang           # compiler with libFuzzer
+  libclang-rt-dev # run-time libraries of the sanitizers and of libFuzzer
 )
 benchmarks=(
   lammps
