@@ -8,7 +8,8 @@ case $1 in
 *mpiexec | *mpirun) ;;
 *)
   # A program without a launcher starts faster without a daemon beside it; such programs would
-  # share a folder in /tmp, so they make none.
+  # share a folder in /tmp, so they make none. Open MPI 5 starts no daemon and does not
+  # read these.
   export OMPI_MCA_ess_singleton_isolated=1 OMPI_MCA_orte_create_session_dirs=0
   ;;
 esac

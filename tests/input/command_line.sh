@@ -78,7 +78,8 @@ launch=(mpirun -np 2)
 if [ "$(id -u)" -eq 0 ]; then
   launch+=(--allow-run-as-root)
 fi
-export OMPI_MCA_rmaps_base_oversubscribe=1
+# As Open MPI 4 and 5 name it.
+export OMPI_MCA_rmaps_base_oversubscribe=1 PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe
 expect "broken case on two ranks" 2 "Did you mean 'scale'?" "${launch[@]}" "$program" broken.prm
 expect "run" 0 "Results are in results" "$program" fine.prm --set "subsection mesh/scale = 2"
 "$program" fine.prm >quiet_run.txt 2>&1
