@@ -292,6 +292,14 @@ class Report(InFolder):
         self.assert_says("The last picture")
         self.assert_says("abc1234")
 
+    def test_measured_densities_of_a_run_that_was_no_spreading(self) -> None:
+        own = str(self.file("own.csv", "layer,repeat\n1,0.51\n2,0.56\n"))
+        self.file("summary.json", json.dumps(sample_run.SUMMARY))
+        self.assertEqual(self.make("--measured", own), (2, "", f"{self.folder} is no spreading run: {own} would stand beside "
+                                                               "densities of layers, which only those have.\n"))
+        self.assertFalse((self.folder / "report.html").exists())
+        self.assertEqual(self.make("--measured", "none")[0], 0)
+
     def test_other_run_that_has_not_finished(self) -> None:
         self.file("used.prm", "set process = general\n")
         self.assert_says("The run has not finished")

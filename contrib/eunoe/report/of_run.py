@@ -43,6 +43,9 @@ def make_page(folder: Path, movie: int | None = None, measured: str = "") -> Pag
         return page
     if movie is not None:
         raise ReportError(f"{folder} is no spreading run: a movie shows a pass of one.")
+    if measured not in ("", "none"):
+        raise ReportError(f"{folder} is no spreading run: {measured} would stand beside densities of layers, which only "
+                          "those have.")
     return heap_report(run) if run.is_heap else general_report(run)
 
 
