@@ -20,12 +20,12 @@ from eunoe.repository import ROOT
 CASE = ROOT / "prm" / "examples" / "falling_particles.prm"
 SHORT = ("--set", "restart/frequency = 100", "--set", "simulation control/output frequency = 0")
 # The launcher stops a run when the file `stop` is there; the queue notes what comes back into it. On clusters that
-# kill all ranks when the first ends with another code than 0, that of a run that was stopped is lost.
+# kill all ranks when the first ends with another code than 0, that of a run that was stopped is lost. The case is checked
+# by all ranks, as it is run.
 SRUN = """#!/bin/sh
-[ "$1" = --ntasks=1 ] && shift
-case "$*" in *--check*) exec "$@" ;; esac
 [ "$1 $2" = "--kill-on-bad-exit=0 --wait=60" ] || exit 137
 shift 2
+case "$*" in *--check*) exec "$@" ;; esac
 "$@" & child=$!
 if [ -e stop ]; then
   until ls output/*/restart_0*.checkpoint > /dev/null 2> /dev/null; do sleep 0.05; done
