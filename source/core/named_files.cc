@@ -24,9 +24,7 @@ EntryValues on_this_rank(const std::string &input)
       if (!std::filesystem::is_regular_file(name, failure))
         continue;
       std::ifstream stream(name, std::ios::binary);
-      std::ostringstream all;
-      all << stream.rdbuf();
-      digests[place] += sha256(all.str());
+      digests[place] += sha256(stream);
     }
   }
   return digests;

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <istream>
+#include <vector>
 
 namespace eunoe {
 
@@ -51,19 +53,29 @@ void digest_block(const unsigned char *block, State &state)
     state[k] += s[k];
 }
 
-} // namespace
+constexpr std::size_t block_size = 64;
+constexpr State initial = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
+                           0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
 
-std::string sha256(const std::string &text)
+/// Takes in as many whole blocks as there are; returns the number of their bytes.
+std::size_t digest_blocks(const char *bytes, const std::size_t n, State &state)
 {
-  State state = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
-                 0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
-  std::string padded = text + '\x80';
-  padded.append((120 - padded.size() % 64) % 64, '\0');
-  const std::uint64_t bits = 8 * static_cast<std::uint64_t>(text.size());
+  std::size_t first = 0;
+  for (; first + block_size <= n; first += block_size)
+    digest_block(reinterpret_cast<const unsigned char *>(bytes) + first, state);
+  return first;
+}
+
+/// Takes in what is left behind the last whole block, and gives the digits.
+/// @param n_bytes length of all that was taken in
+std::string finish(std::string rest, const std::uint64_t n_bytes, State &state)
+{
+  rest += '\x80';
+  rest.append((120 - rest.size() % block_size) % block_size, '\0');
+  const std::uint64_t bits = 8 * n_bytes;
   for (int shift = 56; shift >= 0; shift -= 8)
-    padded.push_back(static_cast<char>(bits >> shift & 0xff));
-  for (std::size_t first = 0; first < padded.size(); first += 64)
-    digest_block(reinterpret_cast<const unsigned char *>(padded.data()) + first, state);
+    rest.push_back(static_cast<char>(bits >> shift & 0xff));
+  digest_blocks(rest.data(), rest.size(), state);
   std::string digits;
   for (const std::uint32_t word : state) {
     char part[9];
@@ -71,6 +83,30 @@ std::string sha256(const std::string &text)
     digits += part;
   }
   return digits;
+}
+
+} // namespace
+
+std::string sha256(const std::string &text)
+{
+  State state = initial;
+  const std::size_t whole = digest_blocks(text.data(), text.size(), state);
+  return finish(text.substr(whole), text.size(), state);
+}
+
+std::string sha256(std::istream &stream)
+{
+  State state = initial;
+  std::vector<char> part(1024 * block_size);
+  std::uint64_t n_bytes = 0;
+  while (true) {
+    stream.read(part.data(), static_cast<std::streamsize>(part.size()));
+    const auto n = static_cast<std::size_t>(stream.gcount());
+    const std::size_t whole = digest_blocks(part.data(), n, state);
+    n_bytes += n;
+    if (n < part.size())
+      return finish(std::string(part.data() + whole, n - whole), n_bytes, state);
+  }
 }
 
 } // namespace eunoe

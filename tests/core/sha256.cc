@@ -1,8 +1,11 @@
-// SHA-256 against the examples of FIPS 180-4, and for lengths close to that of a block.
+// SHA-256 against the examples of FIPS 180-4, and for lengths close to that of a block; of a
+// stream, too, which is taken in part by part.
 
 #include <eunoe/core/sha256.h>
 
 #include "../tests.h"
+
+#include <sstream>
 
 EUNOE_TEST()
 {
@@ -21,4 +24,11 @@ EUNOE_TEST()
     check(std::to_string(length) + " bytes", sha256(std::string(length, 'a')) == digest);
   check("one million", sha256(std::string(1000000, 'a')) ==
                            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+  for (const std::size_t length : {0, 3, 64, 65535, 65536, 131072, 1000000}) {
+    std::string text(length, 'a');
+    if (length > 0)
+      text[length / 2] = 'b'; // parts differ
+    std::istringstream stream(text);
+    check("a stream of " + std::to_string(length) + " bytes", sha256(stream) == sha256(text));
+  }
 }
