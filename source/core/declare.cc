@@ -79,6 +79,18 @@ template void entry(ParameterHandler &, const std::string &, std::string &, cons
 template void entry(ParameterHandler &, const std::string &, std::vector<std::string> &,
                     const std::string &);
 
+void file(ParameterHandler &prm, const std::string &name, std::string &value,
+          const std::string &documentation)
+{
+  prm.add_parameter(name, value, documentation, Patterns::FileName());
+}
+
+void files(ParameterHandler &prm, const std::string &name, std::vector<std::string> &values,
+           const std::string &documentation)
+{
+  prm.add_parameter(name, values, documentation, Patterns::List(Patterns::FileName()));
+}
+
 void between(ParameterHandler &prm, const std::string &name, double &value, const double smallest,
              const double largest, const std::string &documentation)
 {

@@ -13,10 +13,10 @@
 namespace eunoe {
 namespace {
 
-EntryValues on_this_rank(const std::string &input)
+EntryValues on_this_rank(const EntryValues &entries)
 {
   EntryValues digests;
-  for (const auto &[place, value] : values_in(input)) {
+  for (const auto &[place, value] : entries) {
     std::error_code failure;
     std::istringstream parts(value);
     for (std::string name; std::getline(parts, name, ',');) {
@@ -32,11 +32,11 @@ EntryValues on_this_rank(const std::string &input)
 
 } // namespace
 
-EntryValues named_files(const std::string &input, MPI_Comm comm)
+EntryValues named_files(const EntryValues &entries, MPI_Comm comm)
 {
   nlohmann::json json;
   if (is_first_rank(comm))
-    json = on_this_rank(input);
+    json = on_this_rank(entries);
   return nlohmann::json::parse(broadcast(json.dump(), comm)).get<EntryValues>();
 }
 

@@ -61,6 +61,36 @@ std::string key_of(const std::string &name)
   return key;
 }
 
+/// The name of a key.
+std::string name_of(const std::string &key)
+{
+  std::string name;
+  for (std::size_t k = 0; k < key.size(); ++k)
+    if (key[k] == '_') {
+      name += static_cast<char>(std::stoi(key.substr(k + 1, 2), nullptr, 16));
+      k += 2;
+    } else
+      name += key[k];
+  return name;
+}
+
+/// Adds those entries of a section of that tree that name files.
+/// @param path of the section
+void add_naming_files(const boost::property_tree::ptree &section, Path &path, EntryValues &found)
+{
+  const std::string file = dealii::Patterns::FileName().description();
+  for (const auto &[key, child] : section)
+    if (child.count("value") > 0) {
+      // Of one file, or of a list.
+      if (child.get<std::string>("pattern_description").find(file) != std::string::npos)
+        found[{path, name_of(key)}] = child.get<std::string>("value");
+    } else if (child.count("alias") == 0) {
+      path.push_back(name_of(key));
+      add_naming_files(child, path, found);
+      path.pop_back();
+    }
+}
+
 /// The value of an entry; none of one that is not declared by this name.
 std::optional<std::string> value_of(const boost::property_tree::ptree &entries, const Path &path,
                                     const std::string &name)
@@ -274,6 +304,14 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
         entry.is_default = entry.value == std::to_string(r.standard);
   }
   return complete_text(prm);
+}
+
+EntryValues entries_naming_files(const dealii::ParameterHandler &prm)
+{
+  EntryValues found;
+  Path path;
+  add_naming_files(*TreeOfEntries(prm).tree, path, found);
+  return found;
 }
 
 std::string describe_entries(const dealii::ParameterHandler &prm,

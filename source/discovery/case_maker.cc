@@ -43,10 +43,13 @@ StudyCase CaseMaker::make(const RunRequest &request) const
   one.experiment = &find(request.experiment);
   one.request = request;
   std::string input;
+  EntryValues naming_files;
   try {
     one.overrides = overrides(request);
     Problems problems;
-    input = one.experiment->make(one.overrides, problems).as_input_file();
+    const Parameters parameters = one.experiment->make(one.overrides, problems);
+    input = parameters.as_input_file();
+    naming_files = parameters.file_entries();
     if (!problems.empty())
       throw UserError(problems);
   } catch (const UserError &error) {
@@ -57,7 +60,7 @@ StudyCase CaseMaker::make(const RunRequest &request) const
   one.problem = of_first.empty() ? concatenate(one.problem, comm) : of_first;
   if (one.problem.empty()) {
     std::string files;
-    for (const auto &[place, digest] : named_files(input, comm))
+    for (const auto &[place, digest] : named_files(naming_files, comm))
       files += digest;
     one.names_files = !files.empty();
     one.key = sha256(files + input);

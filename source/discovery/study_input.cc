@@ -115,7 +115,7 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
   if (problems.empty())
     for (const Experiment &experiment : study.experiments)
       for (const auto &[place, digest] : named_files(
-               experiment.make(experiment.overrides({}, {}), problems).as_input_file(), comm))
+               experiment.make(experiment.overrides({}, {}), problems).file_entries(), comm))
         study.digests[experiment.name()] += digest;
   return study;
 }

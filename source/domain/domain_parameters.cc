@@ -26,7 +26,7 @@ void MeshParameters::declare(dealii::ParameterHandler &prm)
   declare::choice(prm, "type", type, "dealii|gmsh|lethe",
                   "Origin of the background mesh: a generator of deal.II, a Gmsh file of "
                   "hexahedra, or one of Lethe's own cylinders.");
-  declare::entry(prm, "file name", file, "gmsh: the file.");
+  declare::file(prm, "file name", file, "gmsh: the file.");
   declare::entry(prm, "grid type", grid_type,
                  "dealii: name of the generator, for example subdivided_hyper_rectangle; lethe: "
                  "cylinder_classic, cylinder_balanced, cylinder_squared or "

@@ -137,11 +137,11 @@ void Checkpoints::open(Log &log)
 }
 
 void Checkpoints::find(const std::string &input, const EntryValues &changed,
-                       const ControlParameters &control, const PhaseJudge &judge, Log &log,
-                       Problems &problems)
+                       const EntryValues &naming_files, const ControlParameters &control,
+                       const PhaseJudge &judge, Log &log, Problems &problems)
 {
   if (parameters.checkpoint || parameters.restart != "false")
-    files = named_files(input, comm);
+    files = named_files(naming_files, comm);
   if (parameters.restart == "false")
     return;
   open(log);

@@ -155,6 +155,7 @@ void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
   declare(prm);
   const std::vector<RepeatedSections> repeated = numbered_sections();
   complete_input = set_entries(prm, entries, repeated, problems);
+  naming_files = entries_naming_files(prm);
   for (const InputEntry &entry : entries)
     if (!entry.is_default)
       changed[{entry.path, entry.name}] = entry.value;

@@ -79,7 +79,7 @@ void SolidObjectParameters::declare(dealii::ParameterHandler &prm)
     declare::choice(prm, "type", object.type, "gmsh|shape|dealii",
                     "Origin of the surface: a Gmsh file of triangles, a shape made in code, or a "
                     "generator of deal.II, in the plane z = 0 or hyper_sphere.");
-    declare::entry(prm, "file name", object.file, "gmsh: the file.");
+    declare::file(prm, "file name", object.file, "gmsh: the file.");
     declare::entry(prm, "grid type", object.shape,
                    "shape: which one (see 'grid arguments'). dealii: name of the generator.");
     declare::entry(

@@ -28,6 +28,13 @@ template <typename Value>
 void entry(dealii::ParameterHandler &prm, const std::string &name, Value &value,
            const std::string &documentation);
 
+/// A file that the run reads. Its contents count as the input does (`entries_naming_files`).
+void file(dealii::ParameterHandler &prm, const std::string &name, std::string &value,
+          const std::string &documentation);
+/// Such files, separated by commas.
+void files(dealii::ParameterHandler &prm, const std::string &name, std::vector<std::string> &values,
+           const std::string &documentation);
+
 /// A number within limits.
 void between(dealii::ParameterHandler &prm, const std::string &name, double &value, double smallest,
              double largest, const std::string &documentation);

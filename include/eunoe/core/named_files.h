@@ -7,10 +7,11 @@
 
 namespace eunoe {
 
-/// The entries of an input that name files, and SHA-256 of the contents of these instead of their
-/// values: they are not part of the input's text. The first rank reads them; collective.
-/// @param input text of an input file
-EntryValues named_files(const std::string &input, MPI_Comm comm);
+/// SHA-256 of the contents of the files that entries name, instead of their values: they are not
+/// part of the input's text. An entry whose files are not there is left out. The first rank reads
+/// them; collective.
+/// @param entries that name files (`entries_naming_files`)
+EntryValues named_files(const EntryValues &entries, MPI_Comm comm);
 
 } // namespace eunoe
 

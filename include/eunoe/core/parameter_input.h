@@ -26,6 +26,9 @@ struct RepeatedSections
 std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
                         const std::vector<RepeatedSections> &repeated, Problems &problems);
 
+/// The entries that name files which the run reads (`declare::file`), with their values.
+EntryValues entries_naming_files(const dealii::ParameterHandler &prm);
+
 /// All that is declared as JSON, in the order of declaration: for each section "entries", by name
 /// with "default", "value" (what kind fits, in words; empty: any text) and "documentation", and
 /// "subsections", by name. Other spellings of an entry are left out.

@@ -33,9 +33,11 @@ public:
   /// Opens the one from which the run is to continue, if there is one; collective.
   /// @param input complete text of the present input
   /// @param changed its entries that do not have their defaults
+  /// @param naming_files its entries that name files which the run reads
   /// @param control says when the run ends
-  void find(const std::string &input, const EntryValues &changed, const ControlParameters &control,
-            const PhaseJudge &judge, Log &log, Problems &problems);
+  void find(const std::string &input, const EntryValues &changed, const EntryValues &naming_files,
+            const ControlParameters &control, const PhaseJudge &judge, Log &log,
+            Problems &problems);
   /// The one that was opened, null if the run begins anew.
   const Checkpoint *opened() const { return checkpoint.get(); }
   /// Whether it is of a run with another input.

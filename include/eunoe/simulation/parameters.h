@@ -51,6 +51,9 @@ public:
   /// The entries whose values in the input are not their defaults.
   const EntryValues &changed_entries() const { return changed; }
 
+  /// The entries that name files which the run reads, with their values.
+  const EntryValues &file_entries() const { return naming_files; }
+
   /// All entries, with one of each of the numbered subsections: see describe_entries.
   static std::string description();
 
@@ -105,7 +108,7 @@ private:
   void set(std::vector<InputEntry> &entries, Problems &problems);
 
   std::string complete_input;
-  EntryValues changed;
+  EntryValues changed, naming_files;
 };
 
 } // namespace eunoe

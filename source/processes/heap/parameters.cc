@@ -80,9 +80,9 @@ void HeapParameters::declare(dealii::ParameterHandler &prm)
   declare::between(prm, "density layers", n_density_layers, 1, 1000,
                    "Number of layers between the disc and the top of a heap with a base angle of "
                    "37.5 degrees in which the solid fraction around the axis is measured.");
-  declare::entry(prm, "measured profile", measured_profile,
-                 "File with a measured profile to compare with: a table with the columns 'x' and "
-                 "'height' (m), x from the centre of the disc; empty: none.");
+  declare::file(prm, "measured profile", measured_profile,
+                "File with a measured profile to compare with: a table with the columns 'x' and "
+                "'height' (m), x from the centre of the disc; empty: none.");
   declare::entry(prm, "heap picture", picture,
                  "Whether the particles are written when the heap is measured (<name>_heap.pvd).");
   declare::leave(prm);

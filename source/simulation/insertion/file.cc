@@ -214,7 +214,7 @@ class FileSection : public InsertionSection
 public:
   void declare(dealii::ParameterHandler &prm) override
   {
-    declare::entry(prm, "list of input files", files,
+    declare::files(prm, "list of input files", files,
                    "file: the files, one an event, with the header 'p_x; p_y; p_z; v_x; v_y; v_z; "
                    "w_x; w_y; w_z; diameters'; after the last the first is used again, until there "
                    "are as many "

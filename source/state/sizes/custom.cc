@@ -223,9 +223,9 @@ void Custom::declare(dealii::ParameterHandler &prm)
                 "share up to each diameter.");
   declare::entry(prm, "custom distribution from file", from_file,
                  "Whether diameters and probabilities of a custom distribution are in a file.");
-  declare::entry(prm, "custom distribution filename", file,
-                 "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
-                 "space.");
+  declare::file(prm, "custom distribution filename", file,
+                "The file: a row each, diameter (m) and probability, separated by ';', ',' or "
+                "space.");
   declare::choice(prm, "custom distribution probability function type", function_type, "PDF|CDF",
                   "Whether probabilities are those of each diameter or of all up to it.");
   declare::entry(prm, "custom distribution interpolation", interpolates,
