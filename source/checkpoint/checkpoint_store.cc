@@ -131,7 +131,17 @@ std::vector<std::string> CheckpointStore::find(std::string &defect)
   std::vector<std::string> found;
   for (std::string line; std::getline(lines, line);)
     found.push_back(line);
+  newest = found.empty() ? "" : found.front();
   return found;
+}
+
+bool CheckpointStore::has_gone_on() const
+{
+  std::string now;
+  if (is_first_rank(comm))
+    if (const std::vector<std::string> found = candidates(); !found.empty())
+      now = found.front();
+  return broadcast(now, comm) != newest;
 }
 
 std::unique_ptr<Checkpoint> CheckpointStore::open_newest(std::vector<std::string> &defects)

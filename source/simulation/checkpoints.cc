@@ -243,6 +243,13 @@ std::string Checkpoints::occupy()
   return lock->weakness();
 }
 
+void Checkpoints::check_newest() const
+{
+  if (parameters.restart != "false" && store.has_gone_on())
+    throw UserError("The run in " + folder +
+                    " went on after this one had looked for its newest checkpoint: start again.");
+}
+
 void Checkpoints::begin()
 {
   if (parameters.checkpoint) {

@@ -106,6 +106,7 @@ void Simulation::open_output()
     if (!weakness.empty())
       get_log().warning("The file system cannot lock a file: " + weakness +
                         ". So a second run into the same folder would not be refused.");
+  checkpoints.check_newest();
   if (checkpoints.opened() == nullptr || !checkpoints.is_own())
     outputs.begin_series(nullptr);
   else

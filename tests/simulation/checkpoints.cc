@@ -1,4 +1,5 @@
-// When a checkpoint is due, what stops a run, and which checkpoint is opened when it continues.
+// When a checkpoint is due, what stops a run, which checkpoint is opened when it continues, and
+// that none is written over which another run has left in between.
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/core/files.h>
@@ -46,6 +47,16 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
       },
       log, problems);
   return problems.all().size();
+}
+
+bool is_refused(const Checkpoints &checkpoints)
+{
+  try {
+    checkpoints.check_newest();
+  } catch (const UserError &) {
+    return true;
+  }
+  return false;
 }
 
 } // namespace
@@ -132,4 +143,12 @@ EUNOE_MPI_TEST()
     message = error.what();
   }
   check("what it lacks is said", message.find("lacks what the case needs") != std::string::npos);
+
+  check("no other run went on", !is_refused(later) && !is_refused(of_other));
+  check("another run began here", is_refused(perhaps));
+  if (is_first_rank())
+    write_file(folder + "/restart.latest",
+               "restart_000000000060.checkpoint\nrestart_000000000050.checkpoint\n");
+  check("another run went on", is_refused(later) && !is_refused(of_other));
+  check("a run that begins anew does not mind", !is_refused(checkpoints));
 }

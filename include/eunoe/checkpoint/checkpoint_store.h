@@ -32,6 +32,9 @@ public:
   /// @param defects gets what is wrong with newer ones, and what was taken instead
   std::unique_ptr<Checkpoint> open_newest(std::vector<std::string> &defects);
 
+  /// Whether another one is the newest than when they were looked for; collective.
+  bool has_gone_on() const;
+
   /// Path of the file that names them.
   std::string index() const { return folder + "/" + name + ".latest"; }
 
@@ -78,6 +81,7 @@ private:
   MPI_Comm comm;
   std::vector<std::string> files;   ///< names, the newest first
   std::vector<std::string> earlier; ///< the one that was opened and those after it
+  std::string newest;               ///< name of the first one that was tried; empty: none
 };
 
 } // namespace eunoe

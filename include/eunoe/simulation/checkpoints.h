@@ -54,6 +54,10 @@ public:
   /// written at all. Throws a UserError on every rank if another run writes there; collective.
   /// @return why others are not kept out, on the first rank; empty if they are
   std::string occupy();
+  /// Refuses to continue where another run has written checkpoints since `find`, which this one
+  /// would drop; to be called when others are kept out. Throws a UserError on every rank;
+  /// collective.
+  void check_newest() const;
   /// Makes the folder of the checkpoints and starts to watch signals and the time, if checkpoints
   /// are written at all; collective.
   void begin();
