@@ -360,6 +360,10 @@ class Scores(InFolder):
         self.assertEqual(rates["two effects: both named"], (0, 3))
         self.assertEqual(rates["two effects: off the catalogue"], (1, 3))
         self.assertEqual(rates["off the catalogue although it is in it, strength 4 and more"], (1, 1))
+        # Off the catalogue nothing is named or leads, although the true effect comes closest.
+        self.assertEqual(rates["first name, named or leading, correct at strength 4"], (0, 1))
+        self.assertEqual(rates["first name correct at strength 4 and more"], (0, 1))
+        self.assertEqual(rates["two effects: first name correct"], (2, 3))
         with contextlib.redirect_stdout(io.StringIO()):
             self.assertEqual(score_script.main([str(path)]), 0)
         self.assertTrue((self.folder / "scores_answers.md").exists())
@@ -376,6 +380,9 @@ class Scores(InFolder):
         self.assertEqual(score(read_lines(path)).learning,
                          [(300, 1, 0, 1), (400, 1, 0, 1), (600, 1, 0, 1), (900, 1, 1, 0), (1300, 1, 1, 0),
                           (2000, 1, 1, 0)])
+        curve[2]["verdict"] = "off catalogue"
+        path.write_text(json.dumps(line) + "\n", encoding="utf-8")
+        self.assertEqual(score(read_lines(path)).learning[-1], (2000, 1, 0, 0))
 
     def test_a_truth_that_was_changed_is_not_scored(self) -> None:
         self.add("a", "single", "named", {"cohesion": 1e-4})

@@ -14,6 +14,7 @@ from eunoe.launch import Failure
 from .case import STRENGTHS, Case
 
 SOMETHING = ("named", "tie", "off catalogue")
+WITH_A_NAME = ("named", "tie")  # verdicts in which an effect is named or leads
 # A truth counts as distinguishable if it differs from the nearest other single effect by this many
 # standard errors of the measurement.
 APART = 4.
@@ -67,8 +68,17 @@ class Outcome:
     def detected(self) -> bool:
         return self.verdict in SOMETHING
 
+    @property
+    def has_name(self) -> bool:
+        """Whether an effect is named or leads. Off the catalogue none does, whichever comes closest."""
+        return self.verdict in WITH_A_NAME
+
+    @property
+    def first_is_right(self) -> bool:
+        return self.has_name and self.first in self.truth
+
     def leading_with(self, runs: int) -> set[str]:
-        """The likeliest model after this many runs; none before something is detected."""
+        """The model that is named or leads after this many runs, if one does."""
         return next((model for number, model in reversed(self.curve) if number <= runs), set())
 
     def wrong_p(self, tested: list[tuple[set[str], float]]) -> list[float]:
@@ -156,7 +166,7 @@ def outcome(case: Case, content: dict) -> Outcome:
                    covering, {row["effect"]: row["confidence"] for row in candidates}, rows,
                    held_out.get("shrink"), content["runs"]["asked for"],
                    content.get("separation of the truth"),
-                   [(row["runs"], set(row["first"].split(" + ")) if row["verdict"] in SOMETHING else set())
+                   [(row["runs"], set(row["first"].split(" + ")) if row["verdict"] in WITH_A_NAME else set())
                     for row in content.get("learning curve", [])],
                    names, [row for row in tested("could have refuted") if row not in names],
                    {row["name"]: row["family"] for row in content.get("catalogue", []) if row.get("family")},
@@ -208,7 +218,7 @@ def score(outcomes: list[Outcome]) -> Scores:
     strong = [o for o in single if o.strength >= 4.]
     two = [o for o in outcomes if o.case.kind == "two"]
     deleted = [o for o in outcomes if o.case.kind == "deleted"]
-    answered = [o for o in single if o.verdict in ("named", "tie")]
+    answered = [o for o in single if o.has_name]
     right = [o for o in single + two if o.verdict == "named" and o.named == o.truth]
     rates = [rate("false alarms", nothing, lambda o: o.detected, "upper limit at most 5 %")]
     by_strength = _by_strength(single)
@@ -222,7 +232,7 @@ def score(outcomes: list[Outcome]) -> Scores:
         at = f"at strength {strength}"
         rates += [
             rate(f"first name, named or leading, correct {at}", some,
-                 lambda o: o.detected and o.first in o.truth, "85 % at 4, 93 % at 8"),
+                 lambda o: o.first_is_right, "85 % at 4, 93 % at 8"),
             rate(f"named rightly {at}", some, lambda o: o.verdict == "named" and o.named == o.truth),
             rate(f"named wrongly {at}", some, lambda o: o.confidently_wrong, "at most 2 %"),
             rate(f"tied with the truth {at}", some, lambda o: o.verdict == "tie" and o.covers),
@@ -230,13 +240,12 @@ def score(outcomes: list[Outcome]) -> Scores:
             rate(f"off the catalogue {at}", some, lambda o: o.verdict == "off catalogue"),
             rate(f"missed {at}", some, lambda o: not o.detected)]
     rates += [
-        rate("first name correct at strength 4 and more", strong,
-             lambda o: o.detected and o.first in o.truth),
+        rate("first name correct at strength 4 and more", strong, lambda o: o.first_is_right),
         rate("set covers the truth", answered, lambda o: o.covers, "at least 97 %"),
         rate("family right, named or leading, strength 4 and more", [o for o in strong if o.families],
              lambda o: o.detected and o.leading_families == o.families_of(o.truth)),
         rate("two effects: detected", two, lambda o: o.detected),
-        rate("two effects: first name correct", two, lambda o: o.detected and o.first in o.truth),
+        rate("two effects: first name correct", two, lambda o: o.first_is_right),
         rate("two effects: off the catalogue", two, lambda o: o.verdict == "off catalogue"),
         rate("two effects: both named", two, lambda o: o.named == o.truth, "at least 60 %"),
         rate("two effects: covered", [o for o in two if o.covering], lambda o: o.covers),
@@ -296,9 +305,9 @@ def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcom
     """Rates for truths that are distinguishable from every other single effect."""
     def apart(outcomes: list[Outcome]) -> list[Outcome]:
         return [o for o in outcomes if o.stands_apart]
-    answered = [o for o in apart(strong) if o.verdict in ("named", "tie")]
+    answered = [o for o in apart(strong) if o.has_name]
     return [rate("apart: first name correct at strength 4 and more", apart(strong),
-                 lambda o: o.detected and o.first in o.truth, "at least 90 %"),
+                 lambda o: o.first_is_right, "at least 90 %"),
             rate("apart: set covers the truth", answered, lambda o: o.covers, "at least 95 %"),
             rate("apart: both of two effects named", apart(two), lambda o: o.named == o.truth),
             rate("apart: deleted effect recognised as off the catalogue", apart(deleted),
