@@ -1,0 +1,56 @@
+// Which models an answer has, from their probabilities.
+
+#include <eunoe/discovery/inference/decision.h>
+
+#include "../tests.h"
+
+namespace {
+
+using namespace eunoe::discovery;
+using test::check;
+
+Model model_of(const std::vector<std::size_t> &effects, const double probability)
+{
+  Model model;
+  model.effects = effects;
+  model.is_discrepancy = effects.empty();
+  model.probability = probability;
+  return model;
+}
+
+/// @param models the likeliest first
+Findings chosen(const std::vector<Model> &models)
+{
+  Findings findings;
+  findings.models = models;
+  choose({}, findings);
+  return findings;
+}
+
+bool has(const Findings &findings, const std::vector<std::size_t> &effects)
+{
+  return std::equal(findings.answer.begin(), findings.answer.end(), effects.begin(), effects.end(),
+                    [](const Model &model, const std::size_t effect) {
+                      return model.effects == std::vector<std::size_t>{effect};
+                    });
+}
+
+} // namespace
+
+EUNOE_TEST()
+{
+  constexpr std::size_t a = 0, b = 1;
+  const Findings sure = chosen({model_of({a}, 0.96), model_of({b}, 0.03), model_of({}, 0.01)});
+  check("what has nearly all of the probability is named", has(sure, {a}) && !sure.none_of_these);
+
+  const Findings open = chosen({model_of({a}, 0.9), model_of({}, 0.06), model_of({b}, 0.04)});
+  check("'none of these' is listed from 5 % on, and counts", has(open, {a}) && open.none_of_these);
+
+  const Findings few = chosen({model_of({a}, 0.91), model_of({}, 0.045), model_of({b}, 0.045)});
+  check("where it is not listed, it does not count", has(few, {a, b}) && !few.none_of_these);
+
+  const Findings needless = chosen(
+      {model_of({a}, 0.93), model_of({a, b}, 0.03), model_of({}, 0.02), model_of({b}, 0.02)});
+  check("an effect that is not needed is not listed, and what is needed has its probability",
+        has(needless, {a}) && !needless.none_of_these);
+}
