@@ -1,6 +1,7 @@
 #include <eunoe/core/parameter_section.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/held_out.h>
+#include <eunoe/discovery/inference/learning_curve.h>
 #include <eunoe/discovery/inference/plan.h>
 #include <eunoe/discovery/inference/predictive.h>
 
@@ -40,96 +41,62 @@ private:
   const StudyOptions &options;
 };
 
-/// The answer after each round, by the number of runs: the learning curve.
-class LearningCurve
+/// Standard deviations by which a likelihood may turn out larger than expected.
+constexpr double by_chance = 1.5;
+
+/// Whether a model that is not in the answer could be as likely as the first one, once it is
+/// known better.
+bool has_challenger(const Round &round)
 {
-public:
-  void add(const Round &round, const FactorSpace &space, std::uint64_t runs)
-  {
-    const Findings &f = round.findings;
-    const Model &first = f.models.front();
-    Json row = {{"runs", runs},
-                {"p of nothing missing", f.p_nothing},
-                {"verdict", name_of(f.detected ? f.verdict : Verdict::none)},
-                {"first", name_of(first, space)},
-                {"probability", first.probability},
-                {"probability off catalogue", f.off_catalogue}};
-    Json set = Json::array();
-    for (const Model &model : f.answer)
-      set.push_back(name_of(model, space));
-    row["answer"] = set;
-    rows.push_back(row);
-  }
-
-  /// Standard deviations by which a likelihood may turn out larger than expected.
-  static constexpr double by_chance = 1.5;
-
-  /// Whether a model that is not in the answer could be as likely as the first one, once it is
-  /// known better.
-  static bool has_challenger(const Round &round)
-  {
-    const double behind = 3. * round.findings.calibration.temperature; // e^-3 = 5 %
-    const Eigen::VectorXd &data = round.target.data();
-    const auto &answer = round.findings.answer;
-    const Model &first = round.findings.models.front();
-    const double enough = first.log_prior + first.log_evidence - behind;
-    for (const Model &model : round.findings.models)
-      if (model.effects.size() == 2 && !is_among(model, answer) &&
-          round.evidence.optimistic_pair(model, data) > enough)
-        return true;
-    for (const std::size_t k : round.evidence.usable()) {
-      const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
-                                            [&](const Model &m) { return m.best.count(k) > 0; });
-      const std::vector<double> hopes = round.evidence.optimistic(k, data, by_chance);
-      if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) > enough)
-        return true;
-    }
-    return false;
-  }
-
-  /// Whether an effect would be detected if it is what it could be once it is known better.
-  static bool could_be_detected(const Round &round)
-  {
-    const Eigen::VectorXd &data = round.target.data();
-    const double needed = round.findings.threshold + round.evidence.log_nothing(data)(0);
-    const std::vector<std::size_t> effects = round.evidence.usable();
-    return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
-      return log_sum(round.evidence.optimistic(k, data, by_chance)) > needed;
-    });
-  }
-
-  /// Whether the last rounds gave the same answer, and the errors of the emulators no longer
-  /// matter for it.
-  bool is_settled(const Round &round, const double level) const
-  {
-    constexpr std::size_t patience = 3;
-    constexpr double same = 0.05, sure = 0.99, well_known = 0.15;
-    const double clear = std::min(4. * level, 0.5); // p
-    if (rows.size() < patience)
-      return false;
-    const Json &last = rows.back();
-    for (std::size_t k = rows.size() - patience; k < rows.size(); ++k)
-      if (rows[k]["verdict"] != last["verdict"] ||
-          (round.findings.detected && (rows[k]["answer"] != last["answer"] ||
-                                       std::abs(rows[k]["probability"].get<double>() -
-                                                last["probability"].get<double>()) > same)) ||
-          (!round.findings.detected && rows[k]["p of nothing missing"].get<double>() < clear))
-        return false;
-    if (round.findings.detected ? has_challenger(round) : could_be_detected(round))
-      return false;
-    // More runs do not tell an effect from one like it that the catalogue lacks.
-    const Model &first = round.findings.models.front();
-    const double of_all = first.is_discrepancy ? 1. : 1. - round.findings.off_catalogue;
-    if (!round.findings.detected || first.probability > sure * of_all)
+  const double behind = 3. * round.findings.calibration.temperature; // e^-3 = 5 %
+  const Eigen::VectorXd &data = round.target.data();
+  const auto &answer = round.findings.answer;
+  const Model &first = round.findings.models.front();
+  const double enough = first.log_prior + first.log_evidence - behind;
+  for (const Model &model : round.findings.models)
+    if (model.effects.size() == 2 && !is_among(model, answer) &&
+        round.evidence.optimistic_pair(model, data) > enough)
       return true;
-    double largest = 0.;
-    for (const Model &model : round.findings.answer)
-      largest = std::max(largest, round.target.unknown_share(round.target.predict(model.best)));
-    return largest < well_known;
+  for (const std::size_t k : round.evidence.usable()) {
+    const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
+                                          [&](const Model &m) { return m.best.count(k) > 0; });
+    const std::vector<double> hopes = round.evidence.optimistic(k, data, by_chance);
+    if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) > enough)
+      return true;
   }
+  return false;
+}
 
-  Json rows = Json::array();
-};
+/// Whether an effect would be detected if it is what it could be once it is known better.
+bool could_be_detected(const Round &round)
+{
+  const Eigen::VectorXd &data = round.target.data();
+  const double needed = round.findings.threshold + round.evidence.log_nothing(data)(0);
+  const std::vector<std::size_t> effects = round.evidence.usable();
+  return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
+    return log_sum(round.evidence.optimistic(k, data, by_chance)) > needed;
+  });
+}
+
+/// Whether the last rounds gave the same answer, and the errors of the emulators no longer matter
+/// for it.
+bool is_settled(const LearningCurve &curve, const Round &round, const double level)
+{
+  constexpr double sure = 0.99, well_known = 0.15;
+  const Findings &findings = round.findings;
+  if (!curve.is_steady(level) ||
+      (findings.detected ? has_challenger(round) : could_be_detected(round)))
+    return false;
+  // More runs do not tell an effect from one like it that the catalogue lacks.
+  const Model &first = findings.models.front();
+  const double of_all = first.is_discrepancy ? 1. : 1. - findings.off_catalogue;
+  if (!findings.detected || first.probability > sure * of_all)
+    return true;
+  double largest = 0.;
+  for (const Model &model : findings.answer)
+    largest = std::max(largest, round.target.unknown_share(round.target.predict(model.best)));
+  return largest < well_known;
+}
 
 /// Verdict where nothing was detected: whether most effects would have been. Those that were never
 /// simulated would not.
@@ -283,21 +250,23 @@ void Study::run()
     throw UserError("No measured data point varies in the runs of the base model, so nothing can "
                     "be compared: give standard deviations, or data points that vary.");
   design.run_effects([&] { return Target(measured, samples, space, options.model_tolerance); });
+  bool settled = false;
   while (true) {
     round = std::make_unique<Round>(measured, samples, space, options, rule.quick());
     const Findings &findings = round->findings;
-    curve.add(*round, space, n_runs());
-    const Json &last = curve.rows.back();
+    curve.add(findings, space, n_runs());
+    const Json &last = curve.rows().back();
     log.line("  " + std::to_string(n_runs()) + " runs: " + last["verdict"].get<std::string>() +
              (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
                                       format(last["probability"].get<double>()) + ")"
                                 : ", p = " + format(findings.p_nothing)));
     // Who knows which effect it is still has to learn how much of it.
-    if (curve.is_settled(*round, options.level) ? !design.sharpen(round->evidence, findings.answer)
-                                                : !design.refine(round->evidence, findings))
+    settled = is_settled(curve, *round, options.level);
+    if (settled ? !design.sharpen(round->evidence, findings.answer)
+                : !design.refine(round->evidence, findings))
       break;
   }
-  if (!curve.is_settled(*round, options.level))
+  if (!settled)
     notes.push_back("The budget of " + std::to_string(options.budget) +
                     " runs was spent before the answer had settled. With a larger 'budget of "
                     "runs' the study goes on from here, and the answer may change.");
@@ -356,7 +325,7 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
   c["effects"] = power;
   c.update(describe_fingerprints(evidence));
   c["calibration"] = describe_calibration(findings, space);
-  c["learning curve"] = curve.rows;
+  c["learning curve"] = curve.rows();
   c["runs"] = {{"known", samples.n_known()},
                {"asked for", samples.n_asked()},
                {"failed", samples.n_failed()},
