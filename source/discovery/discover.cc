@@ -1,4 +1,5 @@
 #include <eunoe/core/parameter_section.h>
+#include <eunoe/discovery/inference/challengers.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/held_out.h>
 #include <eunoe/discovery/inference/learning_curve.h>
@@ -41,51 +42,14 @@ private:
   const StudyOptions &options;
 };
 
-/// Standard deviations by which a likelihood may turn out larger than expected.
-constexpr double by_chance = 1.5;
-
-/// Whether a model that is not in the answer could be as likely as the first one, once it is
-/// known better.
-bool has_challenger(const Round &round)
-{
-  const double behind = 3. * round.findings.calibration.temperature; // e^-3 = 5 %
-  const Eigen::VectorXd &data = round.target.data();
-  const auto &answer = round.findings.answer;
-  const Model &first = round.findings.models.front();
-  const double enough = first.log_prior + first.log_evidence - behind;
-  for (const Model &model : round.findings.models)
-    if (model.effects.size() == 2 && !is_among(model, answer) &&
-        round.evidence.optimistic_pair(model, data) > enough)
-      return true;
-  for (const std::size_t k : round.evidence.usable()) {
-    const bool is_in_answer = std::any_of(answer.begin(), answer.end(),
-                                          [&](const Model &m) { return m.best.count(k) > 0; });
-    const std::vector<double> hopes = round.evidence.optimistic(k, data, by_chance);
-    if (!is_in_answer && *std::max_element(hopes.begin(), hopes.end()) > enough)
-      return true;
-  }
-  return false;
-}
-
-/// Whether an effect would be detected if it is what it could be once it is known better.
-bool could_be_detected(const Round &round)
-{
-  const Eigen::VectorXd &data = round.target.data();
-  const double needed = round.findings.threshold + round.evidence.log_nothing(data)(0);
-  const std::vector<std::size_t> effects = round.evidence.usable();
-  return std::any_of(effects.begin(), effects.end(), [&](const std::size_t k) {
-    return log_sum(round.evidence.optimistic(k, data, by_chance)) > needed;
-  });
-}
-
 /// Whether the last rounds gave the same answer, and the errors of the emulators no longer matter
 /// for it.
 bool is_settled(const LearningCurve &curve, const Round &round, const double level)
 {
   constexpr double sure = 0.99, well_known = 0.15;
   const Findings &findings = round.findings;
-  if (!curve.is_steady(level) ||
-      (findings.detected ? has_challenger(round) : could_be_detected(round)))
+  if (!curve.is_steady(level) || (findings.detected ? has_challenger(round.evidence, findings)
+                                                    : could_be_detected(round.evidence, findings)))
     return false;
   // More runs do not tell an effect from one like it that the catalogue lacks.
   const Model &first = findings.models.front();

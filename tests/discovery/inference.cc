@@ -1,6 +1,7 @@
 // The parts of the inference against closed formulas and against twins of a known truth.
 
 #include <eunoe/discovery/inference/amplitude_posterior.h>
+#include <eunoe/discovery/inference/challengers.h>
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/predictive.h>
@@ -403,6 +404,43 @@ void calibrations(Laboratory &lab)
         seen ? std::to_string(*seen) : "none");
 }
 
+/// A study goes on while a model could join its answer: with a twentieth of the probability, all
+/// amplitudes of an effect together, or as likelier than the model to which it adds an effect.
+void challenge(Laboratory &lab)
+{
+  constexpr std::size_t a = 0, b = 1, c = 2;
+  constexpr double by_chance = 1.5;
+  const Target target = lab.target({}, 3);
+  const Evidence evidence(target, lab.space);
+  const std::vector<Model> models = evidence.models(target.data());
+  const auto find = [&](const std::vector<std::size_t> &effects) {
+    return *std::find_if(models.begin(), models.end(), [&](const Model &model) {
+      return !model.is_discrepancy && model.effects == effects;
+    });
+  };
+  // The answer is an effect that is ahead of what another model hopes for.
+  const auto is_challenged = [&](const Model &other, const double hope, const double ahead) {
+    Findings findings;
+    Model first = find({a});
+    first.log_prior = other.log_prior;
+    first.log_evidence = hope - other.log_prior + ahead;
+    first.probability = 0.9;
+    findings.models = {first, other};
+    findings.answer = {first};
+    return has_challenger(evidence, findings);
+  };
+  const Model single = find({b}), more = find({a, b}), pair = find({b, c});
+  const double hope = log_sum(evidence.optimistic(b, target.data(), by_chance)),
+               hope_of_more = evidence.optimistic_pair(more, target.data()),
+               hope_of_pair = evidence.optimistic_pair(pair, target.data());
+  check("an effect with 7 % challenges an answer", is_challenged(single, hope, 2.5));
+  check("and with 3 % it does not", !is_challenged(single, hope, 3.5));
+  check("so does a pair",
+        is_challenged(pair, hope_of_pair, 2.5) && !is_challenged(pair, hope_of_pair, 3.5));
+  check("one that adds to the answer must become likelier",
+        !is_challenged(more, hope_of_more, 0.5) && is_challenged(more, hope_of_more, -0.5));
+}
+
 /// Of four effects two are alike: each of them, left out, is taken for the other, and the two that
 /// resemble none are recognised as none of the catalogue. So a name of one of the two may be that
 /// of an effect like them that the catalogue lacks, and a name of the others may hardly be.
@@ -671,6 +709,7 @@ EUNOE_MPI_TEST()
   completing();
   constant_observable();
   calibrations(lab);
+  challenge(lab);
   lookalikes();
   intervals(lab);
   sharpened();
