@@ -168,9 +168,6 @@ public:
         samples(options, space, simulator, all_experiments()),
         held_out(options, rule, data, space, samples), design(options, space, samples, fit)
   {
-    constexpr unsigned int most_members = 4;
-    samples.set_aside(held_out.n_runs() + runs_to_test(most_members, options.validate_runs, space,
-                                                       options.further_experiments, samples));
     if (samples.n_known() > 0)
       log.line("  " + std::to_string(samples.n_known()) + " runs are in the table already");
   }
@@ -187,6 +184,10 @@ private:
     return all;
   }
   std::uint64_t n_runs() const { return samples.n_known() + samples.n_asked(); }
+  /// Keeps runs for the tests of the answer: at most half of what the base model has left of the
+  /// budget, as without an answer there is nothing to test.
+  /// @return how many
+  std::uint64_t keep_for_tests();
   /// Says which effects the answer does not judge, or not everywhere.
   void note_what_was_not_run();
   Json describe(const Json &power, const Json &validation, const Json &of_fit);
@@ -205,10 +206,22 @@ private:
   std::unique_ptr<Round> round;
 };
 
+std::uint64_t Study::keep_for_tests()
+{
+  constexpr unsigned int most_members = 4;
+  const std::uint64_t wanted =
+      held_out.n_runs() + runs_to_test(most_members, options.validate_runs, space,
+                                       options.further_experiments, samples);
+  const std::uint64_t kept = std::min(wanted, samples.remaining() / 2);
+  samples.set_aside(kept);
+  return kept;
+}
+
 /// First runs, then rounds of runs where they are expected to tell most.
 void Study::run()
 {
   design.run_base();
+  const std::uint64_t kept = keep_for_tests();
   const auto measured = sort_by_experiment(data.fit, samples, samples.simulator(), notes);
   if (measured.empty())
     throw UserError("No measured data point varies in the runs of the base model, so nothing can "
@@ -231,9 +244,12 @@ void Study::run()
       break;
   }
   if (!settled)
-    notes.push_back("The budget of " + std::to_string(options.budget) +
-                    " runs was spent before the answer had settled. With a larger 'budget of "
-                    "runs' the study goes on from here, and the answer may change.");
+    notes.push_back((kept == 0 ? "The budget of " + std::to_string(options.budget) + " runs was"
+                               : "Of the budget of " + std::to_string(options.budget) + " runs " +
+                                     std::to_string(kept) +
+                                     " are kept for tests of the answer, and the rest was") +
+                    " spent before the answer had settled. With a larger 'budget of runs' the "
+                    "study goes on from here, and the answer may change.");
   round->look(rule);
 }
 

@@ -165,6 +165,7 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
   const double n_effects = static_cast<double>(study.n_effects());
   const auto n_factors = static_cast<double>(study.factors.size());
   double runs = 0., core_hours = 0.;
+  std::uint64_t of_base = 0; // without which there is no study
   for (const Experiment &experiment : study.experiments) {
     const auto count_points = [&](const std::vector<MeasuredPoint> &list) {
       return std::count_if(list.begin(), list.end(), [&](const MeasuredPoint &m) {
@@ -181,6 +182,7 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
                      : !is_compared ? 0.
                                     : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
                                           levels * replicates * n_effects;
+    of_base += is_compared && !experiment.is_held_out() ? options.null_runs : 0;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;
     log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
@@ -208,9 +210,14 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
   log.line("  runs:       about " + format_whole(runs) +
            (options.budget > 0 ? " at most" : " at first, and no limit"));
   log.line("  core-hours: about " + format_roughly(core_hours));
-  log.line(n_warnings == 0
-               ? "The study is in order."
-               : "The study can be made. " + count_of_warnings(n_warnings) + ": see above.");
+  const bool is_short = options.budget > 0 && options.budget < of_base;
+  if (is_short)
+    log.warning("The budget has no room for the " + std::to_string(of_base) +
+                " first runs of the base model, unless the table of runs has some. Increase "
+                "'budget of runs'.");
+  const std::size_t n = n_warnings + (is_short ? 1 : 0);
+  log.line(n == 0 ? "The study is in order."
+                  : "The study can be made. " + count_of_warnings(n) + ": see above.");
 }
 
 } // namespace eunoe::discovery

@@ -112,6 +112,8 @@ def check_refusals(program: Program) -> None:
                                      + "box,height,9,1,1,3,fit\n")
     expect(program.run("study.prm", "--check"), 0, "The study is in order", "experiment box (drop)",
            "3 effects and 1 nuisance: ", "core-hours")
+    expect(program.run("study.prm", "--check", *settings(budget_of_runs="10")), 0,
+           "The budget has no room for the 16 first runs of the base model", "There is 1 warning: see above")
     expect(program.run("--list-observables"), 0, "drift (m): Mean place along x")
     expect(program.run("study.prm", "--list-effects"), 0, "bounce: contacts lose less energy")
     expect(program.run("study.prm", "--print-parameters"), 0, "set null runs")

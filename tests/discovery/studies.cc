@@ -253,8 +253,8 @@ void no_room_for_held_out_data()
   check("and is said to be untested",
         held_out["result"] == "the budget has no room to test the answer on held-out data",
         held_out.dump());
-  // The base model and one model, but not all four.
-  poor.budget = 2 * poor.validate_runs * 3;
+  // Half of it is kept for the base model and two models, but not all four.
+  poor.budget = 2 * (2 * poor.validate_runs * 3);
   const Discovery some = study(simulator, data, poor);
   const auto &tested = some.content["gaps"]["held-out"];
   check("the answer is tested first",
@@ -397,6 +397,27 @@ void budget()
   }
 }
 
+/// Two held-out experiments would like 144 runs, of 200. The base model comes first, and the fit
+/// has half of the rest.
+void budget_beside_tests()
+{
+  SyntheticSimulator simulator(nature(91));
+  const Amplitudes truth = {{"a", simulator.amplitude_of("a", 8., both)}};
+  StudyOptions options;
+  options.budget = 200;
+  const MeasuredData data = simulator.measure(both, {"thick layers", "shear"}, truth, 4, 0.2, 1);
+  const Discovery d = study(simulator, data, options);
+  check("tests leave runs for all effects",
+        std::all_of(d.content["effects"].begin(), d.content["effects"].end(),
+                    [](const auto &row) { return row["simulated"].template get<bool>(); }),
+        d.content["effects"].dump());
+  check("what is kept for them is told",
+        has_note(d, "Of the budget of 200 runs 50 are kept for tests of the answer"),
+        d.content["notes"].dump());
+  check("and all is within the budget", simulator.n_runs() <= options.budget,
+        std::to_string(simulator.n_runs()));
+}
+
 void plans()
 {
   // Effects b and c are the same in the heap, so that the spreading tells more.
@@ -447,5 +468,6 @@ EUNOE_MPI_TEST()
   refused_amplitudes();
   filled_table();
   budget();
+  budget_beside_tests();
   plans();
 }

@@ -68,8 +68,9 @@ void Design::run_base()
 {
   const std::uint64_t needed = options.null_runs * experiments.size();
   if (samples.n_known() == 0 && samples.remaining() < needed)
-    throw UserError("The budget has no room for the " + std::to_string(needed) +
-                    " runs of the base model. Increase 'budget of runs'.");
+    throw UserError("The budget of " + std::to_string(options.budget) +
+                    " runs has no room for the " + std::to_string(needed) +
+                    " first runs of the base model. Increase 'budget of runs'.");
   samples.complete(points_of_base(space, options.null_runs, options.nuisance_runs), experiments);
 }
 
