@@ -6,8 +6,10 @@
 #include <eunoe/discovery/inference/plan.h>
 #include <eunoe/discovery/inference/predictive.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <memory>
 
 namespace eunoe::discovery {
@@ -188,7 +190,9 @@ private:
   /// budget, as without an answer there is nothing to test.
   /// @return how many
   std::uint64_t keep_for_tests();
-  /// Says which effects the answer does not judge, or not everywhere.
+  /// Whether a measured experiment can have an effect.
+  bool can_be_seen(std::size_t effect) const;
+  /// Says which effects the answer does not judge, or not everywhere, and why.
   void note_what_was_not_run();
   Json describe(const Json &power, const Json &validation, const Json &of_fit);
 
@@ -253,23 +257,34 @@ void Study::run()
   round->look(rule);
 }
 
+bool Study::can_be_seen(const std::size_t effect) const
+{
+  return std::any_of(fit.begin(), fit.end(), [&](const std::string &experiment) {
+    return samples.simulator().concerns(experiment, {space.effect(effect).name});
+  });
+}
+
 void Study::note_what_was_not_run()
 {
-  std::string never;
+  std::map<std::string, std::vector<std::string>> without; // effects, by what was in the way
   for (std::size_t k = 0; k < space.n_effects(); ++k) {
     const std::string &name = space.effect(k).name;
-    if (round->evidence.places(k).empty())
-      never += (never.empty() ? "" : ", ") + name;
-    else
-      for (const std::string &experiment : fit)
-        if (!samples.has_any(k, {experiment}))
-          notes.push_back("No run of '" + experiment + "' with the effect '" + name +
-                          "' reached its end, so it is taken to change nothing there.");
+    if (round->evidence.places(k).empty()) {
+      without[!can_be_seen(k) ? "No experiment that was measured can have these effects"
+              : samples.has_failed(k, fit) ? "All runs with these effects failed"
+                                           : "These effects were never simulated, as the runs for "
+                                             "the fit were spent before"]
+          .push_back(name);
+      continue;
+    }
+    for (const std::string &experiment : fit)
+      if (!samples.has_any(k, {experiment}))
+        notes.push_back("There is no result of '" + experiment + "' with the effect '" + name +
+                        "', so it is taken to change nothing there.");
   }
-  if (!never.empty())
-    notes.push_back("These effects were never simulated, as the budget ended or all their runs "
-                    "failed, so the answer says nothing of them: " +
-                    never + ".");
+  for (const auto &[reason, names] : without)
+    notes.push_back(reason + ", so the answer says nothing of them: " + boost::join(names, ", ") +
+                    ".");
 }
 
 Json Study::describe(const Json &power, const Json &validation, const Json &of_fit)

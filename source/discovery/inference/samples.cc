@@ -154,6 +154,19 @@ bool Samples::has_any(const std::size_t effect, const std::vector<std::string> &
   });
 }
 
+bool Samples::has_failed(const std::size_t effect,
+                         const std::vector<std::string> &experiments) const
+{
+  const std::vector<std::string> alone = {space.effect(effect).name};
+  return std::any_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
+    const auto found = failures.find(experiment);
+    return found != failures.end() && std::any_of(found->second.begin(), found->second.end(),
+                                                  [&](const Eigen::VectorXd &position) {
+                                                    return effects_of(space, position) == alone;
+                                                  });
+  });
+}
+
 bool Samples::is_near(const Eigen::VectorXd &position, const std::size_t effect,
                       const double amplitude) const
 {

@@ -87,6 +87,8 @@ public:
   /// Whether each experiment that an effect concerns has a run with it alone. Of what was never run
   /// an emulator would say that it changes nothing.
   bool has_any(std::size_t effect, const std::vector<std::string> &experiments) const;
+  /// Whether a run with an effect alone has failed in one of the experiments.
+  bool has_failed(std::size_t effect, const std::vector<std::string> &experiments) const;
   /// Whether each experiment that an effect concerns has this many runs with nearly this amplitude.
   bool has_near(std::size_t effect, double amplitude, unsigned int runs,
                 const std::vector<std::string> &experiments) const;
