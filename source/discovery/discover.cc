@@ -194,6 +194,8 @@ private:
   bool can_be_seen(std::size_t effect) const;
   /// Says which effects the answer does not judge, or not everywhere, and why.
   void note_what_was_not_run();
+  /// Effects that could be what is missing, but of which there is no result.
+  std::vector<std::string> untried() const;
   Json describe(const Json &power, const Json &validation, const Json &of_fit);
 
   const StudyOptions &options;
@@ -287,6 +289,15 @@ void Study::note_what_was_not_run()
                     ".");
 }
 
+std::vector<std::string> Study::untried() const
+{
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < space.n_effects(); ++k)
+    if (round->evidence.places(k).empty() && can_be_seen(k))
+      names.push_back(space.effect(k).name);
+  return names;
+}
+
 Json Study::describe(const Json &power, const Json &validation, const Json &of_fit)
 {
   const Findings &findings = round->findings;
@@ -297,8 +308,10 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
   likeliest.resize(std::min(most, likeliest.size()));
   Json c = {{"verdict", name_of(findings.verdict)},
             {"exit code", exit_code(findings.verdict)},
+            {"detected", findings.detected},
             {"p of nothing missing", findings.p_nothing},
             {"log Bayes factor", findings.log_bayes_factor},
+            {"untried", untried()},
             {"confidence off catalogue", findings.detected ? findings.off_catalogue : 0.}};
   c["candidates"] = describe_candidates(evidence, findings);
   c["amplitudes"] = describe_amplitudes(evidence, findings);
@@ -338,6 +351,7 @@ Discovery Study::answer()
   note_what_was_not_run();
   samples.set_aside(0);
   const Json validation = held_out.test(round->evidence, findings);
+  allow_for_untried(untried().size(), space.n_effects(), findings);
   Discovery discovery;
   const Json of_fit = describe_fit(*round, options);
   discovery.content = describe(power, validation, of_fit);

@@ -289,18 +289,76 @@ bool has_note(const Discovery &discovery, const std::string &words)
   });
 }
 
+bool is_untried(const Discovery &discovery, const std::string &effect)
+{
+  const auto &untried = discovery.content["untried"];
+  return std::count(untried.begin(), untried.end(), effect) == 1;
+}
+
+/// Room for the base model, and for a look at two effects.
+StudyOptions for_two_effects()
+{
+  StudyOptions options;
+  constexpr std::uint64_t experiments = 2, looks = 2, replicates = 2;
+  options.budget =
+      experiments * (options.null_runs + 2 * options.nuisance_runs + looks * replicates);
+  return options;
+}
+
 /// Who could try few effects does not say that none is missing.
 void few_effects_tried()
 {
   SyntheticSimulator simulator(nature(1001));
-  StudyOptions poor;
-  constexpr std::uint64_t experiments = 2, looks = 2, replicates = 2;
-  poor.budget = experiments * (poor.null_runs + 2 * poor.nuisance_runs + looks * replicates);
+  const StudyOptions poor = for_two_effects();
   const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1), poor);
   check("most effects were not tried", d.verdict == Verdict::underpowered,
         d.content["verdict"].get<std::string>());
   check("and are named", has_note(d, "never simulated") && has_note(d, "f."),
         d.content["notes"].dump());
+}
+
+/// Who could not try the one that is missing says neither that it is another one nor that the
+/// catalogue lacks it.
+void missing_effect_not_tried()
+{
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    SyntheticSimulator simulator(nature(1000 + seed));
+    const Amplitudes truth = {{"f", simulator.amplitude_of("f", 16., both)}};
+    const Discovery d =
+        study(simulator, simulator.measure(both, {}, truth, 4, 0.2, seed), for_two_effects());
+    check("of a few effects that were tried none is the answer",
+          d.verdict != Verdict::named && d.verdict != Verdict::off_catalogue && is_untried(d, "f"),
+          d.content["verdict"].get<std::string>() + ": " + d.content["models"].dump());
+  }
+}
+
+/// The table knows an effect well that is like the missing one, which is new in the catalogue.
+void look_alike_beside_untried_effects()
+{
+  int named = 0, outright = 0;
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    Nature unlike = nature(1000 + seed);
+    unlike.alike = 0.;
+    unlike.changed_chaos = 0.;
+    SyntheticSimulator simulator(unlike);
+    simulator.make_alike("f", "a", 0., both);
+    simulator.remember();
+    const Amplitudes truth = {{"f", simulator.amplitude_of("f", 12., both)}};
+    const MeasuredData data = simulator.measure(both, {}, truth, 4, 0.2, seed);
+    std::vector<Factor> old;
+    for (const Factor &factor : simulator.factors())
+      if (factor.kind == Factor::Kind::nuisance || factor.name < "d")
+        old.push_back(factor);
+    const Discovery before = study(simulator, data, old);
+    named += before.verdict == Verdict::named && before.model_after.count("a") == 1;
+    StudyOptions poor = small();
+    poor.budget = 1;
+    const Discovery d = study(simulator, data, poor);
+    outright += d.verdict == Verdict::named || !is_untried(d, "f");
+  }
+  check("what looks like the missing effect is named where the catalogue lacks that", named >= 2,
+        std::to_string(named) + " of 3");
+  check("and not outright where it was not tried", outright == 0, std::to_string(outright));
 }
 
 /// p cannot be four times a high level, at which three of ten studies find something by chance.
@@ -463,6 +521,8 @@ EUNOE_MPI_TEST()
   no_room_for_held_out_data();
   held_out_runs_that_fail();
   few_effects_tried();
+  missing_effect_not_tried();
+  look_alike_beside_untried_effects();
   high_level();
   runs_of_an_earlier_study();
   refused_amplitudes();

@@ -106,6 +106,23 @@ class PageOfAStudy(InFolder):
         study.content["calibration"]["lookalikes"]["taken for"]["cohesion"] = 0.001
         self.assertNotIn("would look like it", " ".join(verdict_text(study)))
 
+    def test_effects_that_were_not_tried(self) -> None:
+        for verdict, title, sentence in (
+                ("tie", "One effect, or something that was not tried", "cannot say which of these it is"),
+                ("off catalogue", TITLES["off catalogue"], "no effect of the catalogue that was simulated, nor"),
+                ("underpowered", "Something is missing, and most effects were not tried", "no effect that was simulated")):
+            make_study(self.folder / verdict, verdict)
+            study = Study(self.folder / verdict)
+            study.content |= {"detected": True, "untried": ["wall_friction", "air_drag"]}
+            if verdict == "tie":
+                study.content["tie"] = [{"effects": "cohesion", "probability": 0.99},
+                                        {"effects": "none of the catalogue", "probability": 0.01}]
+            self.assertEqual(title_of(study), title)
+            words = " ".join(verdict_text(study))
+            self.assertIn(sentence, words)
+            self.assertIn("There is no simulation with wall friction, air drag, so what is missing may be that", words)
+            self.assertNotIn("Nothing was found", words)
+
     def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
         make_study(self.folder / "tie", "tie")
         study = Study(self.folder / "tie")

@@ -10,6 +10,8 @@ TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
           "off catalogue": "Something is missing that is not in the catalogue",
           "underpowered": "The data cannot tell"}
 ONE_OR_NONE = "One effect, or something that the catalogue lacks"
+ONE_OR_UNTRIED = "One effect, or something that was not tried"
+MOST_UNTRIED = "Something is missing, and most effects were not tried"
 NONE = "none of the catalogue"
 DOUBTFUL, REFUTED = 0.05, 0.01  # as in the program's DecisionRule
 LOOKALIKES = 0.02  # from here on effects that look like another one are worth a word
@@ -39,6 +41,10 @@ def _held_out_differs(study: Study) -> float | None:
 def title_of(study: Study) -> str:
     if _held_out_differs(study) is not None:
         return BUT_HELD_OUT
+    if study.verdict == "underpowered" and study.content.get("detected"):
+        return MOST_UNTRIED
+    if is_one_or_none(study) and study.content.get("untried"):
+        return ONE_OR_UNTRIED
     return ONE_OR_NONE if is_one_or_none(study) else TITLES.get(study.verdict, study.verdict)
 
 
@@ -148,11 +154,19 @@ def _one_or_none(study: Study) -> list[str]:
     return [*sentences, "More repeats, and held-out conditions, would tell whether it is this effect."]
 
 
+def _untried(study: Study) -> list[str]:
+    """Which effects may be what is missing because nothing is known of them."""
+    names = [plain(name) for name in study.content.get("untried", [])]
+    return [f"There is no simulation with {', '.join(names)}, so what is missing may be that as well; the notes say "
+            "why there is none."] if names else []
+
+
 def _off_catalogue(study: Study) -> list[str]:
     remainder = study.content.get("remainder", {})
     alike = [f"{plain(row['effect'])} (cosine {number(row['cosine'], 2)})"
              for row in remainder.get("resembles", [])]
-    sentences = ["Model and measurement differ, and no effect of the catalogue, nor several together, "
+    tried = " that was simulated" if study.content.get("untried") else ""
+    sentences = [f"Model and measurement differ, and no effect of the catalogue{tried}, nor several together, "
                  "explain how."]
     if alike:
         sentences.append("What is missing resembles " + ", ".join(alike) + ".")
@@ -169,9 +183,12 @@ def verdict_text(study: Study) -> list[str]:
     if study.verdict == "named":
         return [*_named(study), chance, _where(study)]
     if study.verdict == "tie":
-        return [*_tie(study), chance, _where(study)]
+        return [*_tie(study), *_untried(study), chance, _where(study)]
     if study.verdict == "off catalogue":
-        return [*_off_catalogue(study), chance, _where(study)]
+        return [*_off_catalogue(study), *_untried(study), chance, _where(study)]
+    if study.content.get("detected"):
+        return ["Model and measurement differ, and no effect that was simulated explains how; but most effects of the "
+                "catalogue were not simulated.", *_untried(study), chance, _where(study)]
     rows = study.content.get("effects", [])
     seen = sum(1 for row in rows if row.get("detectable"))
     if study.verdict == "none":

@@ -36,7 +36,8 @@ enum class Verdict
   named,         ///< effects that are missing, each by its name
   tie,           ///< something is missing, one of several effects that look alike
   off_catalogue, ///< something is missing, and no effect of the catalogue explains it
-  underpowered   ///< nothing was detected, and most effects could not have been
+  underpowered   ///< nothing was detected, and most effects could not have been; or something
+                 ///< was, and of most effects there is no run
 };
 
 /// "none", "named", "tie", "off catalogue", "underpowered".

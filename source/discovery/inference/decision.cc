@@ -136,6 +136,18 @@ void choose(const DecisionRule &rule, Findings &findings)
   }
 }
 
+void allow_for_untried(const std::size_t untried, const std::size_t effects, Findings &findings)
+{
+  if (untried > 0 && findings.verdict == Verdict::named) {
+    findings.none_of_these = true;
+    findings.verdict = verdict_of(findings);
+  }
+  if (2 * untried > effects && findings.verdict == Verdict::off_catalogue) {
+    findings.answer.clear();
+    findings.verdict = Verdict::underpowered;
+  }
+}
+
 const Model *closest_model(const Findings &findings)
 {
   if (!findings.answer.empty())

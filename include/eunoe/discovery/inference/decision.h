@@ -59,6 +59,10 @@ const Model *closest_model(const Findings &findings);
 /// Chooses the answer: the likeliest models, as many as have the probability of one together.
 void choose(const DecisionRule &rule, Findings &findings);
 
+/// Effects of the catalogue without any result may be what is missing: with one, no other is named
+/// outright; with most, nobody knows whether the catalogue has it.
+void allow_for_untried(std::size_t untried, std::size_t effects, Findings &findings);
+
 /// Of an answer that is chosen: no model, one, or several.
 Verdict verdict_of(const Findings &findings);
 
