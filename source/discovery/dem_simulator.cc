@@ -302,9 +302,25 @@ void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
     }
 }
 
-RunResult DemSimulator::result(const RunRequest &request, const RunRecord &record) const
+std::string DemSimulator::failure_of(const RunRequest &request, const RunRecord &record) const
 {
   if (!record.failure.empty())
+    return record.failure;
+  for (const DataPoint &point : required)
+    if (point.experiment == request.experiment &&
+        std::none_of(record.measurements.begin(), record.measurements.end(),
+                     [&](const Measurement &m) {
+                       return m.observable == point.observable && m.index == point.index &&
+                              std::isfinite(m.value);
+                     }))
+      return "The run ended without a value of '" + point.observable + "', index " +
+             std::to_string(point.index) + ", which was measured.";
+  return "";
+}
+
+RunResult DemSimulator::result(const RunRequest &request, const RunRecord &record) const
+{
+  if (!failure_of(request, record).empty())
     return std::nullopt;
   const auto known = known_points.find(request.experiment);
   if (known == known_points.end())
@@ -316,8 +332,6 @@ RunResult DemSimulator::result(const RunRequest &request, const RunRecord &recor
   for (const DataPoint &point : known->second) {
     const auto value = found.find({point.observable, point.index});
     values.push_back(value == found.end() ? std::nan("") : value->second);
-    if (!std::isfinite(values.back()) && required.count(point) > 0)
-      return std::nullopt;
   }
   return values;
 }
@@ -330,8 +344,8 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
   run["key"] = key;
   run["cached"] = was_cached;
   run["core_seconds"] = record.core_seconds;
-  if (!record.failure.empty())
-    run["failure"] = record.failure;
+  if (const std::string failure = failure_of(request, record); !failure.empty())
+    run["failure"] = failure;
   runs.push_back(run);
 }
 

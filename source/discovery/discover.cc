@@ -273,9 +273,10 @@ void Study::note_what_was_not_run()
     const std::string &name = space.effect(k).name;
     if (round->evidence.places(k).empty()) {
       without[!can_be_seen(k) ? "No experiment that was measured can have these effects"
-              : samples.has_failed(k, fit) ? "All runs with these effects failed"
-                                           : "These effects were never simulated, as the runs for "
-                                             "the fit were spent before"]
+              : samples.has_failed(k, fit)
+                  ? "All runs with these effects failed (the list of failed runs says why)"
+                  : "These effects were never simulated, as the runs for "
+                    "the fit were spent before"]
           .push_back(name);
       continue;
     }

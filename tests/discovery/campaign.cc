@@ -133,6 +133,20 @@ void find_rare_points(const Setting &setting, Log &log)
             simulator.rare_points().count(points.front()) == 0);
 }
 
+/// A run that reaches its end without a data point that was measured has failed, and is said why.
+void lack_a_data_point(const Setting &setting, Log &log)
+{
+  DemSimulator simulator(setting.experiments, setting.effects, table, 1, setting.comm, log);
+  simulator.find_data_points(1);
+  simulator.require({{"box", "height", 4}});
+  const RunRequest odd = {"box", {}, 5};
+  check("a run that lacks what was measured has no result", !simulator.run({odd})[0].has_value());
+  check("and the ledger says what it lacks",
+        simulator.ledger().back().value("failure", "") ==
+            "The run ended without a value of 'height', index 4, which was measured.",
+        simulator.ledger().back().dump());
+}
+
 /// Another simulator finds all in the table.
 void run_from_table(const Setting &setting, const std::vector<RunResult> &first, Log &log)
 {
@@ -243,4 +257,5 @@ EUNOE_MPI_TEST()
   run_after_a_change(setting, first, log);
   run_after_a_change_of_an_effect(setting, first, log);
   find_rare_points(setting, log);
+  lack_a_data_point(setting, log);
 }

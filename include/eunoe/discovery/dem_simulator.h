@@ -62,6 +62,8 @@ private:
   void adopt_earlier_runs();
   void adopt(const std::vector<const RunTable::Row *> &rows);
   std::set<std::string> find_changes(const std::map<std::string, const RunTable::Row *> &samples);
+  /// Why a run has no result; empty if it has one.
+  std::string failure_of(const RunRequest &request, const RunRecord &record) const;
   RunResult result(const RunRequest &request, const RunRecord &record) const;
   void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 

@@ -197,8 +197,8 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
       if (!test.comparison)
         return {{"result", "the held-out data do not vary"}};
       if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), test.tested.models))
-        return {{"result", "no run of the held-out experiments with the answer's effects reached "
-                           "its end, so it was not tested"}};
+        return {{"result", "no run of the held-out experiments with the answer's effects gave all "
+                           "that was measured, so it was not tested"}};
       last = std::move(test);
     } catch (const TooFewRuns &) {
       if (round == 0)
