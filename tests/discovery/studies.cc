@@ -317,6 +317,19 @@ void few_effects_tried()
         d.content["notes"].dump());
 }
 
+/// What was run in vain is not said to be for want of runs.
+void effect_that_fails()
+{
+  Nature picky = nature(1001);
+  picky.refused_from = 0.;
+  SyntheticSimulator simulator(picky);
+  const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1));
+  check("an effect whose runs all fail is told",
+        has_note(d, "All runs with these effects failed") && !has_note(d, "never simulated") &&
+            is_untried(d, "a") && !is_untried(d, "b"),
+        d.content["notes"].dump());
+}
+
 /// Who could not try the one that is missing says neither that it is another one nor that the
 /// catalogue lacks it.
 void missing_effect_not_tried()
@@ -521,6 +534,7 @@ EUNOE_MPI_TEST()
   no_room_for_held_out_data();
   held_out_runs_that_fail();
   few_effects_tried();
+  effect_that_fails();
   missing_effect_not_tried();
   look_alike_beside_untried_effects();
   high_level();
