@@ -38,7 +38,7 @@ inline dealii::DataOutBase::VtkFlags vtu_flags(double time, unsigned int cycle)
 #else
   const auto level = dealii::DataOutBase::VtkFlags::best_speed;
 #endif
-  return {time, cycle, false, level};
+  return dealii::DataOutBase::VtkFlags(time, cycle, false, level);
 }
 
 } // namespace eunoe::compat

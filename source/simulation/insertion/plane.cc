@@ -5,6 +5,8 @@
 #include <eunoe/simulation/insertion.h>
 #include <eunoe/solids/box_tree.h>
 
+#include <deal.II/base/mpi.h>
+
 #include "obstacles.h"
 
 #include <algorithm>
