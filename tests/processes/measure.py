@@ -134,6 +134,14 @@ def check_others() -> None:
     assert (first[:, :3] != read_particles(HERE / "liggghts.dump", -1)[:, :3]).any(), "the snapshots are alike"
 
 
+def check_tables(folder: Path) -> None:
+    """Separators at the end of lines are no cells, where they are not those of a last column that is empty."""
+    for text in ("x,y,z,d\n1,2,3,4\n", "p_x; p_y; p_z; diameters;\n1; 2; 3; 4;\n", "x;y;z;d;\n1;2;3;4\n", "x,y,z,d\n1,2,3,4,\n",
+                 "x,y,z,d,,\n1,2,3,4,,\n,,,,,\n", "# grains\nx,y,z,d,note\n1,2,3,4,\n", "note,x,y,z,r\nbig,1,2,3,2\n"):
+        (folder / "table.csv").write_text(text, encoding="utf-8")
+        assert read_particles(folder / "table.csv").tolist() == [[1., 2., 3., 4.]], text
+
+
 def check_refusals(folder: Path) -> None:
     text = (HERE / "liggghts.dump").read_text(encoding="utf-8")
     cut = len(text.splitlines()) - 2
@@ -144,6 +152,8 @@ def check_refusals(folder: Path) -> None:
             ("points.dump", text.replace(" x y z ", " a b c "), "the dump has no places. Write"),
             ("columns.csv", "x,y,depth\n1,2,3\n", "columns.csv:1: the head has no column 'z'"),
             ("words.csv", "x,y,z,d\n1,2,3,4\n1,2,3\n", "words.csv:3: this is no row of 4 numbers"),
+            ("commas.csv", "x,y,z,d\n0,0003,0,0001,0,0,0,00008\n", "perhaps the numbers have decimal commas."),
+            ("two_commas.csv", "x;y;z;d\n0,1;0;0;1\n", "perhaps the numbers have decimal commas."),
             ("flat.csv", "x,y,z,d\n0,0,0,0\n", "particle 1 has no finite place or no positive size"),
             ("far.csv", "x,y,z,d\n1,1,1,1e-4\n", "far.csv: None of the 1 particles lies on the disc"),
             ("large.csv", "x,y,z,diameter\n0,1e-4,0,2e-4\n", "a mean diameter of 200 um"),
@@ -169,6 +179,7 @@ def main() -> int:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     check_others()
+    check_tables(folder)
     check_refusals(folder)
     check_heap(folder / "heap")
     check_study_table(folder / "heap")

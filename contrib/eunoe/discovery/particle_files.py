@@ -121,27 +121,38 @@ def from_vtk(path: Path, snapshot: int) -> np.ndarray:
     return np.column_stack((fields["points"], size)).astype(float)
 
 
+def cells_of(line: str, separator: str, n: int = 0) -> list[str]:
+    """The cells of a line. Separators at its end make empty ones, which beyond the first n are none."""
+    words = [word.strip() for word in line.split(separator)]
+    while len(words) > n and not words[-1]:
+        words.pop()
+    return words
+
+
 def from_table(path: Path) -> np.ndarray:
     """Columns x, y, z and diameter or radius of a table with a head, with commas or semicolons between."""
     names = (("x", "p_x"), ("y", "p_y"), ("z", "p_z"), ("diameter", "diameters", "d", "radius", "r"))
     with open(path, encoding="utf-8-sig", errors="replace") as file:
-        lines = [(number, line.strip().rstrip(";, ")) for number, line in enumerate(file, 1)]
-    lines = [(number, line) for number, line in lines if line and not line.startswith("#")]
+        lines = [(number, line.strip()) for number, line in enumerate(file, 1)]
+    lines = [(number, line) for number, line in lines if line.strip(";, ") and not line.startswith("#")]
     if not lines:
         raise Failure(f"{path}: it is empty. Give a row for each particle under a head.")
     separator = ";" if ";" in lines[0][1] else ","
-    head = [word.strip() for word in lines[0][1].split(separator)]
+    head = cells_of(lines[0][1], separator)
     places = [next((head.index(name) for name in group if name in head), None) for group in names]
     if None in places:
         raise Failure(f"{path}:{lines[0][0]}: the head has no column '{names[places.index(None)][0]}'. Give "
                       "x, y, z and diameter.")
     rows = []
     for number, line in lines[1:]:
-        words = line.split(separator)
+        words = cells_of(line, separator, len(head))
         try:
+            if len(words) != len(head):
+                raise ValueError
             rows.append([float(words[place]) for place in places])
-        except (ValueError, IndexError):
-            raise Failure(f"{path}:{number}: this is no row of {len(head)} numbers. Give one a column.") from None
+        except ValueError:
+            raise Failure(f"{path}:{number}: this is no row of {len(head)} numbers. Give one a column; perhaps the numbers "
+                          "have decimal commas.") from None
     result = np.array(rows).reshape(-1, 4)
     if head[places[3]] in ("radius", "r"):
         result[:, 3] *= 2.
