@@ -17,7 +17,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules"
 import numpy as np
 
 from eunoe.discovery.particle_files import read_particles
-from eunoe.launch import overrides
+from eunoe.launch import Failure, overrides
 from eunoe.repository import ROOT
 from eunoe.vtk_files import read_vtu
 
@@ -142,6 +142,61 @@ def check_tables(folder: Path) -> None:
         assert read_particles(folder / "table.csv").tolist() == [[1., 2., 3., 4.]], text
 
 
+def write_vtu(path: Path, rows: np.ndarray, ghosts: list[int] | None = None) -> None:
+    """A file of points as deal.II and ParaView write it."""
+    def array(kind: str, name: str, values: np.ndarray, n: int = 1) -> str:
+        text = " ".join(map(str, np.ravel(values)))
+        return f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{n}" format="ascii">{text}</DataArray>'
+    n = len(rows)
+    fields = array("Float64", "radius", rows[:, 3] / 2.) + (array("UInt8", "vtkGhostType", ghosts) if ghosts else "")
+    cells = (array("Int32", "connectivity", range(n)) + array("Int32", "offsets", range(1, n + 1))
+             + array("UInt8", "types", [1] * n))
+    path.parent.mkdir(exist_ok=True)
+    path.write_text('<VTKFile type="UnstructuredGrid" version="0.1" byte_order="LittleEndian"><UnstructuredGrid>'
+                    f'<Piece NumberOfPoints="{n}" NumberOfCells="{n}">'
+                    f'<Points>{array("Float64", "Points", rows[:, :3], 3)}</Points><Cells>{cells}</Cells>'
+                    f"<PointData>{fields}</PointData></Piece></UnstructuredGrid></VTKFile>", encoding="utf-8")
+
+
+def check_pictures_in_parts(folder: Path) -> None:
+    """A picture in several files, one for each rank that wrote, is read as a whole, without its ghosts."""
+    write_vtu(folder / "parts" / "0.vtu", GRAINS[:2])
+    write_vtu(folder / "parts" / "1.vtu", GRAINS[1:4], [1, 0, 0])
+    write_vtu(folder / "parts" / "2.vtu", GRAINS[:0])
+    write_vtu(folder / "parts" / "3.vtu", GRAINS[4:])
+
+    def pvtu(name: str, *pieces: str) -> None:
+        (folder / name).write_text('<VTKFile type="PUnstructuredGrid"><PUnstructuredGrid>' + "".join(
+            f'<Piece Source="{piece}"/>' for piece in pieces) + "</PUnstructuredGrid></VTKFile>", encoding="utf-8")
+
+    def pvd(name: str, *entries: tuple[str, str]) -> None:
+        (folder / name).write_text('<VTKFile type="Collection"><Collection>' + "".join(
+            f'<DataSet timestep="{time}" part="{part}" file="{file}"/>' for part, (time, file) in enumerate(entries))
+            + "</Collection></VTKFile>", encoding="utf-8")
+
+    pvtu("all.pvtu", *(f"parts/{k}.vtu" for k in (2, 0, 1, 3)))
+    pvtu("parts/last.pvtu", "3.vtu")
+    pvtu("none.pvtu", "parts/2.vtu")
+    pvd("parts.pvd", ("0", "parts/0.vtu"), ("0", "parts/1.vtu"), ("0", "parts/3.vtu"), ("1", "parts/0.vtu"),
+        ("1.0", "parts/2.vtu"))
+    pvd("lists.pvd", ("0", "all.pvtu"), ("0.5", "parts/last.pvtu"))
+    for name, snapshot, wanted in (("all.pvtu", -1, GRAINS), ("parts.pvd", 0, GRAINS), ("parts.pvd", 1, GRAINS[:2]),
+                                   ("parts.pvd", -1, GRAINS[:2]), ("lists.pvd", 0, GRAINS), ("lists.pvd", -1, GRAINS[4:])):
+        found = read_particles(folder / name, snapshot)
+        # Ghosts are no grains, and what is a ghost in one piece is a grain of another.
+        assert found.shape == wanted.shape and np.abs(found - wanted).max() < 1e-12, f"{name}, {snapshot}:\n{found}"
+    pvtu("lacks.pvtu", "parts/0.vtu", "parts/9.vtu")
+    (folder / "blocks.vtm").write_text("<VTKFile/>", encoding="utf-8")
+    for name, sentence in (("none.pvtu", "none.pvtu: it has no particles."), ("lacks.pvtu", "9.vtu cannot be read"),
+                           ("blocks.vtm", "blocks.vtm is of a kind that is not read."), ("parts.pvd", "it has no picture 2")):
+        try:
+            read_particles(folder / name, 2)
+        except Failure as error:
+            assert sentence in str(error), error
+        else:
+            raise AssertionError(f"{name} was read.")
+
+
 def check_refusals(folder: Path) -> None:
     text = (HERE / "liggghts.dump").read_text(encoding="utf-8")
     cut = len(text.splitlines()) - 2
@@ -180,6 +235,7 @@ def main() -> int:
     folder.mkdir(parents=True)
     check_others()
     check_tables(folder)
+    check_pictures_in_parts(folder)
     check_refusals(folder)
     check_heap(folder / "heap")
     check_study_table(folder / "heap")

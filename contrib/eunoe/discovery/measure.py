@@ -6,10 +6,10 @@ Usage: contrib/tools measure case.prm heap.dump                                 
 
 The case (.prm) says which process is measured and how large its apparatus is. Files are text dumps of LAMMPS
 and LIGGGHTS ('dump ... custom N file id x y z radius'), pictures of points with a field 'diameter' or
-'radius' (.vtu, .vtp, .vtk, .pvd), or tables with the columns x, y, z and diameter or radius. Places are taken
-to metres by --scale, to the frame of the process by --origin (the place, in the file's units, of the middle of
-the heap's disc, or of the left end of the feedstock platform at the transfer plate's level) and --up (the
-axis that points upwards; the frame is turned to y).
+'radius' (.vtu, .pvtu, .vtp, .pvtp, .vtk, .pvd), or tables with the columns x, y, z and diameter or radius. Places
+are taken to metres by --scale, to the frame of the process by --origin (the place, in the file's units, of the
+middle of the heap's disc, or of the left end of the feedstock platform at the transfer plate's level) and --up
+(the axis that points upwards; the frame is turned to y).
 
 With --experiment each file is a repetition, and the table of a study is printed: mean, standard
 deviation and number of the repetitions. For spreading, a repetition may be a list of files with commas

@@ -104,17 +104,19 @@ def from_dump(path: Path, snapshot: int) -> np.ndarray:
 
 def from_vtk(path: Path, snapshot: int) -> np.ndarray:
     """Points with the field 'diameter' or 'radius' of a picture, or of the pictures in an index .pvd."""
-    from eunoe.vtk_files import VtkError, read_points, read_pvd
+    from eunoe.vtk_files import VtkError, files_by_time, joined, read_points
+    files = [path]
     if path.suffix == ".pvd":
         try:
-            entries = read_pvd(path)
-            path = entries[snapshot].file
+            files = files_by_time(path)[snapshot]
         except (VtkError, IndexError):
             raise Failure(f"{path}: it has no picture {snapshot}. Give the .vtu file itself.") from None
     try:
-        fields = read_points(path, ("diameter", "radius"))
+        fields = joined([read_points(file, ("diameter", "radius")) for file in files])
     except VtkError as error:
         raise Failure(f"{path}: {error}") from None
+    if not len(fields["points"]):
+        return np.empty((0, 4))
     if "diameter" not in fields and "radius" not in fields:
         raise Failure(f"{path}: the points have no field 'diameter' or 'radius'. Write it with them.")
     size = fields["diameter"] if "diameter" in fields else 2. * fields["radius"]
@@ -161,7 +163,7 @@ def from_table(path: Path) -> np.ndarray:
 
 def read_particles(path: Path, snapshot: int = -1) -> np.ndarray:
     """Places and diameters, a row a particle, in the file's own units and frame."""
-    if path.suffix in (".vtu", ".vtp", ".vtk", ".pvd"):
+    if path.suffix.startswith((".vt", ".pvt", ".pvd")):
         rows = from_vtk(path, snapshot)
     else:
         with open(path, encoding="utf-8", errors="replace") as file:
