@@ -13,6 +13,7 @@ import tempfile
 import unittest
 from dataclasses import replace
 from pathlib import Path
+from unittest import mock
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
     print("skipped: numpy, matplotlib or VTK is missing")
@@ -24,6 +25,7 @@ import sample_run
 from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.case_section import slopes_sentence
+from eunoe.report.general_report import speed_figure
 from eunoe.report.heap_results import read_map
 from eunoe.report.layer_results import counting_noise, moved_over_plate
 from eunoe.report.measured import TABLE, FullSize, measured_for, read_measured
@@ -180,6 +182,30 @@ class Geometry(unittest.TestCase):
         _, fields = sample_run.bed(1)
         moved = moved_over_plate(fields)[fields["tracked"] > 0]
         np.testing.assert_allclose(moved, 5e-6)
+
+
+class Views(unittest.TestCase):
+    def drawn(self, vertical: int, upwards: float, wide: int) -> list[float]:
+        """Depths, in order, of two spheres that overlap in the view along the third axis, when they are drawn."""
+        depth = 3 - vertical - wide
+        points = np.zeros((2, 3))
+        points[:, depth] = (1e-3, -1e-3)
+        points[:, wide] = (0., 1e-4)  # tells which is which
+        triangle = np.zeros((3, 3))
+        triangle[1, wide] = 1e-2
+        figure, _ = speed_figure({"points": points, "diameter": np.full(2, 1e-3), "velocity": np.zeros((2, 3))},
+                                  triangle, vertical, upwards)
+        circles = figure.axes[0].collections[-1].get_offsets()
+        return [points[int(place > 0.05), depth] for place, _ in circles]
+
+    def test_the_front_is_drawn_over_the_back(self) -> None:
+        x, y, z = range(3)
+        for wide, vertical, upwards, nearest in ((x, y, 1., 1e-3), (x, z, 1., -1e-3), (y, z, 1., 1e-3), (z, y, 1., -1e-3),
+                                                 (x, z, -1., 1e-3), (x, y, -1., -1e-3), (z, x, 1., 1e-3)):
+            with self.subTest(wide=wide, vertical=vertical, upwards=upwards):
+                self.assertEqual(self.drawn(vertical, upwards, wide)[-1], nearest)
+                with mock.patch("eunoe.report.canvas.MOST_CIRCLES", 1):
+                    self.assertEqual(self.drawn(vertical, upwards, wide), [nearest])
 
 
 class Report(InFolder):

@@ -37,8 +37,15 @@ def _vertical_axis(run: Run) -> tuple[int, float]:
     return axis, -float(np.sign(gravity[axis]))
 
 
-def _speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
-                  upwards: float) -> tuple[Figure, float]:
+def _towards_viewer(points: np.ndarray, horizontal: int, vertical: int, upwards: float) -> np.ndarray:
+    """How near points are to the viewer, who sees the horizontal axis lead to the right and the vertical one upwards,
+    downwards if gravity points along it. In a frame of x, y and z, only turned, the third axis points to the viewer."""
+    is_turned = (vertical - horizontal) % 3 == 1
+    return points[:, 3 - vertical - horizontal] * (upwards if is_turned else -upwards)
+
+
+def speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
+                 upwards: float) -> tuple[Figure, float]:
     """Particles coloured by speed in the view that shows most of them; and the share drawn.
 
     :param triangles: corners of the solids' triangles, three rows each (m)
@@ -46,7 +53,6 @@ def _speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
     everything = np.concatenate((particles["points"], triangles))
     extent = np.ptp(everything, axis=0)
     horizontal = max((axis for axis in range(3) if axis != vertical), key=lambda a: extent[a])
-    depth = 3 - vertical - horizontal
     x, y = (particles["points"][:, axis].astype(float) for axis in (horizontal, vertical))
     low, high = everything.min(axis=0), everything.max(axis=0)
     margin = 0.03 * max(extent[horizontal], extent[vertical]) + particles["diameter"].max()
@@ -58,9 +64,9 @@ def _speed_figure(particles: Fields, triangles: np.ndarray, vertical: int,
     panels[0].add_collection(PolyCollection(
         MM * triangles[:, [horizontal, vertical]].reshape(-1, 3, 2), facecolors="#e4e4e4",
         edgecolors="#bbbbbb", linewidths=0.2, rasterized=True))
-    rows, share = front_slice(window.shows(x, y, particles["diameter"]),
-                              particles["points"][:, depth])
-    rows = rows[np.argsort(particles["points"][rows, depth])]
+    nearness = _towards_viewer(particles["points"], horizontal, vertical, upwards)
+    rows, share = front_slice(window.shows(x, y, particles["diameter"]), nearness)
+    rows = rows[np.argsort(nearness[rows])]
     speed = np.linalg.norm(particles["velocity"], axis=1)
     norm = Normalize(0., max(float(np.quantile(speed, 0.99)), 1e-12))
     colours = colormaps["viridis"]
@@ -89,8 +95,8 @@ def _add_picture(page: Page, run: Run) -> None:
     if len(particles["points"]) == 0 or len(particles) < 3:
         page.notice(f"{file.name} has no particles or lacks a field.")
         return
-    figure, share = _speed_figure(particles, _solids(solids[1] if solids else None),
-                                  *_vertical_axis(run))
+    figure, share = speed_figure(particles, _solids(solids[1] if solids else None),
+                                 *_vertical_axis(run))
     page.heading("The last picture")
     drawn = "" if share == 1. else f" The front {100. * share:.0f}\u00a0% of them are drawn."
     page.figure(figure, f"The {count(len(particles['points']))} particles at "
