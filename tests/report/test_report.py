@@ -128,6 +128,8 @@ class Tables(InFolder):
         np.testing.assert_allclose(found.mean, [0.51, 0.56])
         np.testing.assert_allclose(found.cumulative()[1], [[0.55, 0.57]])
         self.assertIn("own.csv, mean and standard deviation of 2 repeats", found.caption)
+        own.write_text("\ufefflayer, repeat\n1,0.51\n", encoding="utf-8")  # as spreadsheets write it
+        np.testing.assert_allclose(read_measured(own).mean, [0.51])
         for text, said in (("layer,LRD\n1,0.5\n", "heading"), ("", "heading"), ("layer,repeat\n1,x\n", "row that does not have 2"),
                            ("layer,repeat\n1\n", "row that does not have 2"),
                            ("layer,repeat\n2,0.5\n1,0.5\n", "ascending"), ("layer,repeat\n1,55\n", "not per cent")):

@@ -97,7 +97,7 @@ def read_measured(path: Path = TABLE) -> Measured:
     """A table with a column `layer` and one or more whose names begin with `repeat`; lines that begin with # are
     comments. Throws a ReportError if it cannot be used."""
     try:
-        lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip() and not line.startswith("#")]
+        lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip() and not line.startswith("#")]
     except (OSError, UnicodeDecodeError) as error:
         raise ReportError(f"{path} cannot be read: {getattr(error, 'strerror', None) or 'it is no text'}.") from error
     names = [name.strip() for name in lines[0].split(",")] if lines else []
