@@ -25,12 +25,14 @@ import sample_run
 from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.case_section import slopes_sentence
+from eunoe.report.evidence import Evidence
 from eunoe.report.general_report import speed_figure
 from eunoe.report.heap_results import read_map
 from eunoe.report.layer_results import counting_noise, moved_over_plate
 from eunoe.report.measured import TABLE, FullSize, measured_for, read_measured
 from eunoe.report.quantities import number
 from eunoe.report.run_folder import ReportError, read_layers
+from eunoe.report.summary_text import summary_text
 from eunoe.vtk_files import VtkError, read_pvd, read_vtu
 
 
@@ -312,6 +314,16 @@ class Report(InFolder):
         own = self.file("own.csv", "layer,repeat\n1,0.51\n2,0.56\n")
         page = of_run.make_page(self.folder, measured=str(own)).html()
         self.assertTrue("own.csv" in page and "against 53.5" in page)
+
+    def test_means_are_compared_over_the_layers_that_both_have(self) -> None:
+        sample_run.write_run(self.folder)
+        layers = read_layers(self.folder / "layers.csv")
+        for rows, said in (("2,0.56\n3,0.9\n", "52.5 % in layers 1 to 2, and 55.0 % in layer 2, against 56.0 % measured there; "),
+                           ("0,0.9\n1,0.5\n2,0.56\n", "in layers 1 to 2, against 53.0 % measured in the same layers; "),
+                           ("3,0.9\n", "is 52.5 % in layers 1 to 2; ")):
+            measured = read_measured(self.file("own.csv", f"layer,repeat\n{rows}"))
+            text = summary_text(layers, Evidence(None, {}, []), None, measured)
+            self.assertIn(said, text.replace("\u00a0", " "))
 
     def test_run_that_was_no_spreading(self) -> None:
         self.file("summary.json", json.dumps(sample_run.SUMMARY))

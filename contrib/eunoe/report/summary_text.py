@@ -11,6 +11,26 @@ from .quantities import SPACE, count, length, mass, percent
 from .run_folder import Layers
 
 
+def _span(numbers: np.ndarray) -> str:
+    return f"layer {numbers[0]:.0f}" if len(numbers) == 1 else f"layers {numbers[0]:.0f} to {numbers[-1]:.0f}"
+
+
+def _measured_words(layers: Layers, numbers: np.ndarray, measured: Measured | None) -> str:
+    """The mean of the same layers in the measurement; where that lacks some, both means of those that it has.
+
+    :param numbers: of the layers whose density the run knows
+    """
+    same = np.intersect1d(numbers, measured.layer) if measured else np.empty(0)
+    if not measured or not len(same):
+        return ""
+    reference = percent(measured.mean_over(same))
+    where = " at full size" if measured.is_of_paper else ""
+    if len(same) == len(numbers):
+        return f", against {reference} measured in the same layers{where}"
+    mean = percent(layers.lrd[np.isin(layers.layer, same)].mean())
+    return f", and {mean} in {_span(same)}, against {reference} measured there{where}"
+
+
 def _density_sentence(layers: Layers, noise: DensityNoise | None, measured: Measured | None) -> str:
     known = np.isfinite(layers.lrd)
     if not known.any():
@@ -22,14 +42,10 @@ def _density_sentence(layers: Layers, noise: DensityNoise | None, measured: Meas
         return f"{100. * value:.1f}{SPACE}±{SPACE}{100. * error:.1f}{SPACE}%"
 
     numbers = layers.layer[known]
-    span = f"layer {numbers[0]:.0f}" if len(numbers) == 1 else \
-        f"layers {numbers[0]:.0f} to {numbers[-1]:.0f}"
     text = "The layer relative density (LRD) is " if len(numbers) == 1 else \
         "The mean layer relative density (LRD) is "
-    text += with_noise(layers.lrd[known].mean(), noise.mean_lrd if noise else None) + f" in {span}"
-    reference = measured.mean_over(numbers) if measured else np.nan
-    if measured and np.isfinite(reference):
-        text += f", against {percent(reference)} measured in the same layers" + (" at full size" if measured.is_of_paper else "")
+    text += with_noise(layers.lrd[known].mean(), noise.mean_lrd if noise else None) + f" in {_span(numbers)}"
+    text += _measured_words(layers, numbers, measured)
     if len(numbers) > 1:
         peak = int(np.nanargmax(layers.lrd))
         text += (f"; it is highest in layer {layers.layer[peak]:.0f}, at "
