@@ -242,7 +242,7 @@ class Report(InFolder):
         page = self.page()
         self.assertEqual(page.count("<figure>"), 6)
         for text in ("52.5", "in layers 1 to 2", "highest in layer 2", "full-size apparatus",
-                     "abc1234", "Went to the collector", "0\u00a0% are static",
+                     "abc1234", "left the feedstock platform", "Went to the collector", "0\u00a0% are static",
                      "set process = powder spreading"):
             self.assertTrue(text in page, f"The page lacks '{text}'.")
         self.assertFalse('class="notice"' in page)
@@ -257,6 +257,8 @@ class Report(InFolder):
         (self.folder / "apparatus.json").write_text(json.dumps({**sample_run.APPARATUS, "n_layers": 24}))
         page = self.page()
         self.assertFalse('class="notice"' in page)
+        # Where the powder of all layers is, this run's table does not tell.
+        self.assertFalse("left the feedstock platform" in page)
         layers = read_layers(self.folder / "layers.csv")
         self.assertTrue(np.isnan(layers.arrived[0]))  # the bed that was there is not new
         np.testing.assert_allclose(layers.arrived[1:], [1.4e-7, 1.52e-7])

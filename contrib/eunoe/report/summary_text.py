@@ -76,8 +76,10 @@ def summary_text(layers: Layers, evidence: Evidence, noise: DensityNoise | None,
     if evidence.apparatus is not None:
         text += (f", which is {length(evidence.apparatus.plate_length)} long and "
                  f"{length(evidence.apparatus.depth)} deep")
+    text += ". " + _density_sentence(layers, noise, measured)
+    if layers.layer[0] > 0:
+        return text  # what fell and went to the collector before is in the table of another run; the plate holds all
     has_pictures = evidence.last is not None and evidence.apparatus is not None \
         and max(evidence.pictures) == layers.last
     feed = feed_of(layers, evidence.apparatus, evidence.last if has_pictures else None)
-    return (text + ". " + _density_sentence(layers, noise, measured)
-            + _feed_sentence(feed, has_pictures))
+    return text + _feed_sentence(feed, has_pictures)
