@@ -16,6 +16,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
     print("skipped: numpy or matplotlib is missing")
     sys.exit(0)
 
+from eunoe.discovery import foreign_heaps
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
 from eunoe.discovery.outcomes import outcome_of, read, read_lines, score, wilson
@@ -26,6 +27,7 @@ from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
 from eunoe.report.discovery_results import Study
 from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, title_of, verdict_text
+from eunoe.repository import DOC
 from sample_study import CHANGES, make_study
 
 EFFECTS = {"cohesion": {"sign": "above", "confounders": ["rolling_resistance"]},
@@ -271,6 +273,27 @@ class SharedFolders(InFolder):
                 self.assertIsNone(second)
         with alone_with(lock) as again:
             self.assertIsNotNone(again)
+
+
+class ForeignHeaps(unittest.TestCase):
+    def test_other_powders_are_refused(self) -> None:
+        foreign_heaps.check(foreign_heaps.Model({**foreign_heaps.BUILT_IN, "heap/mass": "0.0",
+                                                 "lagrangian physical properties/g": "0,-9.81,0"}))
+        for entry, value in (("size distribution type", "normal"), ("custom distribution from file", "true"),
+                             ("custom distribution probability function type", "CDF"),
+                             ("custom distribution interpolation", "true"), ("minimum diameter cutoff", "6e-5"),
+                             ("maximum diameter cutoff", "9e-5"), ("size weighting exponent", "-1"), ("heap/mass", "1e-6"),
+                             ("heap/number of particles", "100"), ("heap/gap below the tube", "1e-4"),
+                             ("heap/disc rim height", "1e-3"), ("number of particle types", "2"),
+                             ("lagrangian physical properties/g", "0, -1.62, 0")):
+            name, = (name for name in foreign_heaps.BUILT_IN if name.endswith(entry))
+            with self.assertRaisesRegex(Failure, f"'{name} = .*' only, and the case has {value}"):
+                foreign_heaps.check(foreign_heaps.Model({**foreign_heaps.BUILT_IN, name: value}))
+
+    def test_entries_have_the_names_of_the_input(self) -> None:
+        entries = (DOC / "parameters.md").read_text(encoding="utf-8")
+        for name in foreign_heaps.BUILT_IN:
+            self.assertRegex(entries, rf"(?m)^\| `{name.rsplit('/', 1)[-1]}` \|")
 
 
 class Scores(InFolder):

@@ -61,6 +61,38 @@ def model_of(case: Path, program: str, settings: list[str]) -> Model:
 
 TYPE = "lagrangian physical properties/particle type 0/"
 WALL = "lagrangian physical properties/"
+# What decks and drawn powder have built in: the entries that say so in the case, and the values that they must have.
+BUILT_IN = {
+    WALL + "g": "0, -9.81, 0",
+    WALL + "number of particle types": "1",
+    TYPE + "size distribution type": "custom",
+    TYPE + "size weighting exponent": "0",
+    TYPE + "minimum diameter cutoff": "-1",
+    TYPE + "maximum diameter cutoff": "-1",
+    TYPE + "custom distribution from file": "false",
+    TYPE + "custom distribution probability function type": "PDF",
+    TYPE + "custom distribution interpolation": "false",
+    "heap/number of particles": "0",
+    "heap/mass": "0",
+    "heap/gap below the tube": "0",
+    "heap/disc rim height": "0",
+}
+
+
+def _is(text: str, wanted: str) -> bool:
+    """Whether an entry has a value, however its numbers are written."""
+    try:
+        return [float(word) for word in text.split(",")] == [float(word) for word in wanted.split(",")]
+    except ValueError:
+        return text == wanted
+
+
+def check(model: Model) -> None:
+    """Refuses a case whose powder or apparatus would be another one in the other program."""
+    for name, value in BUILT_IN.items():
+        if not _is(model.text(name), value):
+            raise Failure(f"foreign-heaps makes heaps with '{name} = {value}' only, and the case has {model.text(name)}. "
+                          "Give a case with it.")
 
 
 @dataclass
@@ -72,8 +104,6 @@ class Classes:
 
     @classmethod
     def of(cls, model: Model) -> Classes:
-        if model.text(TYPE + "size distribution type") != "custom":
-            raise Failure("foreign-heaps draws sizes of 'size distribution type = custom' only. Give a case with it.")
         found = model.numbers(TYPE + "custom distribution diameters values")
         shares = model.numbers(TYPE + "custom distribution diameters probabilities")
         if model.text(TYPE + "distribution weighting basis") == "volume":
@@ -253,6 +283,7 @@ def parse(words: list[str]) -> argparse.Namespace:
 def main(words: list[str]) -> int:
     options = parse(words)
     model = model_of(options.case, options.program, options.set)
+    check(model)
     if options.rest is None:
         options.rest = model.number("heap/measurement delay") or 0.05
     apparatus = Apparatus.of(model)
