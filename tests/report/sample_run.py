@@ -150,12 +150,12 @@ view,direction,projected_area,base_angle,height,base_angle_spread,mass_on_disc,m
 """
 
 
-def write_heap(folder: Path, inserted_mass: float = 1.8e-6) -> None:
-    """The folder of a run of the heap instrument with a disc of 1 mm."""
+def write_heap(folder: Path, inserted_mass: float = 1.8e-6, density: float = 4386.) -> None:
+    """The folder of a run of the heap instrument with a disc of 1 mm, on which 0.45 mg lie."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "used.prm").write_text("set process = heap\n\nsubsection simulation control\n"
                                      "  set output name = heap\nend\n")
-    (folder / "apparatus.json").write_text(json.dumps({"disc_diameter": 1e-3, "rim_height": 5e-4}))
+    (folder / "apparatus.json").write_text(json.dumps({"disc_diameter": 1e-3, "rim_height": 5e-4, "density": density}))
     (folder / "heap.csv").write_text(HEAP)
     (folder / "heap_profile.csv").write_text("x,mean,spread,measured\n-4e-4,1e-4,1e-5,\n"
                                              "0,4e-4,1e-5,4.1e-4\n4e-4,1e-4,1e-5,\n")

@@ -352,13 +352,19 @@ class Report(InFolder):
         self.assertEqual(page.count("<figure>"), 3)
         for text in ("37.2", "mean of 2 views", "450\u00a0µg of powder lie on the disc", "abc1234",
                      "Black: the measured profile", "40.0\u00a0degrees; the heights differ by 10\u00a0µm",
-                     "not to be compared with the 37.5"):
+                     "as the 37.5\u00a0degrees that Gaboriault et al. (2025) measured of their Ti-6Al-4V powder on 10\u00a0mm"):
             self.assertTrue(text in page, f"The page lacks '{text}'.")
         self.assertFalse("as a column" in page)
 
     def test_heap_that_did_not_flow(self) -> None:
-        sample_run.write_heap(self.folder, inserted_mass=5e-7)
+        # On the disc of 1 mm a heap of 37.5 degrees has 55.2e-12 m3 of solid: 0.14 mg of 2500 kg/m3, of which 0.45 mg are 3.3.
+        sample_run.write_heap(self.folder, inserted_mass=5e-7, density=2500.)
         self.assert_says("90\u00a0% of the powder stayed on the disc")
+
+    def test_heap_of_a_small_filling(self) -> None:
+        # 1.9 heaps of 37.5 degrees, of 2.8: most stays, but no more than a heap can hold.
+        sample_run.write_heap(self.folder, inserted_mass=6.7e-7)
+        self.assertFalse("as a column" in self.page())
 
     def test_heap_without_picture(self) -> None:
         sample_run.write_heap(self.folder)

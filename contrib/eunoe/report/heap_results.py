@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +13,8 @@ import numpy as np
 from eunoe.tables import read_columns
 
 from .run_folder import ReportError
+
+SETTLED = 0.55  # solid fraction of settled powder, as in the process's apparatus.cc
 
 
 @dataclass(frozen=True)
@@ -95,10 +98,20 @@ def read_map(path: Path) -> HeapMap:
     return HeapMap(1. - grey[::-1] / 255., float(head[1]), float(head[2]))
 
 
-def read_disc(path: Path) -> tuple[float, float]:
-    """Diameter of the disc and height of its rim (m)."""
+@dataclass(frozen=True)
+class Disc:
+    diameter: float  # m
+    rim: float  # its height, m
+    density: float  # of the grains that were filled in, kg/m3
+
+    def heap_mass(self, angle: float) -> float:
+        """Mass (kg) of a heap with a base angle (degrees), as the process takes it for the fill ratio."""
+        return math.pi / 3. * (self.diameter / 2.)**3 * math.tan(math.radians(angle)) * SETTLED * self.density
+
+
+def read_disc(path: Path) -> Disc:
     try:
         values = json.loads(path.read_text(encoding="utf-8"))
-        return float(values["disc_diameter"]), float(values["rim_height"])
+        return Disc(*(float(values[name]) for name in ("disc_diameter", "rim_height", "density")))
     except (OSError, ValueError, TypeError, KeyError) as error:
         raise ReportError(f"{path} cannot be read: {error}.") from error
