@@ -69,5 +69,5 @@ def write_run(folder: Path, peak: int, seed: int, layers: int = LAYERS) -> None:
     (folder / "layers.csv").write_text("\n".join(rows) + "\n")
     (folder / "spreading_layers.pvd").write_text(sample_run.pvd(entries))
     if layers == LAYERS:
-        (folder / "summary.json").write_text(json.dumps({**sample_run.SUMMARY, "git_revision": "abc1234567",
-                                                         "share_asleep": 0.5, "lost_particles": 0}))
+        (folder / "summary.json").write_text(json.dumps({**sample_run.SUMMARY, "git_revision": "abc1234567", "share_asleep": 0.5,
+                                                         "simulated_time": 0.1 * LAYERS, "lost_particles": 0}))

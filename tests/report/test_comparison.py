@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import io
+import re
 import sys
 import tempfile
 import unittest
@@ -24,6 +25,7 @@ from eunoe.intervals import common_scatter, difference_of, difference_within, me
 from eunoe.report import of_run
 from eunoe.report.apparatus import Apparatus
 from eunoe.report.bed_maps import maps_of, read_maps, read_table, write_table
+from eunoe.report.comparison_charts import last_common_layer, profiles_figure
 from eunoe.report.comparison_report import default_labels
 from eunoe.report.common_scatter import CommonScatter
 from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
@@ -353,6 +355,36 @@ class Page(unittest.TestCase):
         self.assertEqual(text.count("<figure>"), 6)
         for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size"):
             self.assertIn(words, text)
+
+    def test_runs_that_have_not_finished_are_told_of(self) -> None:
+        # The third one would have its peak, of those layers that it has, in layer 10.
+        for seed, layers in ((1, 21), (2, 21), (3, 12)):
+            sample_bed.write_run(self.folder / f"A_seed{seed}", peak=14, seed=seed, layers=layers)
+        sample_bed.write_run(self.folder / "B_seed1", peak=14, seed=1)
+        out = self.folder / "page.html"
+        self.assertEqual(self.make("--out", str(out), names=["A_seed1", "A_seed2", "A_seed3", "B_seed1"])[0], 0)
+        text = out.read_text(encoding="utf-8")
+        self.assertEqual(text.count("The run has not finished"), 1)
+        row = re.search("<td>A</td><td>3</td><td>(.*?)</td></tr>", text)[1]
+        cells = row.split("</td><td>")
+        self.assertEqual([*cells[:4], *cells[5:]],
+                         ["60.2 ± 0.2", "62.2 ± 0.6 (2)", "6.7", "6.7 (2)", "64.3 ± 0.6 (2)", "14.0 (2)"])
+        self.assertTrue(cells[4].startswith("2.0") and cells[4].endswith(" (2)"))
+        for words in ("A_seed3: The run has not finished (there is no summary.json): 12 of 21 layers are weighed so far.",
+                      "A (2 of 3 runs): from layers 2 to 10 to", "After layer 11, the last of which all runs have a picture",
+                      "<td>A</td><td>2 of 3</td><td>3</td><td>6</td><td>6</td><td>100.0</td>"):
+            self.assertTrue(words in text, words)
+
+    def test_profiles_are_of_one_layer(self) -> None:
+        found = maps()
+        short, other = (replace(run_with([0.5] * 8), maps=replace(found, layers=found.layers[rows], **{
+            name: getattr(found, name)[rows] for name in ("fraction", "tracked", "moved", "resting")}))
+            for rows in (slice(0, 6), slice(2, 9)))
+        groups = [Group("short", [short]), Group("other", [other])]
+        self.assertEqual(last_common_layer(groups), 5)
+        for line in profiles_figure(groups).axes[0].lines:
+            np.testing.assert_allclose(line.get_ydata(), 1e3 * found.columns()[5])
+        self.assertIsNone(last_common_layer([Group("none", [run_with([0.5])])]))
 
     def test_runs_that_go_on_with_the_layers_of_others_are_pooled_by_layer(self) -> None:
         def run(first: int) -> SpreadRun:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import reduce
 
 import numpy as np
 from matplotlib import colormaps
@@ -187,8 +188,16 @@ def levels_figure(groups: Sequence[Group]) -> Figure:
     return figure
 
 
+def last_common_layer(groups: Sequence[Group]) -> int | None:
+    """The last layer of which all runs with maps have one."""
+    layers = [run.maps.layers for group in groups for run in group.mapped]
+    common = reduce(np.intersect1d, layers) if layers else layers
+    return int(common[-1]) if len(common) else None
+
+
 def profiles_figure(groups: Sequence[Group]) -> Figure:
-    """Solid along the plate and over the height, after the last layer."""
+    """Solid along the plate and over the height, after the last layer that all have."""
+    layer = last_common_layer(groups)
     figure = Figure(figsize=(style.WIDTH, 3.1), layout="constrained")
     left, right = figure.subplots(1, 2)
     for number, group in enumerate(groups):
@@ -198,9 +207,9 @@ def profiles_figure(groups: Sequence[Group]) -> Figure:
             continue
         x = 0.5 * (maps[0].x[1:] + maps[0].x[:-1]) / maps[0].x[-1]
         y = 0.5 * (maps[0].y[1:] + maps[0].y[:-1])
-        columns = np.mean([m.columns()[-1] for m in maps], axis=0)
+        columns = np.mean([m.columns()[m.layers == layer][0] for m in maps], axis=0)
         left.plot(x, MM * columns, color=colour, label=group.label)
-        fraction = np.mean([m.fraction[-1][m.middle()].mean(axis=0) for m in maps], axis=0)
+        fraction = np.mean([m.fraction[m.layers == layer][0][m.middle()].mean(axis=0) for m in maps], axis=0)
         right.plot(100. * fraction, MM * y, color=colour)
     left.set_xlabel("x over the plate's length")
     left.set_ylabel("Height of the solid without pores (mm)")

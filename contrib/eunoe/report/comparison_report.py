@@ -10,7 +10,7 @@ from eunoe.vtk_files import VtkError
 
 from .apparatus import Apparatus, ApparatusError
 from .bed_maps import read_maps
-from .comparison_charts import (MOST_GROUPS, densities_figure, maps_figure, mechanism_figure,
+from .comparison_charts import (MOST_GROUPS, densities_figure, last_common_layer, maps_figure, mechanism_figure,
                                 middle_figure, profiles_figure)
 from .comparison_text import densities_table, differences_table, measured_group, rest_table, rise_sentence
 from .measured import Measured, measured_for
@@ -18,12 +18,13 @@ from .page import Page
 from .quantities import length
 from .run_folder import ReportError, Run, read_run
 from .spread_run import Group, SpreadRun
+from .spreading_report import progress_notice
 
 BAND = "Lines: means over the runs; bands: one standard deviation of a single run."
 
 
 def spread_run(run: Run, problems: list[str]) -> SpreadRun:
-    """The run with the maps of its pictures; a sentence in `problems` says why it has none."""
+    """The run with the maps of its pictures; sentences in `problems` say why it has none, and what is still to come."""
     if run.layers is None:
         raise ReportError(f"{run.folder} is no spreading run: only those are compared.")
     apparatus, maps = None, None
@@ -39,6 +40,9 @@ def spread_run(run: Run, problems: list[str]) -> SpreadRun:
             problems.append(f"{run.name} has no pictures of its layers, so it has no maps.")
     except (ApparatusError, VtkError, KeyError) as error:
         problems.append(f"{run.name} has no maps: {error}")
+    notice = progress_notice(run, run.layers, apparatus)
+    if notice:
+        problems.append(f"{run.name}: {notice}")
     return SpreadRun(run.name, run.layers, apparatus, maps)
 
 
@@ -103,8 +107,9 @@ def _add_densities(page: Page, groups: Sequence[Group], measured: Measured | Non
     everyone = [*groups, *([measured_group(measured)] if measured else [])]
     head, *rows = densities_table(everyone)
     page.table(head, rows)
-    page.paragraph("Means over the runs with their 95 % intervals (Student's t). The peak is the largest mean of "
-                   "three layers in a row, from layer 2 on.")
+    page.paragraph("Means over the runs with their 95 % intervals (Student's t); a number in brackets says over how many "
+                   "runs, where the others lack the layers or maps. The peak is the largest mean of three layers in a "
+                   "row, from layer 2 on, of runs that have made all their layers.")
     for group in everyone:
         page.paragraph(rise_sentence(group))
     if len(groups) > 1:
@@ -130,8 +135,11 @@ def _add_mechanism(page: Page, groups: Sequence[Group]) -> None:
         page.figure(maps_figure(group), f"{group.label}: (a) mean displacement in the pass of what lay on the "
                     "plate, by place and layer; grey: less than 10 µm; lines: inner ends of the zones at rest; (b) "
                     "what the pass added, as density of its layer. Means over the runs.")
-    page.figure(profiles_figure(mapped), "After the last layer: (a) volume of the solid over the plate's area, along "
-                "the plate; (b) solid fraction over the height, in the middle half of the plate. Means over the runs.")
+    layer = last_common_layer(mapped)
+    if layer is not None:
+        page.figure(profiles_figure(mapped), f"After layer {layer}, the last of which all runs have a picture: (a) volume of "
+                    "the solid over the plate's area, along the plate; (b) solid fraction over the height, in the middle "
+                    "half of the plate. Means over the runs.")
 
 
 def comparison_report(folders: Sequence[Path], labels: Sequence[str], given: str = "") -> Page:

@@ -15,7 +15,7 @@ from eunoe.tables import Table
 from .common_scatter import CommonScatter, Number
 from .measured import Measured
 from .run_folder import Layers
-from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun
+from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun, farthest
 
 
 def measured_group(measured: Measured) -> Group:
@@ -59,10 +59,16 @@ def text_of(interval: Interval, size: float = 1., sign: str = "") -> str:
     return value if math.isnan(interval.half) else f"{value} ± {size * interval.half:.1f}"
 
 
+def _of_known(group: Group, number: Number, size: float, scatter: CommonScatter) -> str:
+    """The mean over the runs, and of how many it is if some do not know the number."""
+    text, known = text_of(scatter.mean(group, number), size), group.knowing(number)
+    return f"{text} ({known})" if 0 < known < len(group.runs) else text
+
+
 def densities_table(groups: Sequence[Group], scatter: CommonScatter = ALONE) -> Table:
     table = [["", "runs", *DENSITIES]]
     for group in groups:
-        cells = [text_of(scatter.mean(group, number), size) for number, size in DENSITIES.values()]
+        cells = [_of_known(group, number, size, scatter) for number, size in DENSITIES.values()]
         table.append([group.label, str(len(group.runs)), *cells])
     return table
 
@@ -83,7 +89,9 @@ def differences_table(groups: Sequence[Group], scatter: CommonScatter = ALONE) -
 
 def rise_sentence(group: Group, scatter: CommonScatter = ALONE) -> str:
     """Whether the layers become denser after layer 10."""
-    return change_sentence(group.label, scatter.mean(group, lambda run: run.rise))
+    known = group.knowing(lambda run: run.rise)
+    label = f"{group.label} ({known} of {len(group.runs)} runs)" if 0 < known < len(group.runs) else group.label
+    return change_sentence(label, scatter.mean(group, lambda run: run.rise))
 
 
 def change_sentence(label: str, found: Interval) -> str:
@@ -125,19 +133,22 @@ def layers_of(values: Sequence[int | None]) -> str:
 
 
 def rest_table(groups: Sequence[Group]) -> Table:
-    """From which layers on the bed rests, of the groups with maps."""
+    """From which layers on the bed rests, of the groups with maps: over those runs that have come farthest, as what has
+    not happened in the others may yet do so."""
     table = [["", "runs", "first zone at rest", "zones meet", "90 % at rest from", "at rest in the last pass (%)",
               "removed by a pass from layer 11 on (% of the mass before)",
               *(f"gained five layers and more below, layers {first} to {last} (% of a layer a pass)" for first, last in (PLATEAU, LATER))]]
     for group in groups:
-        zones = [run.zones for run in group.mapped]
+        runs = farthest(group.mapped)
+        zones = [run.zones for run in runs]
         if not zones:
             continue
         late = [float(run.scraped[run.layers.layer >= LATER[0]].mean()) if run.layers.last >= LATER[0] else math.nan
-                for run in group.mapped]
-        table.append([group.label, str(len(zones)), layers_of([zone.first for zone in zones]),
+                for run in runs]
+        extent = str(len(runs)) if len(runs) == len(group.mapped) else f"{len(runs)} of {len(group.mapped)}"
+        table.append([group.label, extent, layers_of([zone.first for zone in zones]),
                       layers_of([zone.meet for zone in zones]), layers_of([zone.at_rest_from for zone in zones]),
                       text_of(mean_of([float(zone.resting[-1]) for zone in zones]), 100.),
                       text_of(mean_of(late), 100.),
-                      *(text_of(mean_of([run.compaction(layers) for run in group.mapped]), 100.) for layers in (PLATEAU, LATER))])
+                      *(text_of(mean_of([run.compaction(layers) for run in runs]), 100.) for layers in (PLATEAU, LATER))])
     return table

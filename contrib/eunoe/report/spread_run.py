@@ -94,9 +94,15 @@ class SpreadRun:
         """Of the mean LRD from the plateau's layers to the later ones."""
         return self.mean_lrd(LATER) - self.mean_lrd(PLATEAU)
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether it has made all layers of its case, as far as the apparatus tells how many these are."""
+        return self.apparatus is None or self.layers.last + 1 >= self.apparatus.n_layers
+
     @cached_property
     def peak(self) -> tuple[float, float]:
-        return peak_of(self.layers.layer, self.layers.lrd)
+        """NaN as long as layers are to come, of which any may be the densest."""
+        return peak_of(self.layers.layer, self.layers.lrd) if self.is_whole else (np.nan, np.nan)
 
     @property
     def scraped(self) -> np.ndarray:
@@ -104,6 +110,12 @@ class SpreadRun:
         before = np.concatenate(([np.nan], self.layers.mass[:-1]))
         with np.errstate(invalid="ignore", divide="ignore"):
             return self.layers.removed / before
+
+
+def farthest(runs: Sequence[SpreadRun]) -> list[SpreadRun]:
+    """Those that have made as many layers as any of them."""
+    last = max((run.layers.last for run in runs), default=0)
+    return [run for run in runs if run.layers.last == last]
 
 
 @dataclass(frozen=True)
@@ -140,6 +152,10 @@ class Group:
     def of_runs(self, number) -> list[float]:
         """A number of each run."""
         return [number(run) for run in self.runs]
+
+    def knowing(self, number) -> int:
+        """How many runs have made the layers, and left the maps, that a number takes."""
+        return int(np.isfinite(self.of_runs(number)).sum())
 
 
 def difference(group: Group, reference: Group, number) -> Interval:

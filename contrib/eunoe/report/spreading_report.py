@@ -38,7 +38,7 @@ def noise_of(layers: Layers, evidence: Evidence) -> DensityNoise | None:
     return counting_noise(layers, evidence.apparatus.full_layer_mass, grain)
 
 
-def _progress_notice(run: Run, layers: Layers, apparatus: Apparatus | None) -> str:
+def progress_notice(run: Run, layers: Layers, apparatus: Apparatus | None) -> str:
     """A notice of what an unfinished run lacks; empty for a finished one."""
     if run.summary is None:
         expected = f" of {apparatus.n_layers}" if apparatus else ""
@@ -139,7 +139,7 @@ def spreading_report(run: Run, layers: Layers, given: str = "") -> Page:
     noise = noise_of(layers, evidence)
     n = len(layers)
     page = Page(f"Spreading of {n} {'layer' if n == 1 else 'layers'} of powder", f"Run {run.name}")
-    notice = _progress_notice(run, layers, evidence.apparatus)
+    notice = progress_notice(run, layers, evidence.apparatus)
     for text in [notice] * bool(notice) + evidence.problems:
         page.notice(text)
     page.paragraph(summary_text(layers, evidence, noise, measured))
