@@ -353,7 +353,8 @@ class Page(unittest.TestCase):
         text = page.read_text(encoding="utf-8")
         # Densities, also of the middle half, what a pass does, a map of each of two groups, profiles.
         self.assertEqual(text.count("<figure>"), 6)
-        for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size"):
+        for words in ("<td>PS1</td><td>2</td>", "<td>PS3</td><td>1</td>", "measured, full size",
+                      "differences in points of that"):
             self.assertIn(words, text)
 
     def test_runs_that_have_not_finished_are_told_of(self) -> None:
