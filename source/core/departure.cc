@@ -1,6 +1,7 @@
 #include <eunoe/core/departure.h>
 #include <eunoe/core/exit_code.h>
 #include <eunoe/core/log.h>
+#include <eunoe/core/message_tags.h>
 
 #include <chrono>
 #include <cstdio>
@@ -11,7 +12,6 @@ namespace eunoe {
 
 namespace {
 
-constexpr int tag_here = 341;
 /// Largest time for a message, and for a rank to print the reason and end all (s).
 constexpr double time_for_messages = 1., time_to_end = 10.;
 
@@ -57,12 +57,12 @@ bool Departure::is_preceded() const
   MPI_Comm_size(comm, &n_ranks);
   for (int later = rank + 1; later < n_ranks; ++later) {
     MPI_Request request;
-    MPI_Isend(nullptr, 0, MPI_BYTE, later, tag_here, comm, &request);
+    MPI_Isend(nullptr, 0, MPI_BYTE, later, tag_departure, comm, &request);
     MPI_Request_free(&request);
   }
   return wait_for(time_for_messages, [this] {
     int is_there;
-    MPI_Iprobe(MPI_ANY_SOURCE, tag_here, comm, &is_there, MPI_STATUS_IGNORE);
+    MPI_Iprobe(MPI_ANY_SOURCE, tag_departure, comm, &is_there, MPI_STATUS_IGNORE);
     return is_there != 0;
   });
 }

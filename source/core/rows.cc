@@ -1,3 +1,4 @@
+#include <eunoe/core/message_tags.h>
 #include <eunoe/core/rows.h>
 #include <eunoe/core/sparse_exchange.h>
 
@@ -7,8 +8,6 @@
 namespace eunoe {
 
 namespace {
-
-constexpr int tag_rows = 301, tag_lengths = 302, tag_values = 303;
 
 /// Messages under way.
 class Messages
@@ -95,19 +94,19 @@ std::map<int, Fetched> fetch(
       pack(row, answer.values);
       answer.lengths.push_back(static_cast<int>(answer.values.size() - before));
     }
-    messages.send(answer.lengths, MPI_INT, rank, tag_lengths);
+    messages.send(answer.lengths, MPI_INT, rank, tag_row_lengths);
   }
   for (const auto &[rank, n] : n_wanted) {
     in[rank].lengths.resize(n);
-    messages.receive(in[rank].lengths, MPI_INT, rank, tag_lengths);
+    messages.receive(in[rank].lengths, MPI_INT, rank, tag_row_lengths);
   }
   messages.wait();
   for (const auto &[rank, answer] : out)
-    messages.send(answer.values, MPI_DOUBLE, rank, tag_values);
+    messages.send(answer.values, MPI_DOUBLE, rank, tag_row_values);
   for (auto &[rank, answer] : in) {
     answer.values.resize(
         std::accumulate(answer.lengths.begin(), answer.lengths.end(), std::size_t(0)));
-    messages.receive(answer.values, MPI_DOUBLE, rank, tag_values);
+    messages.receive(answer.values, MPI_DOUBLE, rank, tag_row_values);
   }
   messages.wait();
   return in;

@@ -1,3 +1,4 @@
+#include <eunoe/core/message_tags.h>
 #include <eunoe/core/sparse_exchange.h>
 
 #include <deal.II/base/mpi.h>
@@ -14,7 +15,6 @@ std::map<int, int> numbers_from(const std::map<int, int> &numbers_to, MPI_Comm c
 void exchange_entries(const std::map<int, std::pair<const void *, int>> &to, const std::size_t size,
                       const std::function<void *(int rank, int number)> &room, MPI_Comm comm)
 {
-  constexpr int tag = 341;
   MPI_Datatype entry;
   MPI_Type_contiguous(static_cast<int>(size), MPI_BYTE, &entry);
   MPI_Type_commit(&entry);
@@ -26,11 +26,11 @@ void exchange_entries(const std::map<int, std::pair<const void *, int>> &to, con
   requests.reserve(numbers.size() + to.size());
   for (const auto &[rank, number] : numbers) {
     requests.emplace_back();
-    MPI_Irecv(room(rank, number), number, entry, rank, tag, comm, &requests.back());
+    MPI_Irecv(room(rank, number), number, entry, rank, tag_entries, comm, &requests.back());
   }
   for (const auto &[rank, list] : to) {
     requests.emplace_back();
-    MPI_Isend(list.first, list.second, entry, rank, tag, comm, &requests.back());
+    MPI_Isend(list.first, list.second, entry, rank, tag_entries, comm, &requests.back());
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   MPI_Type_free(&entry);

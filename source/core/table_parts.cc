@@ -2,6 +2,7 @@
 
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/message_tags.h>
 #include <eunoe/core/messages.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/quoted_text.h>
@@ -142,8 +143,6 @@ void read_at_offset(const std::string &path, const std::uint64_t size, const Beg
     throw UserError(path + ": reading failed. Check the disk.");
 }
 
-constexpr int tag_size = 334, tag_text = 335;
-
 /// Sends every other rank its part of the lines of a stream. To be called by the first rank.
 /// @param at bytes of the file that have been read
 /// @param size of the file (bytes); 0 if it has none, such as a pipe: then the last rank gets all
@@ -171,8 +170,8 @@ std::string hand_out(std::istream &stream, const std::uint64_t at, const std::ui
       own = std::move(text);
     else {
       const std::uint64_t length = text.size();
-      MPI_Send(&length, 1, MPI_UINT64_T, r, tag_size, comm);
-      send(text.data(), length, r, tag_text, comm);
+      MPI_Send(&length, 1, MPI_UINT64_T, r, tag_table_size, comm);
+      send(text.data(), length, r, tag_table_text, comm);
     }
   }
   return own;
@@ -181,9 +180,9 @@ std::string hand_out(std::istream &stream, const std::uint64_t at, const std::ui
 std::string receive_part(MPI_Comm comm)
 {
   std::uint64_t size;
-  MPI_Recv(&size, 1, MPI_UINT64_T, 0, tag_size, comm, MPI_STATUS_IGNORE);
+  MPI_Recv(&size, 1, MPI_UINT64_T, 0, tag_table_size, comm, MPI_STATUS_IGNORE);
   std::string text(size, ' ');
-  receive(text.data(), size, 0, tag_text, comm);
+  receive(text.data(), size, 0, tag_table_text, comm);
   return text;
 }
 

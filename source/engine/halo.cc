@@ -1,3 +1,4 @@
+#include <eunoe/core/message_tags.h>
 #include <eunoe/core/sparse_exchange.h>
 #include <eunoe/engine/halo.h>
 
@@ -8,8 +9,6 @@ namespace eunoe {
 
 namespace {
 
-constexpr int tag_build = 311, tag_update = 312, tag_flags = 313, tag_paired = 314,
-              tag_references = 315;
 /// Doubles per ghost when it is made (all that is constant, then the state) and at every step.
 constexpr std::size_t build_size = 17, update_size = 9;
 
@@ -84,7 +83,7 @@ void Halo::send_new(const ParticleArrays &particles,
     neighbour.in.resize(build_size * neighbour.received.size());
     neighbours.push_back(std::move(neighbour));
   }
-  exchange(tag_build);
+  exchange(tag_halo_build);
 }
 
 void Halo::append_received(ParticleArrays &particles, const ContactGrid &grid)
@@ -155,7 +154,7 @@ void Halo::update_references(ParticleArrays &particles, std::vector<ContactGrid:
       append(neighbour.out, particles.reference[row]);
     neighbour.in.resize(3 * neighbour.received.size());
   }
-  exchange(tag_references);
+  exchange(tag_halo_references);
   for (const Neighbour &neighbour : neighbours)
     for (std::size_t k = 0; k < neighbour.received.size(); ++k) {
       const double *const in = &neighbour.in[3 * k];
@@ -191,7 +190,7 @@ void Halo::leave_out_unpaired(const ParticleArrays &particles, const PairList &p
       neighbour.out.push_back(is_paired[row]);
     neighbour.in.resize(neighbour.sent.size());
   }
-  exchange(tag_paired);
+  exchange(tag_halo_paired);
   const auto keep = [](std::vector<std::int32_t> &rows, const std::vector<double> &wanted) {
     std::size_t n = 0;
     for (std::size_t k = 0; k < rows.size(); ++k)
@@ -249,7 +248,7 @@ void Halo::update(std::vector<std::uint8_t> &flags)
       neighbour.out.push_back(flags[row]);
     neighbour.in.resize(neighbour.received.size());
   }
-  exchange(tag_flags);
+  exchange(tag_halo_flags);
   for (const Neighbour &neighbour : neighbours)
     for (std::size_t k = 0; k < neighbour.received.size(); ++k)
       flags[neighbour.received[k]] = static_cast<std::uint8_t>(neighbour.in[k]);
@@ -271,7 +270,7 @@ void Halo::update(ParticleArrays &particles)
         *out++ = q->z;
       }
   }
-  exchange(tag_update);
+  exchange(tag_halo_update);
   for (const Neighbour &neighbour : neighbours) {
     const double *in = neighbour.in.data();
     for (const std::int32_t row : neighbour.received_awake)

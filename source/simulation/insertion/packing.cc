@@ -3,6 +3,7 @@
 #include <eunoe/contact/contact_grid.h>
 #include <eunoe/core/exact_sum.h>
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/message_tags.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/random.h>
 #include <eunoe/core/sparse_exchange.h>
@@ -175,7 +176,6 @@ void Packing::search_obstacles(const double skin)
 
 void Packing::update_ghosts()
 {
-  constexpr int tag = 351;
   std::vector<Vec3> in(spheres.size() - n_own);
   std::vector<MPI_Request> requests(2 * links.size());
   std::size_t at = 0;
@@ -183,10 +183,10 @@ void Packing::update_ghosts()
     Link &link = links[l];
     for (std::size_t k = 0; k < link.sent.size(); ++k)
       link.out[k] = spheres[link.sent[k]].position;
-    MPI_Irecv(in.data() + at, static_cast<int>(3 * link.n_received), MPI_DOUBLE, link.rank, tag,
-              comm, &requests[2 * l]);
-    MPI_Isend(link.out.data(), static_cast<int>(3 * link.out.size()), MPI_DOUBLE, link.rank, tag,
-              comm, &requests[2 * l + 1]);
+    MPI_Irecv(in.data() + at, static_cast<int>(3 * link.n_received), MPI_DOUBLE, link.rank,
+              tag_packing, comm, &requests[2 * l]);
+    MPI_Isend(link.out.data(), static_cast<int>(3 * link.out.size()), MPI_DOUBLE, link.rank,
+              tag_packing, comm, &requests[2 * l + 1]);
     at += link.n_received;
   }
   MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
