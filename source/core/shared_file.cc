@@ -40,8 +40,21 @@ void SharedFile::note(const bool ok)
     error = std::strerror(errno);
 }
 
+void SharedFile::protect(const std::uint64_t begin, const std::uint64_t n)
+{
+  struct flock range = {};
+  range.l_type = F_WRLCK;
+  range.l_whence = SEEK_SET;
+  range.l_start = static_cast<off_t>(begin);
+  range.l_len = static_cast<off_t>(n);
+  while (fcntl(handle, F_SETLKW, &range) != 0 && errno == EINTR) {
+  }
+}
+
 void SharedFile::write(std::uint64_t begin, const void *const data, const std::uint64_t n)
 {
+  if (n > 0 && handle >= 0)
+    protect(begin, n);
   const char *from = static_cast<const char *>(data);
   for (std::uint64_t left = n; left > 0 && error.empty();) {
     const ssize_t written = pwrite(handle, from, left, static_cast<off_t>(begin));

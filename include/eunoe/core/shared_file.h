@@ -29,6 +29,10 @@ public:
 
 private:
   void note(bool ok);
+  /// Locks bytes until the file is closed, where the file system has locks. A client of NFS fills a
+  /// page beyond the end that it knows with zeros and writes all of it, over what another node has
+  /// written there, unless bytes of the file are locked.
+  void protect(std::uint64_t begin, std::uint64_t n);
 
   MPI_Comm comm;
   const std::string path, beside;
