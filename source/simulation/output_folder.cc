@@ -86,11 +86,14 @@ void OutputFolder::sync()
 {
   if (!opened)
     return;
+  // What a rank has written may wait in the memory of its node.
+  on_every_rank(comm, [&] {
+    for (const auto &[name, pictures] : series)
+      pictures->sync();
+  });
   on_first_rank(comm, [&] {
     for (const auto &[name, table] : tables)
       table->sync();
-    for (const auto &[name, pictures] : series)
-      pictures->sync();
     sync_folder_of(file(""));
   });
 }
