@@ -230,7 +230,8 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
 ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
                                              const std::vector<std::size_t> &removed,
                                              const std::vector<std::size_t> &lost,
-                                             const std::vector<Solid> &solids)
+                                             const std::vector<Solid> &solids,
+                                             const LoadBalancingParameters *const first_sharing)
 {
   std::vector<std::size_t> leaving = count_leaving(lost);
   rows.collect(particles, pairs, solid_contacts);
@@ -263,6 +264,15 @@ ParticleId ParticleSystem::insert_and_remove(Delivery delivery,
     first_new = std::min(first_new, particle.id);
   store.insert(std::move(delivery.particles), extra_defaults, std::move(origins));
   unadapted = std::numeric_limits<double>::infinity();
+  if (first_sharing != nullptr) {
+    store.migrate();
+    store.adapt();
+    unadapted = 0.;
+    if (store.imbalance(*first_sharing) > first_sharing->threshold_at_start) {
+      store.repartition(*first_sharing);
+      ++balances;
+    }
+  }
   rebuild(solids, nullptr);
 
   MPI_Allreduce(MPI_IN_PLACE, &first_new, 1, MPI_UINT32_T, MPI_MIN, domain.communicator());

@@ -294,13 +294,14 @@ void Simulation::insert_and_remove(Delivery delivery, const std::vector<std::siz
   ParticleId first_new;
   {
     const Timers::Scope scope(progress.timers, Section::search);
-    first_new = system.insert_and_remove(std::move(delivery), removed, lost, solids.list());
     // The mesh was shared out before there were particles. This changes no result.
-    const LoadBalancingParameters *const balance =
-        clock.step() == 0 ? balancer.at_start(system.imbalance(parameters.load_balancing))
-                          : nullptr;
-    if (balance != nullptr)
-      system.search(solids.list(), 0., balance);
+    const bool begins = clock.step() == 0 || system.n_global() == 0;
+    const unsigned long long shared_before = system.n_balances();
+    first_new = system.insert_and_remove(std::move(delivery), removed, lost, solids.list(),
+                                         begins ? &parameters.load_balancing : nullptr);
+    // By numbers at first; now that lists are there, by work.
+    if (system.n_balances() > shared_before)
+      system.search(solids.list(), 0., &parameters.load_balancing);
   }
   note_search();
   if (sleeper.is_enabled())

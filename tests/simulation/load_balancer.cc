@@ -60,6 +60,4 @@ EUNOE_MPI_TEST()
   expect("dynamic", steps(parameters, 0.6), " 30 60 90");
   expect("dynamic, balanced", steps(parameters, 0.4, 40), "");
   check("asked at three of ten searches", n_asked == 3);
-  const LoadBalancer balancer(parameters);
-  check("at the start", balancer.at_start(0.2) != nullptr && balancer.at_start(0.05) == nullptr);
 }

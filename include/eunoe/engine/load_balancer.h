@@ -21,12 +21,6 @@ public:
   const LoadBalancingParameters *at_search(unsigned long long step,
                                            const std::function<double()> &imbalance);
 
-  /// Likewise when the first particles have come.
-  const LoadBalancingParameters *at_start(double imbalance) const
-  {
-    return imbalance > LoadBalancingParameters::threshold_at_start ? &parameters : nullptr;
-  }
-
   nlohmann::ordered_json save() const;
   void load(const nlohmann::ordered_json &saved);
 

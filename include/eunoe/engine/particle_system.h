@@ -96,10 +96,13 @@ public:
   /// have none yet. Collective.
   /// @param removed rows of owned particles
   /// @param lost rows of those that are taken out and counted as lost
+  /// @param first_sharing if not null: the particles are shared out before there are lists of them,
+  ///   as the owners of a few coarse cells would otherwise hold all
   /// @return the smallest id of the new particles of all ranks
   ParticleId insert_and_remove(Delivery delivery, const std::vector<std::size_t> &removed,
                                const std::vector<std::size_t> &lost,
-                               const std::vector<Solid> &solids);
+                               const std::vector<Solid> &solids,
+                               const LoadBalancingParameters *first_sharing);
 
   /// Brings the ghosts up to date; collective.
   void update_ghosts() { halo.update(particles); }
