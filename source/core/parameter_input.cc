@@ -227,16 +227,23 @@ public:
                                       : suggestion(entry.name, known_at(entry.path).entries));
   }
 
-  /// Whether an entry has the value that was declared. That of an entry under another name is not
-  /// known here.
+  /// Whether an entry has the value that was declared, however lists are spaced. That of an entry
+  /// under another name is not known here.
   bool is_default(const InputEntry &entry) const
   {
     const auto declared = defaults.find({entry.path, entry.name});
-    return declared != defaults.end() &&
-           value_of(entries, entry.path, entry.name) == declared->second;
+    const auto value = value_of(entries, entry.path, entry.name);
+    return declared != defaults.end() && value &&
+           without_blanks(*value) == without_blanks(declared->second);
   }
 
 private:
+  static std::string without_blanks(std::string text)
+  {
+    text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
+    return text;
+  }
+
   Level known_at(const Path &path)
   {
     if (tree.empty())

@@ -256,7 +256,7 @@ PROCESSES = [
      "subsection 'particle type 1' / entry 'number of particles' has no effect", 1),
     # An event is 8 layers of 1.5 mm high.
     ("showers into each other", "prm/examples/packing_in_box.prm", ["insertion info/insertion frequency = 600"],
-     "by no more than 0.00155301 m, while an event is 0.012 m long in that direction", 1),
+     "by no more than 0.00155301 m, while an event is 0.0173223 m long in that direction", 1),
     ("showers one after the other", "prm/examples/packing_in_box.prm", [], "The case is in order", 0),
     ("pictures of six layers", "prm/spreading/quickstart.prm", ["powder spreading/number of layers = 6"],
      "Disk: 6 pictures of about", 0),
