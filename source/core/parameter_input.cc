@@ -167,7 +167,7 @@ nlohmann::ordered_json description_of(const boost::property_tree::ptree &section
 std::string complete_text(const dealii::ParameterHandler &prm)
 {
   std::ostringstream text;
-  prm.print_parameters(text, dealii::ParameterHandler::Text);
+  prm.print_parameters(text, dealii::ParameterHandler::PRM);
   return text.str();
 }
 
