@@ -124,14 +124,10 @@ void choose(const DecisionRule &rule, Findings &findings)
   for (const Model &model : findings.models) {
     if (sum >= rule.credible)
       break;
-    if (model.is_discrepancy) {
-      findings.none_of_these = model.probability > 1. - rule.credible;
-      // What is not listed cannot stand for a part of the probability.
-      sum += findings.none_of_these ? model.probability : 0.;
-      continue;
-    }
     sum += model.probability;
-    if (!is_needless(model, findings.answer))
+    if (model.is_discrepancy)
+      findings.none_of_these = model.probability > 1. - rule.credible;
+    else if (!is_needless(model, findings.answer))
       findings.answer.push_back(model);
   }
 }
