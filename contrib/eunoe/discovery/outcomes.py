@@ -51,6 +51,7 @@ class Outcome:
     others_tested: list[tuple[set[str], float]] = field(default_factory=list)
     families: dict[str, str] = field(default_factory=dict)  # of effects that have one
     probabilities: list[float] = field(default_factory=list)  # of the sets in covering
+    seen: bool | None = None  # whether something was detected, where that was said beside the verdict
 
     @property
     def stands_apart(self) -> bool:
@@ -66,7 +67,7 @@ class Outcome:
 
     @property
     def detected(self) -> bool:
-        return self.verdict in SOMETHING
+        return self.verdict in SOMETHING if self.seen is None else self.seen
 
     @property
     def has_name(self) -> bool:
@@ -135,7 +136,7 @@ def read(folder: Path, label: str) -> dict | None:
     content["gaps"] = {"held-out": {key: value for key, value in content["gaps"].get("held-out", {}).items()
                                     if key != "envelopes"}}
     return {"case": asdict(case), "nuisances": sealed["nuisances"],
-            "answer": {key: content[key] for key in ("verdict", "p of nothing missing", "gaps", "runs")}
+            "answer": {key: content[key] for key in ("verdict", "detected", "p of nothing missing", "gaps", "runs") if key in content}
             | {key: [{word: row[word] for word in words if word in row} for row in content.get(key, [])]
                for key, words in SCORED_ROWS.items()}}
 
@@ -170,7 +171,7 @@ def outcome(case: Case, content: dict) -> Outcome:
                     for row in content.get("learning curve", [])],
                    names, [row for row in tested("could have refuted") if row not in names],
                    {row["name"]: row["family"] for row in content.get("catalogue", []) if row.get("family")},
-                   probabilities)
+                   probabilities, content.get("detected"))
 
 
 def wilson(hits: int, number: int, z: float = 1.96) -> tuple[float, float]:
