@@ -80,8 +80,12 @@ def measure(moments: list[np.ndarray], options: argparse.Namespace, what: str) -
         done = subprocess.run([options.program, str(options.case), *overrides(options.set), "--measure", ",".join(files)],
                               capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            # Its own message, with the user's file instead of the one between.
-            raise Failure((done.stderr + done.stdout).strip().replace(",".join(files), what))
+            # Its own message, with the user's files instead of those between.
+            message = (done.stderr + done.stdout).strip().replace(",".join(files), what)
+            names = what.split(",")
+            for file, name in zip(files, names if len(names) == len(files) else [what] * len(files)):
+                message = message.replace(file, name)
+            raise Failure(message)
     return list(csv.DictReader(io.StringIO(done.stdout)))
 
 

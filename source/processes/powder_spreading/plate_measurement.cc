@@ -66,7 +66,8 @@ void check_depth(const std::vector<GivenParticle> &particles, const Apparatus &a
       throw UserError(
           "On the measuring plate there is a particle at z = " + format(particle.centre.z) +
           " m, and the apparatus reaches from z = 0 to its depth, " + format(apparatus.depth) +
-          " m. Give what lies between these, or a case of that depth.");
+          " m. Give what lies between these, wrapped if the slice is periodic, or a case of "
+          "that depth.");
 }
 
 /// Masses and relative densities, of all layers one after the other.
