@@ -209,23 +209,27 @@ void judge_overlap(const Overlap &overlap, const std::string &what, const FaultP
     problems.warn(insertion_info + ":", text, mend);
 }
 
-/// Unit vector along which the particles of an event leave: that of their velocities, or of gravity
-/// where one of them has none; zero if nothing moves it.
+/// How far the particles of an event move in a time, by the speed of the slowest and by gravity.
 /// @param event this rank's share
-Vec3 direction_of(const std::vector<NewParticle> &event, const double slowest, const Vec3 &gravity,
-                  MPI_Comm comm)
+Vec3 way_of(const std::vector<NewParticle> &event, const Vec3 &gravity, const double time,
+            MPI_Comm comm)
 {
+  double slowest = std::numeric_limits<double>::infinity();
   std::array<ExactSum, 3> sums;
-  for (const NewParticle &particle : event)
+  for (const NewParticle &particle : event) {
+    slowest = std::min(slowest, norm(particle.velocity));
     for (unsigned int d = 0; d < 3; ++d)
       sums[d] += particle.velocity[d];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &slowest, 1, MPI_DOUBLE, MPI_MIN, comm);
   Vec3 sum;
   for (unsigned int d = 0; d < 3; ++d) {
     sums[d].reduce(comm);
     sum[d] = sums[d].value();
   }
-  const Vec3 along = slowest > 0. && norm(sum) > 0. ? sum : gravity;
-  return norm(along) > 0. ? along / norm(along) : Vec3();
+  const Vec3 by_gravity = 0.5 * time * time * gravity;
+  return slowest > 0. && norm(sum) > 0. ? slowest * time / norm(sum) * sum + by_gravity
+                                        : by_gravity;
 }
 
 /// Distance from the first to the last centre of an event in a direction (m).
@@ -253,15 +257,10 @@ void judge_interval(const Parameters &parameters, std::vector<NewParticle> event
 {
   MPI_Comm comm = domain.communicator();
   leave_out_what_is_outside(event, domain);
-  double slowest = std::numeric_limits<double>::infinity();
-  for (const NewParticle &particle : event)
-    slowest = std::min(slowest, norm(particle.velocity));
-  MPI_Allreduce(MPI_IN_PLACE, &slowest, 1, MPI_DOUBLE, MPI_MIN, comm);
-  const Vec3 &gravity = parameters.physics.gravity;
   const double time = parameters.insertion.frequency * parameters.control.time_step;
-  const double way = slowest * time + 0.5 * norm(gravity) * time * time;
-  const double length =
-      largest_diameter + extent_along(direction_of(event, slowest, gravity, comm), event, comm);
+  const Vec3 path = way_of(event, parameters.physics.gravity, time, comm);
+  const double way = norm(path);
+  const double length = largest_diameter + (way > 0. ? extent_along(path / way, event, comm) : 0.);
   if (way < length)
     problems.warn(insertion_info + " / entry 'insertion frequency':",
                   "between two events, the particles move by no more than " + format(way) +
@@ -286,7 +285,8 @@ void judge_number(const Parameters &parameters, const Insertion &insertion, Prob
     problems.warn(number,
                   "is " + format_whole(most) + ", so that only the first " +
                       format_count(most, "particle", "particles") + " of the files come.",
-                  "Give 0 for all of them.");
+                  parameters.insertion.frequency > 0 ? "Give the number of all of them."
+                                                     : "Give 0 for all of them.");
   if (coming > most_particles)
     problems.add(insertion_info + ":", format(coming) + " particles would come into the run.",
                  "At most " + format(most_particles) + " are possible.");
