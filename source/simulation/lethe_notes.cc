@@ -84,6 +84,20 @@ public:
     return false;
   }
 
+  /// Whether rolling friction and rolling viscous damping of a particle type differ.
+  bool has_two_coefficients_of_rolling() const
+  {
+    const std::string properties = "lagrangian physical properties";
+    const double n_types = number({properties}, "number of particle types", 1.);
+    for (unsigned int type = 0; type < n_types; ++type) {
+      const EntryPath path = {properties, "particle type " + std::to_string(type)};
+      if (number(path, "rolling friction particles", 0.1) !=
+          number(path, "rolling viscous damping particles", 0.1))
+        return true;
+    }
+    return false;
+  }
+
   bool has_turning_walls() const
   {
     const EntryPath grid = {"grid motion"};
@@ -145,7 +159,7 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
                         ? " Between particles the Coulomb limit does not count the damping, and "
                           "the tangential displacement grows on beyond it."
                         : ""));
-  if (law == "linear" && input.has_rolling_resistance())
+  if (law == "linear" && input.has_rolling_resistance() && input.has_two_coefficients_of_rolling())
     notes.emplace_back("Lethe: with 'linear', versions of 2026 exchange rolling friction and "
                        "rolling viscous damping between particles; here each entry is what it is "
                        "called.");

@@ -346,7 +346,8 @@ EUNOE_MPI_TEST()
   print_notes("linear walls", laws("hertz", "linear"));
   print_notes("necks", laws("hertz_JKR", "nonlinear"));
   print_notes("necks at walls", laws("hertz_mindlin_limit_overlap", "JKR"));
-  print_notes("linear particles", laws("linear", "linear"));
+  print_notes("linear particles", laws("linear", "linear") + rolling_friction("0.01", "0.1"));
+  print_notes("linear particles with equal coefficients", laws("linear", "linear"));
   print_notes("linear particles without rolling resistance",
               laws("linear", "linear") + model(" set rolling resistance torque method = none\n"));
   print_notes("a drum", turning_wall);
