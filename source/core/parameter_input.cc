@@ -233,15 +233,22 @@ public:
   {
     const auto declared = defaults.find({entry.path, entry.name});
     const auto value = value_of(entries, entry.path, entry.name);
-    return declared != defaults.end() && value &&
-           without_blanks(*value) == without_blanks(declared->second);
+    return declared != defaults.end() && value && is_same(*value, declared->second);
   }
 
 private:
-  static std::string without_blanks(std::string text)
+  /// Whether two texts are the same number, or the same but for blanks.
+  static bool is_same(std::string a, std::string b)
   {
-    text.erase(std::remove(text.begin(), text.end(), ' '), text.end());
-    return text;
+    for (std::string *const text : {&a, &b})
+      text->erase(std::remove(text->begin(), text->end(), ' '), text->end());
+    const auto number_in = [](const std::string &text) -> std::optional<double> {
+      char *end = nullptr;
+      const double number = std::strtod(text.c_str(), &end);
+      return !text.empty() && *end == '\0' ? std::optional(number) : std::nullopt;
+    };
+    const std::optional<double> of_a = number_in(a), of_b = number_in(b);
+    return a == b || (of_a && of_b && *of_a == *of_b);
   }
 
   Level known_at(const Path &path)
