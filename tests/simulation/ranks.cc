@@ -231,8 +231,9 @@ void compare(const std::string &laws, const std::vector<std::string> &balancings
           together.load == alone.load && std::abs(alone.load[1]) > 0.);
     if (balancing == none)
       check_searches(together);
-    else if (n_ranks > 1)
-      // One may come at the start by itself.
+    if (n_ranks > 1)
+      check("the work is shared out when the particles come", together.balances > 0);
+    if (balancing != none && n_ranks > 1)
       check("the work was shared out anew", together.balances > 3,
             std::to_string(together.balances) + " times");
     check("the same mass lost", together.lost == alone.lost && alone.lost.value() > 0.);
