@@ -151,6 +151,8 @@ def _one_or_none(study: Study) -> list[str]:
     if share > LOOKALIKES:
         sentences.append("An effect of its kind that the catalogue lacks would look like it: of the catalogue's own "
                          f"effects of this strength, left out of it in turn, {percent(share, 0)} are taken for this one.")
+    if study.content.get("untried"):
+        return sentences  # what is said of these effects says what would tell
     return [*sentences, "More repeats, and held-out conditions, would tell whether it is this effect."]
 
 

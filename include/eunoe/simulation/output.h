@@ -63,8 +63,8 @@ public:
   /// Times (s) and names of the files so far.
   using Files = std::vector<std::pair<double, std::string>>;
   const Files &get_files() const { return files; }
-  /// Waits until the files since the last call would survive a crash of the machine. To be called
-  /// by the first rank, throws a UserError there.
+  /// Waits until what this rank wrote since the last call would survive a crash of its machine.
+  /// Throws a UserError on a rank that cannot.
   void sync();
   /// Goes on behind the files of an interrupted run; later ones disappear from the .pvd file.
   void resume(const Files &earlier);
