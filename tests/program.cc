@@ -43,6 +43,6 @@ int main(int argc, char **argv)
     found->second.run();
     return 0;
   }
-  const eunoe::MpiSession mpi(argc, argv);
+  const eunoe::MpiSession mpi(argv);
   found->second.run();
 }

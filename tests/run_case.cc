@@ -8,7 +8,7 @@
 
 int main(int argc, char **argv)
 {
-  const eunoe::MpiSession mpi(argc, argv);
+  const eunoe::MpiSession mpi(argv);
   try {
     test::Case test_case(eunoe::read_file(argv[1], MPI_COMM_WORLD));
     test_case.run();

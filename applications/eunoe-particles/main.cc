@@ -3,6 +3,6 @@
 
 int main(int argc, char **argv)
 {
-  const eunoe::MpiSession mpi(argc, argv);
+  const eunoe::MpiSession mpi(argv);
   return eunoe::run_particles(argc, argv, MPI_COMM_WORLD);
 }

@@ -8,7 +8,7 @@ namespace eunoe {
 
 struct MpiSession::Libraries
 {
-  Libraries(int &argc, char **&argv) : mpi(argc, argv, 1) {}
+  explicit Libraries(char **&argv) : mpi(n_arguments, argv, 1) {}
 
   /// Ranks of one node send each other a few kB of ghosts at every step. Open MPI copies so much
   /// without asking the receiver first only if it is told to, before it begins; its limit is 4 kB.
@@ -23,10 +23,13 @@ struct MpiSession::Libraries
   };
 
   SendsAtOnce setting;
+  /// deal.II hands the arguments on to PETSc, which would complain in the output of those that it
+  /// does not know: the name of the program is all that it gets.
+  int n_arguments = 1;
   dealii::Utilities::MPI::MPI_InitFinalize mpi;
 };
 
-MpiSession::MpiSession(int &argc, char **&argv) : libraries(new Libraries(argc, argv)) {}
+MpiSession::MpiSession(char **argv) : libraries(new Libraries(argv)) {}
 
 MpiSession::~MpiSession() = default;
 

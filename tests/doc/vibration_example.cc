@@ -13,7 +13,7 @@
 int main(int argc, char **argv)
 {
   using namespace eunoe;
-  const eunoe::MpiSession mpi(argc, argv);
+  const eunoe::MpiSession mpi(argv);
   SolidObjectParameters parameters(1);
   dealii::ParameterHandler prm;
   parameters.declare(prm);

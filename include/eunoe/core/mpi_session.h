@@ -10,7 +10,8 @@ namespace eunoe {
 class MpiSession
 {
 public:
-  MpiSession(int &argc, char **&argv);
+  /// @param argv of main()
+  explicit MpiSession(char **argv);
   ~MpiSession();
 
 private:
