@@ -235,8 +235,9 @@ void observe_weights(const RecordedTable &table, const StudyOptions &options,
     const Eigen::MatrixXd &rows = part.emulator.deviations();
     const Eigen::MatrixXd true_root =
         study.drawn.simulator.covariance(part.measured.name).llt().matrixL();
-    const Eigen::MatrixXd scaled = part.emulator.base_deviation().cwiseInverse().asDiagonal() *
-                                   true_root(part.measured.columns, Eigen::all);
+    const Eigen::MatrixXd scaled =
+        part.emulator.base_deviation().cwiseInverse().asDiagonal() *
+        true_root(part.measured.columns, Eigen::seqN(0, true_root.cols()));
     assumed += own.squaredNorm() / part.repeats;
     of_twins += (rows * own).squaredNorm() / static_cast<double>(rows.rows()) / part.repeats;
     of_simulator +=

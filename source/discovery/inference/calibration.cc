@@ -73,7 +73,8 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
   const auto n = static_cast<double>(detected.size());
   result.stated /= n;
   result.right /= n;
-  singles.log_evidence = Eigen::ArrayXXd(singles.log_evidence(Eigen::all, detected));
+  singles.log_evidence =
+      Eigen::ArrayXXd(singles.log_evidence(Eigen::seqN(0, singles.log_evidence.rows()), detected));
   double highest = -1e300;
   // Never below 1: twins know nothing of what is wrong with the model besides.
   for (double temperature = 1.; temperature < 3.; temperature *= 1.05)

@@ -31,7 +31,8 @@ std::vector<Measurable> measurables(const Target &target)
         part.emulator.unwhitening() * part.rotation.transpose();
     result.push_back({part.measured.name, "all", modes});
     for (const Modes::Group &group : part.emulator.modes().groups())
-      result.push_back({part.measured.name, group.observable, modes(group.modes, Eigen::all)});
+      result.push_back(
+          {part.measured.name, group.observable, modes(group.modes, Eigen::seqN(0, modes.cols()))});
   }
   return result;
 }
@@ -303,7 +304,7 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
            rank(Target(measured, samples, space, options.model_tolerance), options.seed + 6)) {
         row["again"] = false;
         if (row["observable"] == "all" &&
-            std::find(made.begin(), made.end(), row["experiment"]) != made.end())
+            std::find(made.begin(), made.end(), row["experiment"].get<std::string>()) != made.end())
           row["observable"] = "all else";
         rows.push_back(row);
       }
