@@ -47,7 +47,7 @@ def main(cmake: str, build: Path, folder: Path) -> int:
     code = next(text for name, text in shown_files().items() if name.startswith("source/observables"))
     observable = folder / "centre_of_mass.cc"
     observable.write_text(code, encoding="utf-8")
-    call(cmake, "-S", HERE / "project", "-B", own, "-DCMAKE_BUILD_TYPE=Release",
+    call(cmake, "-S", HERE / "project", "-B", own, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
          f"-DCMAKE_PREFIX_PATH={prefix}", f"-DOBSERVABLE={observable}")
     call(cmake, "--build", own)
     # The program must use the installed library, not that of the build folder.
