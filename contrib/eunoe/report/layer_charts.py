@@ -120,6 +120,7 @@ def budget_figure(layers: Layers) -> Figure:
             style.plain_log_axis(axes.yaxis)
         else:
             axes.set_ylim(low, high + 0.2 * (high - low))
-        axes.legend(loc="upper center", ncol=3, handlelength=1.2, columnspacing=1.2,
-                    borderaxespad=0.1)
+        if axes.get_legend_handles_labels()[0]:
+            axes.legend(loc="upper center", ncol=3, handlelength=1.2, columnspacing=1.2,
+                        borderaxespad=0.1)
     return figure
