@@ -98,6 +98,11 @@ std::string ContactParameters::model_of_walls() const
   return wall_method == "nonlinear" ? "hertz_mindlin_limit_overlap" : wall_method;
 }
 
+NormalLaws ContactParameters::normal_laws() const
+{
+  return {method == "linear", model_of_walls() == "linear"};
+}
+
 ContactModel ContactParameters::model(const Materials &materials,
                                       const double largest_diameter) const
 {

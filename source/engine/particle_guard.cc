@@ -39,9 +39,11 @@ void FaultParameters::declare(dealii::ParameterHandler &prm)
 }
 
 ParticleGuard::ParticleGuard(const FaultParameters &parameters, const Domain &domain,
-                             const Materials &materials, const double longest_way, const double dt)
+                             const Materials &materials, const NormalLaws &laws,
+                             const double longest_way, const double dt)
     : parameters(parameters), domain(domain), materials(materials),
-      young_modulus(materials.table(effective_young_modulus)), longest_way(longest_way), dt(dt)
+      young_modulus(materials.table(effective_young_modulus)), laws(laws), longest_way(longest_way),
+      dt(dt)
 {
 }
 
@@ -85,9 +87,11 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const PairList &pairs
     if (overlap <= 0.)
       continue;
     const double mi = p.mass(i), mj = p.mass(j);
-    const double stiffness = hertz_tangent_stiffness(
-        young_modulus[materials.kind(p.type[i], p.type[j])], ri * rj / (ri + rj), overlap);
-    faults.stiffest = std::max(faults.stiffest, stiffness * (mi + mj) / (mi * mj));
+    const double mass = mi * mj / (mi + mj);
+    const double stiffness =
+        normal_stiffness(laws.pairs_are_linear, young_modulus[materials.kind(p.type[i], p.type[j])],
+                         ri * rj / (ri + rj), mass, overlap);
+    faults.stiffest = std::max(faults.stiffest, stiffness / mass);
     if (largest > 0. && overlap > largest * std::min(ri, rj))
       faults.squeezed.push_back({i, "overlaps particle " + std::to_string(p.id[j]) + " by " +
                                         eunoe::format(overlap) +
@@ -110,7 +114,8 @@ void ParticleGuard::find_overlaps(const ParticleArrays &p, const SolidContacts &
       continue;
     const int kind = materials.kind(p.type[candidate.particle], solid.material);
     faults.stiffest =
-        std::max(faults.stiffest, hertz_tangent_stiffness(young_modulus[kind], radius, depth) /
+        std::max(faults.stiffest, normal_stiffness(laws.walls_are_linear, young_modulus[kind],
+                                                   radius, p.mass(candidate.particle), depth) /
                                       p.mass(candidate.particle));
     if (largest > 0. && depth > largest * radius)
       faults.squeezed.push_back({static_cast<std::size_t>(candidate.particle),

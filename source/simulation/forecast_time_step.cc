@@ -44,7 +44,8 @@ void judge_time_step(const Parameters &parameters, const std::vector<DiameterRan
     const ParticleType &type = parameters.physics.types[t];
     const double rayleigh =
         PhysicalProperties::rayleigh_time(0.5 * smallest, type.density, type.material);
-    const double contact = parameters.physics.shortest_contact_time(type, 0.5 * smallest);
+    const double contact = parameters.physics.shortest_contact_time(
+        type, 0.5 * smallest, parameters.contacts.normal_laws());
     forecast.facts.push_back("Particle type " + std::to_string(t) + ": " +
                              describe_diameters(smallest, largest) + "; the time step of " +
                              format(dt) + " s is " + format(std::round(1e3 * dt / rayleigh) / 10.) +

@@ -212,7 +212,8 @@ Parameters Parameters::read(const std::string &text, const std::string &file,
   ControlParameters &control = parameters.control;
   if (!control.given_time_step && problems.empty())
     control.time_step = parameters.physics.longest_time_step(control.rayleigh_share,
-                                                             1. / ParticleGuard::steps_per_contact);
+                                                             1. / ParticleGuard::steps_per_contact,
+                                                             parameters.contacts.normal_laws());
   if (process != nullptr) {
     process->check(check);
     try {

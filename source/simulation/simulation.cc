@@ -27,7 +27,8 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       // Without a search two bodies must not come closer by more than the skin, so each may move by
       // half of it.
       guard(parameters.faults, domain, system.contact_model().get_materials(),
-            0.5 * skin_of(parameters, inserter, domain), clock.time_step()),
+            parameters.contacts.normal_laws(), 0.5 * skin_of(parameters, inserter, domain),
+            clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {

@@ -142,7 +142,8 @@ std::vector<std::size_t> PhysicalProperties::types_in_use() const
 }
 
 double PhysicalProperties::longest_time_step(const double share_of_rayleigh,
-                                             const double share_of_contact) const
+                                             const double share_of_contact,
+                                             const NormalLaws &laws) const
 {
   double longest = std::numeric_limits<double>::infinity();
   for (const std::size_t t : types_in_use()) {
@@ -150,32 +151,29 @@ double PhysicalProperties::longest_time_step(const double share_of_rayleigh,
     const double radius = 0.5 * type.sizes.make()->smallest();
     longest =
         std::min({longest, share_of_rayleigh * rayleigh_time(radius, type.density, type.material),
-                  share_of_contact * shortest_contact_time(type, radius)});
+                  share_of_contact * shortest_contact_time(type, radius, laws)});
   }
   return longest;
 }
 
-double PhysicalProperties::shortest_contact_time(const ParticleType &type) const
-{
-  return shortest_contact_time(type, 0.5 * type.sizes.make()->smallest());
-}
-
-double PhysicalProperties::shortest_contact_time(const ParticleType &type,
-                                                 const double radius) const
+double PhysicalProperties::shortest_contact_time(const ParticleType &type, const double radius,
+                                                 const NormalLaws &laws) const
 {
   const double overlap = 0.01 * radius;
   const double mass = sphere_mass(radius, type.density);
-  const double with_its_like = hertz_tangent_stiffness(
-      effective_young_modulus(type.material, type.material), 0.5 * radius, overlap);
+  const double with_its_like =
+      normal_stiffness(laws.pairs_are_linear, effective_young_modulus(type.material, type.material),
+                       0.5 * radius, 0.5 * mass, overlap);
   double largest = with_its_like / (0.5 * mass);
   // With a partner that is much larger and heavier, like a wall, the effective radius and mass are
   // the particle's own.
   const Materials all = materials();
   for (int m = 0; m < all.size(); ++m)
-    largest =
-        std::max(largest, hertz_tangent_stiffness(effective_young_modulus(type.material, all[m]),
-                                                  radius, overlap) /
-                              mass);
+    largest = std::max(
+        largest,
+        normal_stiffness(m < wall_material() ? laws.pairs_are_linear : laws.walls_are_linear,
+                         effective_young_modulus(type.material, all[m]), radius, mass, overlap) /
+            mass);
   return M_PI / std::sqrt(largest);
 }
 

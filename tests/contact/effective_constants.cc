@@ -120,11 +120,17 @@ EUNOE_TEST()
   physics.wall = titanium;
   const double mass = 4. / 3. * M_PI * 1e-12 * 4386.;
   const double young = 26.25e6 / (2. * (1. - 0.342 * 0.342));
-  check_relative("contact time of two particles", physics.shortest_contact_time(type),
+  check_relative("contact time of two particles", physics.shortest_contact_time(type, 1e-4, {}),
                  M_PI * std::sqrt(0.5 * mass / (2. * young * std::sqrt(0.5e-4 * 1e-6))), 1e-12);
+  // The linear law at R* and m*, whatever the overlap: k = s (m* / s)^(1/5), s = 16/15 sqrt(R*) Y*.
+  const double spring = 16. / 15. * std::sqrt(0.5e-4) * young;
+  check_relative("contact time of two particles of the linear law",
+                 physics.shortest_contact_time(type, 1e-4, {true, true}),
+                 M_PI * std::sqrt(0.5 * mass / (spring * std::pow(0.5 * mass / spring, 0.2))),
+                 1e-12);
   // With a wall of the same material the stiffness grows by a factor sqrt(2) and the mass by 2. A
   // rigid wall also doubles the modulus, so that the contact with the wall is the shorter one.
   physics.wall.young_modulus = 1e16;
-  check_relative("contact time with a rigid wall", physics.shortest_contact_time(type),
+  check_relative("contact time with a rigid wall", physics.shortest_contact_time(type, 1e-4, {}),
                  M_PI * std::sqrt(mass / (4. * young * std::sqrt(1e-4 * 1e-6))), 1e-8);
 }

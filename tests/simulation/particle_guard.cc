@@ -24,7 +24,7 @@ struct Trial
       particles.id[row] = static_cast<ParticleId>(10 + 10 * rank) + row;
   }
 
-  ParticleGuard guard() const { return {parameters, domain, materials, 1., dt}; }
+  ParticleGuard guard() const { return {parameters, domain, materials, {}, 1., dt}; }
   InspectionResult judge(const Faults &faults) const
   {
     return guard().judge(faults, particles, [this](std::size_t row) {

@@ -15,6 +15,8 @@ public:
   /// Whether adhesion that the materials ask for is in the laws, and the reverse.
   void check_with(const PhysicalProperties &physics, const ParameterCheck &check) const;
 
+  NormalLaws normal_laws() const;
+
   /// The laws of two particles.
   /// @param largest_diameter of the particles (m)
   ContactModel model(const Materials &materials, double largest_diameter) const;

@@ -62,7 +62,7 @@ public:
   /// @param longest_way that a particle may have gone from its reference up to the last step (m)
   /// @param dt time step (s)
   ParticleGuard(const FaultParameters &parameters, const Domain &domain, const Materials &materials,
-                double longest_way, double dt);
+                const NormalLaws &laws, double longest_way, double dt);
 
   /// What is wrong on this rank.
   Faults inspect(const ParticleArrays &particles, const PairList &pairs,
@@ -94,6 +94,7 @@ private:
   const Domain &domain;
   const Materials &materials;
   const std::vector<double> young_modulus; ///< effective, one per kind of pair
+  const NormalLaws laws;
   const double longest_way, dt;
   bool found_too_short = false; ///< a half period
   std::uint64_t most_at_once = 0;

@@ -40,6 +40,21 @@ double hertz_tangent_stiffness(double effective_young_modulus, double effective_
                                double overlap);
 ///@}
 
+/// Whether contacts have a constant stiffness, which decides how short they are.
+struct NormalLaws
+{
+  bool pairs_are_linear = false, walls_are_linear = false;
+};
+
+/// Stiffness of a contact against further approach (N/m).
+inline double normal_stiffness(const bool is_linear, const double effective_young_modulus,
+                               const double effective_radius, const double effective_mass,
+                               const double overlap)
+{
+  return is_linear ? linear_stiffness(effective_young_modulus, effective_radius, effective_mass)
+                   : hertz_tangent_stiffness(effective_young_modulus, effective_radius, overlap);
+}
+
 /// The materials of a simulation: particle types first, then those of walls and solids.
 /// The pair (a, b) of a particle type and any material has row `kind(a, b)` in the laws' tables.
 class Materials

@@ -59,13 +59,14 @@ struct PhysicalProperties : public ParameterSection
 
   /// The time step that is these shares of the shortest Rayleigh time and of the stiffest contact's
   /// time, whichever is shorter (s).
-  double longest_time_step(double share_of_rayleigh, double share_of_contact) const;
+  double longest_time_step(double share_of_rayleigh, double share_of_contact,
+                           const NormalLaws &laws) const;
 
-  /// Half period of the stiffest contact that a type's smallest particle can have at an overlap of
-  /// one hundredth of its radius, with its like or with any material of the case (s).
-  double shortest_contact_time(const ParticleType &type) const;
-  /// Likewise of a particle of that type with another radius (m).
-  double shortest_contact_time(const ParticleType &type, double radius) const;
+  /// Half period of the stiffest contact that a particle of a type can have at an overlap of one
+  /// hundredth of its radius, with its like or with any material of the case (s).
+  /// @param radius (m)
+  double shortest_contact_time(const ParticleType &type, double radius,
+                               const NormalLaws &laws) const;
 
   void declare(dealii::ParameterHandler &prm) override;
   /// Reads what the particle types have in files; collective if @p load is.
