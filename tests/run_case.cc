@@ -6,7 +6,7 @@
 
 #include "tests.h"
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
   const eunoe::MpiSession mpi(argv);
   try {
