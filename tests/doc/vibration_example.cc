@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstdio>
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
   using namespace eunoe;
   const eunoe::MpiSession mpi(argv);
