@@ -4,20 +4,13 @@
 #include <eunoe/discovery/inference/decision.h>
 
 #include "../tests.h"
+#include "models.h"
 
 namespace {
 
 using namespace eunoe::discovery;
 using test::check;
-
-Model model_of(const std::vector<std::size_t> &effects, const double probability)
-{
-  Model model;
-  model.effects = effects;
-  model.is_discrepancy = effects.empty();
-  model.probability = probability;
-  return model;
-}
+using test::model_of;
 
 /// @param models the likeliest first
 Findings chosen(const std::vector<Model> &models)

@@ -3,6 +3,7 @@
 #include <eunoe/discovery/inference/refutation.h>
 
 #include "../tests.h"
+#include "models.h"
 
 #include <cmath>
 
@@ -10,20 +11,12 @@ namespace {
 
 using namespace eunoe::discovery;
 using test::check;
+using test::model_of;
 
 constexpr double good = 0.5, doubtful = 0.03, refuted = 1e-4;
 
-Model with(const std::vector<std::size_t> &effects, const double probability)
-{
-  Model model;
-  model.effects = effects;
-  model.is_discrepancy = effects.empty();
-  model.probability = probability;
-  return model;
-}
-
-const Model a = with({0}, 0.5), b = with({1}, 0.4), both = with({0, 1}, 0.08), c = with({2}, 0.01),
-            none_of_these = with({}, 0.01);
+const Model a = model_of({0}, 0.5), b = model_of({1}, 0.4), both = model_of({0, 1}, 0.08),
+            c = model_of({2}, 0.01), none_of_these = model_of({}, 0.01);
 
 /// A tie of two effects.
 Findings by_fit()
@@ -90,7 +83,7 @@ void of_a_tie()
   check("and goes with it",
         of({a, b}, {refuted, good}, Untested::fall, doubt).findings.verdict == Verdict::named);
   Findings open = by_fit();
-  open.models = {a, with({1}, 0.25), with({}, 0.24), c};
+  open.models = {a, model_of({1}, 0.25), model_of({}, 0.24), c};
   check("it is no name where it may be none of them",
         of({a, b}, {refuted, good}, Untested::fall, open).findings.verdict == Verdict::tie);
   check("nor where the data are far from it, too",
@@ -105,7 +98,7 @@ void of_a_tie()
 void of_none_of_these()
 {
   Findings open = by_fit();
-  open.models = {with({0}, 0.8), with({}, 0.2)};
+  open.models = {model_of({0}, 0.8), model_of({}, 0.2)};
   open.answer = {a};
   open.none_of_these = true;
   open.off_catalogue = 0.2;
@@ -119,7 +112,7 @@ void of_none_of_these()
             heard.findings.verdict == Verdict::named);
   check("and not for one that has not",
         of({a}, {refuted}, Untested::fall, open, rare).findings.verdict == Verdict::off_catalogue);
-  open.models = {with({0}, 0.6), with({1}, 0.2), with({}, 0.2)};
+  open.models = {model_of({0}, 0.6), model_of({1}, 0.2), model_of({}, 0.2)};
   check("nor for one that nothing has tested",
         std::abs(share(of({b}, {good}, Untested::fall, open, rare)) - 0.2) < 1e-12);
 }
