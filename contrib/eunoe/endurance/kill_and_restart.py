@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib.util
+import math
 import os
 import random
 import re
@@ -20,6 +21,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import IO
 
 from eunoe.launch import SHARED, Failure, mpirun, overrides, parser_with_case, rank_numbers
 
@@ -39,9 +41,9 @@ class Case:
         return [*mpirun(ranks, *SHARED, "--mca", "mpi_yield_when_idle", "1"), self.program, self.case, "--dump",
                 str(self.dump), *overrides(entries)]
 
-    def start(self, ranks: int, *settings: str) -> subprocess.Popen:
-        return subprocess.Popen(self.command(ranks, *settings), start_new_session=True,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    def start(self, ranks: int, *settings: str, output: int | IO = subprocess.PIPE) -> subprocess.Popen:
+        return subprocess.Popen(self.command(ranks, *settings), start_new_session=True, stdout=output,
+                                stderr=subprocess.STDOUT, text=True)
 
     def run(self, ranks: int, *settings: str) -> None:
         process = self.start(ranks, *settings)
@@ -112,18 +114,30 @@ def none_left(case: Case, process: subprocess.Popen) -> Iterator[None]:
         raise
 
 
-def kill_all(case: Case, process: subprocess.Popen) -> str:
+def kill_all(case: Case, process: subprocess.Popen) -> None:
     """Kills the launcher and every rank. The launcher puts ranks into process groups of their own,
-    so killing its group is not enough.
-
-    @return what the run has printed"""
+    so killing its group is not enough."""
     os.killpg(process.pid, signal.SIGKILL)
     while case.processes():
         for number in case.processes():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(number, signal.SIGKILL)
         time.sleep(0.01)
-    return process.communicate()[0]
+    process.wait()
+
+
+def ended_before(process: subprocess.Popen, log: Path, seconds: float, counts_from_first_step: bool) -> bool:
+    """Waits for the end of a run, at most for a time that begins with it or with the first step that
+    it reports: how long a run takes to begin has little to do with how long its steps take."""
+    while counts_from_first_step and reached_step(log.read_text()) == 0:
+        if process.poll() is not None:
+            return True
+        time.sleep(0.01)
+    try:
+        process.wait(timeout=None if math.isinf(seconds) else seconds)
+    except subprocess.TimeoutExpired:
+        return False
+    return True
 
 
 def reached_step(output: str) -> int:
@@ -163,17 +177,19 @@ def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
             case.dump.unlink(missing_ok=True)
         before = 0 if fresh else case.last_step()
         restarts += before > 0
-        process = case.start(draw.choice(ranks), *checkpoints, mode)
-        try:
-            with none_left(case, process):
-                output = process.communicate(
-                    timeout=None if done >= kills else draw.uniform(0.1, 1.1) * duration)[0]
-        except subprocess.TimeoutExpired:
-            output = kill_all(case, process)
+        log = case.folder / "log"
+        with log.open("w") as file:
+            process = case.start(draw.choice(ranks), *checkpoints, mode, output=file)
+        seconds = math.inf if done >= kills else draw.uniform(0.1, 1.1) * duration
+        with none_left(case, process):
+            ended = ended_before(process, log, seconds, draw.random() < 0.5)
+        if not ended:
+            kill_all(case, process)
             done += 1
-            most_lost = max(most_lost, check_loss(case, output, before, frequency, f"After kill {done}"))
+            most_lost = max(most_lost, check_loss(case, log.read_text(), before, frequency, f"After kill {done}"))
             fresh = False
             continue
+        output = log.read_text()
         if process.returncode != 0:
             raise Failure(f"After kill {done} the run ended with exit code {process.returncode}:\n"
                           f"{output}")
