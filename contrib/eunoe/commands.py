@@ -41,6 +41,7 @@ COMMANDS = {
         "forgetting": ("studies.forgetting", "what a packing loses when its contacts forget"),
         "reproduction": ("studies.reproduction", "goes on with the campaign that reproduces the paper"),
         "heap-size": ("studies.heap_size", "how a heap's angle depends on the size of its disc"),
+        "heap-extrapolation": ("studies.heap_extrapolation", "towards which angle heaps go on larger discs"),
         "sleep-layers": ("studies.sleep_layers", "whether sleeping particles change the layers"),
         "sleep-proofs": ("studies.sleep_proofs", "whether sleeping particles change what creeps or flows"),
         "measure": ("discovery.measure", "measures particles of another program or a scan, for a study"),
