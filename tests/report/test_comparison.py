@@ -28,8 +28,8 @@ from eunoe.report.bed_maps import maps_of, read_maps, read_table, write_table
 from eunoe.report.comparison_charts import last_common_layer, profiles_figure
 from eunoe.report.comparison_report import default_labels
 from eunoe.report.common_scatter import CommonScatter
-from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, rise_sentence,
-                                          supply_table)
+from eunoe.report.comparison_text import (densities_table, differences_table, measured_group, meeting_table,
+                                          rise_sentence, supply_table)
 from eunoe.report.layer_results import moved_over_plate
 from eunoe.report.measured import Measured, read_measured
 from eunoe.report.movie import Frame, moved_since, pass_of
@@ -97,6 +97,16 @@ class Maps(unittest.TestCase):
         np.testing.assert_allclose(found[1:3], sample_bed.FRACTION)
         self.assertTrue(np.isnan(found[[0, 3]]).all())  # the layer before is not known
 
+    def test_a_dense_place_is_spread_over_its_neighbours(self) -> None:
+        found = maps(range(5))  # bins of 0.1 mm, so that means are over three layers and five bins
+        dense = replace(found, fraction=found.fraction.copy())
+        dense.fraction[2:, 7, 2] += 0.15  # in layer 2 and at one place
+        change = dense.smoothed_lrd() - found.smoothed_lrd()
+        np.testing.assert_allclose(change[1:4, 5:10], [[0.15 / 10.] * 5, [0.15 / 15.] * 5, [0.15 / 15.] * 5], atol=1e-12)
+        np.testing.assert_allclose(change[1:4, [4, 10]], 0., atol=1e-12)
+        np.testing.assert_allclose(change[4], 0., atol=1e-12)
+        self.assertTrue(np.isnan(change[0]).all())
+
     def test_what_is_pressed_together_far_below(self) -> None:
         found = maps(range(8))
         np.testing.assert_allclose(found.compaction()[1:], 0., atol=1e-12)
@@ -144,6 +154,13 @@ class ZonesAtRest(unittest.TestCase):
         np.testing.assert_allclose(1e3 * zones.bed[1:], 1.5)
         np.testing.assert_allclose(zones.covered[1:7], [0., 0., 4 / 15, 8 / 15, 12 / 15, 1.])
         self.assertEqual((zones.first, zones.meet, zones.at_rest_from), (3, sample_bed.MEETS, sample_bed.MEETS))
+
+    def test_the_table_tells_what_the_share_of_resting_grains_does(self) -> None:
+        found = maps()
+        found.resting[sample_bed.MEETS] *= 0.55  # in whose pass the zones meet
+        head, row = meeting_table([Group("bed", [SpreadRun("run", run_with([0.6] * 8).layers, None, found)])])
+        self.assertEqual(head[3:5], ["50 %", "60 %"])
+        self.assertEqual(row[3:5], [f"{sample_bed.MEETS}", f"{sample_bed.MEETS + 1}"])
 
     def test_they_may_never_meet(self) -> None:
         zones = zones_of(maps(range(5)))

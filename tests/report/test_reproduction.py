@@ -29,7 +29,7 @@ from eunoe.pictures.record import digest, read_record
 from eunoe.reproduction.cases import CASES, VARIANTS, Case
 from eunoe.reproduction.page import BLOCKS, OTHER_ENDS, other_ends
 from eunoe.reproduction.results import Findings, length_name
-from eunoe.reproduction.verdict import agreement
+from eunoe.reproduction.verdict import agreement, in_layers
 from eunoe.repository import DOC, ROOT
 
 HERE = Path(__file__).resolve().parent
@@ -89,12 +89,19 @@ class Cases(unittest.TestCase):
 class Verdict(unittest.TestCase):
     def test_densities_agree_only_where_the_interval_says_so(self) -> None:
         for difference, half, said in ((0.002, 0.01, "agrees within 1.2 %"),
-                                       (-0.205, 0.298, "cannot be told: differs by -20.5 ± 29.8 %"),
-                                       (0.005, 0.018, "cannot be told: differs by +0.5 ± 1.8 %"),
-                                       (-0.22, 0.073, "no: differs by -22.0 ± 7.3 %"),
-                                       (0.1, math.nan, "differs by +10.0 %; one run has no interval"),
+                                       (-0.205, 0.298, "cannot be told: -20.5 ± 29.8 %"),
+                                       (0.005, 0.018, "cannot be told: +0.5 ± 1.8 %"),
+                                       (-0.22, 0.073, "no: -22.0 ± 7.3 %"),
+                                       (0.1, math.nan, "+10.0 %; one run has no interval"),
                                        (math.nan, math.nan, "not known yet")):
             self.assertEqual(agreement(Interval(difference, half)), said)
+
+
+    def test_layers_on_plates_of_other_lengths(self) -> None:
+        for layers, length, said in (([17], 1., "later, on 0.5 of that length"), ([11, 12], 2., "then"),
+                                     ([7, None], 0.5, "earlier, in 1 of 2 runs, on 0.25 of that length"),
+                                     ([None, None], 1., "no: in none of 2 runs")):
+            self.assertEqual(in_layers(layers, (9, 13), length), said)
 
 
 class Campaign(unittest.TestCase):

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from eunoe.tables import read_columns, write_csv
 from eunoe.vtk_files import read_vtu
@@ -20,6 +21,7 @@ from .layer_results import RESTS_BELOW, moved_over_plate
 BIN = 0.1e-3  # wanted width of the bins in x (m)
 MOST_BINS = 104
 DEEP = 5  # rows of height below the new layer from which on it no longer reaches there
+SMOOTHED_LAYERS, SMOOTHED_LENGTH = 3, 0.5e-3  # over which a map of densities is averaged; m
 # Points by which a sphere is shared out among the cells that it reaches into.
 N_POINTS = 64
 
@@ -103,6 +105,16 @@ class BedMaps:
             if self.layers[k] == self.layers[k - 1] + 1:
                 found[k] = (self.columns()[k] - self.columns()[k - 1]) / np.diff(self.y)[0]
         return found
+
+    def smoothed_lrd(self) -> np.ndarray:
+        """Its means over SMOOTHED_LAYERS and SMOOTHED_LENGTH, without which the packing of single grains hides all else;
+        over what there is of them at the borders."""
+        values = self.local_lrd()
+        over = (SMOOTHED_LAYERS // 2, max(0, round(0.5 * (SMOOTHED_LENGTH / np.diff(self.x).mean() - 1.))))
+        border, windows = [(n, n) for n in over], tuple(2 * n + 1 for n in over)
+        total, number = (sliding_window_view(np.pad(each, border), windows).sum(axis=(2, 3))
+                         for each in (np.nan_to_num(values), np.isfinite(values).astype(float)))
+        return np.divide(total, number, out=np.full_like(values, np.nan), where=np.isfinite(values))
 
     def above_level(self) -> np.ndarray:
         """Solid above the level of the transfer plate, where the spreader leaves room, as density of a layer, by weighing."""

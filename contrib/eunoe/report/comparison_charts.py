@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from . import style
+from .bed_maps import SMOOTHED_LAYERS, SMOOTHED_LENGTH
 from .canvas import MM
 from .layer_charts import draw_measured
 from .layer_results import RESTS_BELOW
@@ -140,14 +141,15 @@ def maps_figure(group: Group) -> Figure:
     left, right = figure.subplots(1, 2, sharey=True)
     # Of the runs that have something at a place.
     moved = 1e6 * np.ma.masked_invalid(group.over_maps("moved_of_columns")).mean(axis=0).filled(np.nan)
-    lrd = 100. * group.over_maps("local_lrd").mean(axis=0)
+    lrd = 100. * group.over_maps("smoothed_lrd").mean(axis=0)
     largest = max(np.nanmax(moved, initial=0.), 100. * 1e6 * RESTS_BELOW)
     moved = np.maximum(moved, 1e-3 * 1e6 * RESTS_BELOW)  # a logarithm has no 0, and NaN stays
     # Below the limit the scale is grey, as in the picture of the particles.
     colours = colormaps["plasma_r"].with_extremes(under=(0.6, 0.6, 0.6))
     _draw_map(figure, left, group, moved, "Displacement (µm)", cmap=colours, norm=LogNorm(1e6 * RESTS_BELOW, largest))
     _draw_zones(left, group)
-    _draw_map(figure, right, group, lrd, "LRD (%)", cmap="viridis", norm=Normalize(0., 100.))
+    _draw_map(figure, right, group, lrd, f"LRD, mean over {SMOOTHED_LAYERS} layers and {MM * SMOOTHED_LENGTH:g} mm (%)", cmap="viridis",
+              norm=Normalize(*np.nanquantile(lrd, (0.02, 0.98))) if np.isfinite(lrd).any() else Normalize(0., 100.))
     left.set_ylabel("Layer")
     left.set_title("(a) Displacement in the pass")
     right.set_title("(b) Layer relative density")
@@ -200,6 +202,7 @@ def profiles_figure(groups: Sequence[Group]) -> Figure:
     layer = last_common_layer(groups)
     figure = Figure(figsize=(style.WIDTH, 3.1), layout="constrained")
     left, right = figure.subplots(1, 2)
+    bulk: list[float] = []  # without floor and surface, where the fraction falls to nothing
     for number, group in enumerate(groups):
         colour = COLOURS[number % MOST_GROUPS]
         maps = [run.maps for run in group.mapped]
@@ -211,9 +214,13 @@ def profiles_figure(groups: Sequence[Group]) -> Figure:
         left.plot(x, MM * columns, color=colour, label=group.label)
         fraction = np.mean([m.fraction[m.layers == layer][0][m.middle()].mean(axis=0) for m in maps], axis=0)
         right.plot(100. * fraction, MM * y, color=colour)
+        inside = np.flatnonzero(fraction > 0.5 * fraction.max())[1:-1]
+        bulk += [*(100. * fraction[inside])]
     left.set_xlabel("x over the plate's length")
     left.set_ylabel("Height of the solid without pores (mm)")
     left.set_title("(a) Along the plate")
+    if bulk:
+        right.set_xlim(min(bulk) - 2., max(bulk) + 2.)
     right.set_xlabel("Solid fraction (%)")
     right.set_ylabel("Height over the plate (mm)")
     right.set_title("(b) Over the height, middle half of the plate")

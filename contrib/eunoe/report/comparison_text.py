@@ -16,6 +16,7 @@ from .common_scatter import CommonScatter, Number
 from .measured import Measured
 from .run_folder import Layers
 from .spread_run import COMPARED, LATER, PLATEAU, Group, SpreadRun, farthest
+from .static_zones import RESTS, zones_of
 
 
 def measured_group(measured: Measured) -> Group:
@@ -151,4 +152,15 @@ def rest_table(groups: Sequence[Group]) -> Table:
                       text_of(mean_of([float(zone.resting[-1]) for zone in zones]), 100.),
                       text_of(mean_of(late), 100.),
                       *(text_of(mean_of([run.compaction(layers) for run in runs]), 100.) for layers in (PLATEAU, LATER))])
+    return table
+
+
+def meeting_table(groups: Sequence[Group]) -> Table:
+    """In which layer the zones at rest meet, by how much of a column has to rest for the column to do so."""
+    shares = (0.3, 0.4, RESTS, 0.6, 0.7, 0.8)
+    table = [["zones meet, where a column rests if so much of it does", *(f"{100. * share:.0f} %" for share in shares)]]
+    for group in groups:
+        runs = farthest(group.mapped)
+        if runs:
+            table.append([group.label, *(layers_of([zones_of(run.maps, share).meet for run in runs]) for share in shares)])
     return table

@@ -66,7 +66,8 @@ def _run_of(resting: np.ndarray) -> int:
     return int(moving[0]) if len(moving) else len(resting)
 
 
-def zones_of(maps: BedMaps) -> Zones:
+def zones_of(maps: BedMaps, rests: float = RESTS) -> Zones:
+    """@param rests share of its particles that have to rest for a column to do so"""
     width = np.diff(maps.x)
     shares = maps.resting_of_columns()
     filled = maps.tracked.sum(axis=2) >= FEWEST
@@ -78,7 +79,7 @@ def zones_of(maps: BedMaps) -> Zones:
             continue
         inside = slice(places[0], places[-1] + 1)
         # An emptier column within the bed neither rests nor ends a zone.
-        resting = (shares[k] >= RESTS) | ~columns
+        resting = (shares[k] >= rests) | ~columns
         bed[k] = width[inside].sum()
         ends[k] = maps.x[places[0]], maps.x[places[-1] + 1]
         n_left, n_right = _run_of(resting[inside]), _run_of(resting[inside][::-1])

@@ -48,10 +48,10 @@ class Variant:
     closely: bool = False
 
 
-RADIUS = f"{SPREADING}/spreader radius R_s"
+RADIUS, RIMS = f"{SPREADING}/spreader radius R_s", f"{SPREADING}/rim width"
 # Until a1e5cd3 and 065a860 cases had no rims, and a bed level with the transfer plate: a stroke of 0.6 mm fed 0.5.
 # They had the radius of the paper's text, and spread layer 0 on a plate at the level of the transfer plate.
-BEFORE = {f"{SPREADING}/rim width": "0", f"{SPREADING}/feedstock level": "0",
+BEFORE = {RIMS: "0", f"{SPREADING}/feedstock level": "0",
           f"{SPREADING}/first layer thickness": "0", RADIUS: "5e-3"}
 VARIANTS = {
     "": Variant("as the published input files, at the cheap settings", closely=True),
@@ -130,6 +130,11 @@ class Case:
     @property
     def is_plain(self) -> bool:
         return not self.title
+
+    @property
+    def has_rims(self) -> bool:
+        """Whether walls hold the ends of its bed, as in the paper."""
+        return RIMS not in self.settings
 
     @property
     def is_seen_closely(self) -> bool:

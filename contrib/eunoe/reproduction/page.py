@@ -13,8 +13,8 @@ from eunoe.folders import write_whole
 from eunoe.intervals import mean_of
 from eunoe.launch import Failure
 from eunoe.report.common_scatter import CommonScatter, Number
-from eunoe.report.comparison_text import (ALONE, DENSITIES, change_sentence, densities_table, differences_table, measured_group, rest_table,
-                                          rise_sentence, span, supply_table, text_of)
+from eunoe.report.comparison_text import (ALONE, DENSITIES, change_sentence, densities_table, differences_table, measured_group,
+                                          meeting_table, rest_table, rise_sentence, span, supply_table, text_of)
 from eunoe.report.measured import read_measured
 from eunoe.report.spread_run import LATER, PLATEAU, YOUNG, Group, SpreadRun
 from eunoe.tables import Table, as_markdown
@@ -22,7 +22,7 @@ from eunoe.tables import Table, as_markdown
 from .cases import N_LAYERS, SETS
 from .pictures import picture_name
 from .results import HELD, OPEN, Findings, Result, length_name, origin_of, plain_label
-from .verdict import verdict_table
+from .verdict import by_chance, measured_table, simulated_table
 
 NOTHING = "No run of these has finished yet."
 
@@ -111,14 +111,14 @@ def densities_block(findings: Findings) -> str:
     if not groups:
         return NOTHING
     everyone = [*groups, measured_group(read_measured())]
-    scatter = CommonScatter(groups)
+    scatter = CommonScatter(findings.alike())
     sentences = [*(rise_sentence(group, scatter) for group in groups), *_together(groups)]
     return _block(densities_table(everyone, scatter), _results(groups), " ".join(sentences))
 
 
 def scatter_block(findings: Findings) -> str:
     """How much densities scatter between the seeds of each group, and of all as if they did so alike."""
-    groups = [group for group in findings.plain() if len(group.runs) > 1]
+    groups = [group for group in findings.alike() if len(group.runs) > 1]
     numbers = {name: number for name, (number, size) in DENSITIES.items() if size == 100.}
     table: Table = [["standard deviation between seeds", "degrees of freedom", *numbers]]
     rows = [(group.label, [group]) for group in groups] + [("**all groups alike**", groups)]
@@ -188,18 +188,18 @@ def _differences(pairs: list[list[Group]], scatter: CommonScatter = ALONE) -> st
 
 
 def lengths_block(findings: Findings) -> str:
-    return _differences([findings.lengths(properties) for properties in SETS], CommonScatter(findings.plain()))
+    return _differences([findings.lengths(properties) for properties in SETS], CommonScatter(findings.alike()))
 
 
 def sets_block(findings: Findings) -> str:
     lengths = sorted({result.case.length for result in findings.all})
     return _differences([[group for properties in SETS if (group := findings.of(properties, length))]
-                         for length in lengths], CommonScatter(findings.plain()))
+                         for length in lengths], CommonScatter(findings.alike()))
 
 
 def rest_block(findings: Findings) -> str:
     groups = findings.plain()
-    return _block(rest_table(groups), _results(groups))
+    return "\n\n".join(_block(table, _results(groups)) for table in (rest_table(groups), meeting_table(groups)))
 
 
 def _all_about(groups: list[Group]) -> str:
@@ -242,14 +242,18 @@ def needed_block(findings: Findings) -> str:
             continue
         used += groups
         longest = groups[-1].runs[0].case.length
-        rows = differences_table([groups[-1], *groups[:-1]], CommonScatter(findings.plain()))[1:]
+        rows = differences_table([groups[-1], *groups[:-1]], CommonScatter(findings.alike()))[1:]
         table += [[group.label, f"{group.runs[0].case.length / longest:.2g}", row[2].replace("**", "")]
                   for group, row in zip(groups[:-1], rows)]
     return _block(table, _results(used))
 
 
 def verdict_block(findings: Findings) -> str:
-    return _block(verdict_table(findings), findings.all)
+    if not findings.plain():
+        return NOTHING
+    (measured, differences), (simulated, others) = measured_table(findings), simulated_table(findings)
+    return "\n\n".join(["Beside the measurement, of a plate of 7 L1:", as_markdown(measured), "Beside the paper's simulations:",
+                        _block(simulated, findings.all, by_chance([*differences, *others]))])
 
 
 # The pictures that stand below a block, as far as they have been drawn, and what they show.

@@ -72,10 +72,10 @@ class Findings:
         return [Group(plain_label(results[0].case), results) for results in found]
 
     def alike(self) -> list[Group]:
-        """Those, and the ones that differ from them in depth or time step alone: all scatter alike between seeds."""
+        """Those, and the variants of them whose beds end at rims, too: all are taken to scatter alike between seeds."""
         return [*self.plain(),
                 *(Group(f"{base.label}, {group.label}", group.runs) for base, variants in self.variants()
-                  for group in variants if not group.runs[0].case.variant)]
+                  for group in variants if base.runs[0].case.is_plain and group.runs[0].case.has_rims)]
 
     def of(self, properties: str, length: float) -> Group | None:
         """The group without a variant."""
