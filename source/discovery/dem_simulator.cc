@@ -17,15 +17,22 @@ namespace eunoe::discovery {
 
 namespace {
 
-nlohmann::ordered_json description(const RunRequest &request)
+/// The parts of a study that a run uses: its experiment and the factors that it moves.
+std::vector<std::string> parts_of(const RunRequest &request)
 {
-  nlohmann::ordered_json about;
-  about["experiment"] = request.experiment;
-  about["amplitudes"] = nlohmann::ordered_json::object();
+  std::vector<std::string> parts = {"experiment " + request.experiment};
   for (const auto &[name, amplitude] : request.amplitudes)
-    about["amplitudes"][name] = amplitude;
-  about["seed"] = request.seed;
-  return about;
+    parts.push_back(name);
+  return parts;
+}
+
+/// What a run has measured at a data point; NaN if nothing.
+double value_at(const DataPoint &point, const RunRecord &record)
+{
+  for (const Measurement &m : record.measurements)
+    if (m.observable == point.observable && m.index == point.index)
+      return m.value;
+  return std::nan("");
 }
 
 } // namespace
@@ -44,31 +51,16 @@ DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
       records[row.key] = row.record;
 }
 
-namespace {
-
-/// The parts of a study that a run uses: its experiment and the factors that it moves.
-std::vector<std::string> parts_of(const RunRequest &request)
-{
-  std::vector<std::string> parts = {"experiment " + request.experiment};
-  for (const auto &[name, amplitude] : request.amplitudes)
-    parts.push_back(name);
-  return parts;
-}
-
-} // namespace
-
 /// Runs simulations of another engine again, as far as this one has not made them.
 /// @return parts of the study in whose simulations a result has changed
 std::set<std::string> DemSimulator::find_changes(
     const std::map<std::string, const RunTable::Row *> &samples)
 {
   std::vector<StudyCase> cases;
-  std::set<std::string> begun;
   for (const auto &[part, row] : samples)
-    if (records.count(row->key) == 0 && begun.insert(row->key).second)
+    if (records.count(row->key) == 0)
       cases.push_back(maker.make(row->request));
-  if (!cases.empty())
-    simulate_all(cases);
+  simulate_missing(cases);
   std::set<std::string> changed;
   for (const auto &[part, row] : samples)
     if (text_of(records.at(row->key).measurements) != text_of(row->record.measurements))
@@ -148,8 +140,6 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
       // The case may have changed since, or belong to another study.
       if (maker.key(row.request) != row.key)
         continue;
-      keys[text] = row.key;
-      ++cached;
       add_to_ledger(row.request, row.key, true);
     }
     if (keys.at(text) == row.key && given.insert(text).second)
@@ -258,19 +248,27 @@ RunRecord DemSimulator::simulate(const StudyCase &one)
   return record;
 }
 
-void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
+std::set<std::string> DemSimulator::simulate_missing(const std::vector<StudyCase> &cases)
 {
   const double begin = MPI_Wtime();
-  const int n = static_cast<int>(cases.size());
+  std::set<std::string> begun;
+  std::vector<const StudyCase *> missing;
+  for (const StudyCase &one : cases)
+    if (records.count(one.key) == 0 && begun.insert(one.key).second)
+      missing.push_back(&one);
+  if (missing.empty())
+    return begun;
+  const int n = static_cast<int>(missing.size());
   auto mine = nlohmann::ordered_json::array();
   std::string error;
   bool interrupted = false;
   const auto one_case = [&](const int k) {
-    const RunRecord record = simulate(cases[k]);
+    const StudyCase &one = *missing[k];
+    const RunRecord record = simulate(one);
     if (queue.is_leader()) {
-      mine.push_back({cases[k].key, to_json(record)});
+      mine.push_back({one.key, to_json(record)});
       try {
-        table.store({0, cases[k].key, engine_digest(), cases[k].request, record});
+        table.store({0, one.key, engine_digest(), one.request, record});
       } catch (const UserError &failure) {
         error = failure.what();
       }
@@ -300,6 +298,7 @@ void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
       records[item.at(0)] = record_from(item.at(1));
       ++made;
     }
+  return begun;
 }
 
 std::string DemSimulator::failure_of(const RunRequest &request, const RunRecord &record) const
@@ -307,12 +306,7 @@ std::string DemSimulator::failure_of(const RunRequest &request, const RunRecord 
   if (!record.failure.empty())
     return record.failure;
   for (const DataPoint &point : required)
-    if (point.experiment == request.experiment &&
-        std::none_of(record.measurements.begin(), record.measurements.end(),
-                     [&](const Measurement &m) {
-                       return m.observable == point.observable && m.index == point.index &&
-                              std::isfinite(m.value);
-                     }))
+    if (point.experiment == request.experiment && !std::isfinite(value_at(point, record)))
       return "The run ended without a value of '" + point.observable + "', index " +
              std::to_string(point.index) + ", which was measured.";
   return "";
@@ -322,17 +316,10 @@ RunResult DemSimulator::result(const RunRequest &request, const RunRecord &recor
 {
   if (!failure_of(request, record).empty())
     return std::nullopt;
-  const auto known = known_points.find(request.experiment);
-  if (known == known_points.end())
-    return std::vector<double>();
-  std::map<std::pair<std::string, int>, double> found;
-  for (const Measurement &m : record.measurements)
-    found[{m.observable, m.index}] = m.value;
   std::vector<double> values;
-  for (const DataPoint &point : known->second) {
-    const auto value = found.find({point.observable, point.index});
-    values.push_back(value == found.end() ? std::nan("") : value->second);
-  }
+  if (const auto known = known_points.find(request.experiment); known != known_points.end())
+    for (const DataPoint &point : known->second)
+      values.push_back(value_at(point, record));
   return values;
 }
 
@@ -340,10 +327,14 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
                                  const bool was_cached)
 {
   const RunRecord &record = records.at(key);
-  nlohmann::ordered_json run = description(request);
-  run["key"] = key;
-  run["cached"] = was_cached;
-  run["core_seconds"] = record.core_seconds;
+  keys[text_of(request)] = key;
+  cached += was_cached ? 1 : 0;
+  nlohmann::ordered_json run = {{"experiment", request.experiment},
+                                {"amplitudes", request.amplitudes},
+                                {"seed", request.seed},
+                                {"key", key},
+                                {"cached", was_cached},
+                                {"core_seconds", record.core_seconds}};
   if (const std::string failure = failure_of(request, record); !failure.empty())
     run["failure"] = failure;
   runs.push_back(run);
@@ -351,30 +342,14 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
 
 std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests)
 {
-  std::map<std::string, std::pair<StudyCase, RunRequest>>
-      unknown; // by words: also the order of the tasks
-  std::vector<std::string> order;
+  std::vector<StudyCase> unknown;
+  std::set<std::string> texts;
   for (const RunRequest &request : requests)
-    if (keys.count(text_of(request)) == 0 && unknown.count(text_of(request)) == 0) {
-      unknown[text_of(request)] = {maker.make(request), request};
-      order.push_back(text_of(request));
-    }
-  std::vector<StudyCase> missing;
-  std::set<std::string> begun;
-  for (const std::string &text : order) {
-    const StudyCase &one = unknown.at(text).first;
-    if (records.count(one.key) == 0 && begun.insert(one.key).second)
-      missing.push_back(one);
-  }
-  if (!missing.empty())
-    simulate_all(missing);
-  for (const std::string &text : order) {
-    const auto &[one, request] = unknown.at(text);
-    const bool was_cached = begun.count(one.key) == 0;
-    keys[text] = one.key;
-    cached += was_cached ? 1 : 0;
-    add_to_ledger(request, one.key, was_cached);
-  }
+    if (keys.count(text_of(request)) == 0 && texts.insert(text_of(request)).second)
+      unknown.push_back(maker.make(request));
+  const std::set<std::string> begun = simulate_missing(unknown);
+  for (const StudyCase &one : unknown)
+    add_to_ledger(one.request, one.key, begun.count(one.key) == 0);
   std::vector<RunResult> results;
   for (const RunRequest &request : requests)
     results.push_back(result(request, records.at(keys.at(text_of(request)))));

@@ -58,13 +58,16 @@ public:
 private:
   RunRecord simulate(const StudyCase &one);
   void serve_and_check_stop(unsigned long long step);
-  void simulate_all(const std::vector<StudyCase> &cases);
+  /// Runs those cases of which there is no result, each once.
+  /// @return their keys
+  std::set<std::string> simulate_missing(const std::vector<StudyCase> &cases);
   void adopt_earlier_runs();
   void adopt(const std::vector<const RunTable::Row *> &rows);
   std::set<std::string> find_changes(const std::map<std::string, const RunTable::Row *> &samples);
   /// Why a run has no result; empty if it has one.
   std::string failure_of(const RunRequest &request, const RunRecord &record) const;
   RunResult result(const RunRequest &request, const RunRecord &record) const;
+  /// Notes a request that has an answer now.
   void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 
   const std::vector<Experiment> &experiments;
