@@ -45,7 +45,7 @@ StudyCase CaseMaker::make(const RunRequest &request) const
   std::string input;
   EntryValues naming_files;
   try {
-    one.overrides = overrides(request);
+    one.overrides = one.experiment->run_overrides(factors, request);
     Problems problems;
     const Parameters parameters = one.experiment->make(one.overrides, problems);
     input = parameters.as_input_file();
@@ -69,22 +69,14 @@ StudyCase CaseMaker::make(const RunRequest &request) const
   return one;
 }
 
-std::vector<std::string> CaseMaker::overrides(const RunRequest &request) const
-{
-  const Experiment &experiment = find(request.experiment);
-  std::vector<std::string> result = experiment.overrides(factors, request.amplitudes);
-  for (const std::string &line : experiment.run_overrides(request.seed))
-    result.push_back(line);
-  return result;
-}
-
 std::string CaseMaker::key(const RunRequest &request)
 {
   std::string recipe;
   try {
+    const Experiment &experiment = find(request.experiment);
     // The engine reads the parameters.
     recipe =
-        sha256(std::string(engine_digest()) + find(request.experiment).recipe(overrides(request)));
+        sha256(engine_digest() + experiment.recipe(experiment.run_overrides(factors, request)));
   } catch (const UserError &) {
     return make(request).key;
   }

@@ -7,6 +7,18 @@
 
 namespace eunoe::discovery {
 
+namespace {
+
+/// Overrides that make a run silent.
+const std::vector<std::string> quiet_overrides = {"simulation control/output path = unused",
+                                                  "simulation control/output control = iteration",
+                                                  "simulation control/output frequency = 0",
+                                                  "simulation control/log frequency = 0",
+                                                  "restart/checkpoint = false",
+                                                  "restart/restart = false"};
+
+} // namespace
+
 Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems)
     : parameters(parameters)
 {
@@ -33,8 +45,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
   try {
     // Building the parts of a run finds what reading alone cannot.
     std::vector<std::string> list = parameters.overrides;
-    for (const std::string &line : quiet_overrides())
-      list.push_back(line);
+    list.insert(list.end(), quiet_overrides.begin(), quiet_overrides.end());
     Problems found;
     Parameters of_run = make(list, found);
     if (!found.empty())
@@ -82,21 +93,13 @@ std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factor
   return list;
 }
 
-std::vector<std::string> Experiment::quiet_overrides()
+std::vector<std::string> Experiment::run_overrides(const std::vector<Effect> &factors,
+                                                   const RunRequest &request) const
 {
-  return {"simulation control/output path = unused",
-          "simulation control/output control = iteration",
-          "simulation control/output frequency = 0",
-          "simulation control/log frequency = 0",
-          "restart/checkpoint = false",
-          "restart/restart = false"};
-}
-
-std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
-{
-  std::vector<std::string> list = quiet_overrides();
+  std::vector<std::string> list = overrides(factors, request.amplitudes);
+  list.insert(list.end(), quiet_overrides.begin(), quiet_overrides.end());
   // Entries hold numbers of 31 bits.
-  list.push_back("simulation control/seed = " + std::to_string(seed & 0x7fffffff));
+  list.push_back("simulation control/seed = " + std::to_string(request.seed & 0x7fffffff));
   return list;
 }
 

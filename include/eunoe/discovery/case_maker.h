@@ -47,8 +47,6 @@ public:
   std::string key(const RunRequest &request);
 
 private:
-  std::vector<std::string> overrides(const RunRequest &request) const;
-
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
   std::map<std::string, std::string> keys_by_recipe, found;

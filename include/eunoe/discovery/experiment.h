@@ -34,8 +34,9 @@ public:
   std::vector<std::string> overrides(const std::vector<Effect> &factors,
                                      const Amplitudes &amplitudes) const;
 
-  /// Overrides that change all seeds and make a run silent, to be put behind those of the model.
-  std::vector<std::string> run_overrides(std::uint32_t seed) const;
+  /// The same for a run, which is silent and has its own seeds.
+  std::vector<std::string> run_overrides(const std::vector<Effect> &factors,
+                                         const RunRequest &request) const;
 
   /// All from which a case with these overrides is made.
   std::string recipe(const std::vector<std::string> &overrides) const;
@@ -44,9 +45,6 @@ public:
   Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
 
 private:
-  /// Overrides that make a run silent.
-  static std::vector<std::string> quiet_overrides();
-
   ExperimentParameters parameters;
   std::string process;
   std::vector<ObservableDescription> described;
