@@ -1,4 +1,5 @@
 #include <eunoe/core/declare.h>
+#include <eunoe/core/files.h>
 #include <eunoe/core/parameter_input.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/version.h>
@@ -21,28 +22,36 @@ const std::string effect_section = "effect";
 /// `subsection effect` of an effect's file.
 struct EffectParameters : public ParameterSection
 {
-  std::string mechanism, family, parameter, unit = "1", source, sign = "above", experiments = "all";
-  double null_value = 0., scale = 0.;
+  EffectParameters()
+  {
+    factor.unit = "1";
+    factor.scale = 0.;
+  }
+
+  Factor factor;
+  std::string sign = "above", experiments = "all";
   std::vector<double> range = {0., 0.};
-  std::vector<std::string> confounders;
 
   void declare(dealii::ParameterHandler &prm) override
   {
     declare::enter(prm, effect_section);
-    declare::entry(prm, "mechanism", mechanism, "What happens in the powder or the machine.");
-    declare::entry(prm, "family", family,
+    declare::entry(prm, "mechanism", factor.mechanism,
+                   "What happens in the powder or the machine.");
+    declare::entry(prm, "family", factor.family,
                    "What it has in common with other effects. An answer that cannot tell these "
                    "apart says how likely one of them is.");
-    declare::entry(prm, "parameter", parameter, "What the amplitude is.");
-    declare::entry(prm, "unit", unit, "Unit of the amplitude.");
-    declare::entry(prm, "null value", null_value, "Amplitude at which the effect is absent.");
-    declare::not_negative(prm, "scale", scale,
+    declare::entry(prm, "parameter", factor.parameter, "What the amplitude is.");
+    declare::entry(prm, "unit", factor.unit, "Unit of the amplitude.");
+    declare::entry(prm, "null value", factor.null_value,
+                   "Amplitude at which the effect is absent.");
+    declare::not_negative(prm, "scale", factor.scale,
                           "Distance from the null value that changes results clearly.");
     declare::list(prm, "range", range, {2, 2}, "Smallest and largest amplitude that make sense.");
     declare::choice(prm, "sign", sign, "above|below|both",
                     "Side of the null value that physics allows.");
-    declare::entry(prm, "confounders", confounders, "Effects that are likely to look alike.");
-    declare::entry(prm, "source", source, "Where the mechanism or its size is described.");
+    declare::entry(prm, "confounders", factor.confounders,
+                   "Effects that are likely to look alike.");
+    declare::entry(prm, "source", factor.source, "Where the mechanism or its size is described.");
     declare::choice(prm, "experiments", experiments, "all|spreading|heap",
                     "Kind of process that can have the effect.");
     declare::leave(prm);
@@ -50,17 +59,19 @@ struct EffectParameters : public ParameterSection
 
   void check(const ParameterCheck &check) const override
   {
-    for (const auto &[entry, text] : {std::pair("mechanism", &mechanism), {"source", &source}})
+    for (const auto &[entry, text] :
+         {std::pair("mechanism", &factor.mechanism), {"source", &factor.source}})
       check.require(!text->empty(), {effect_section}, entry, "is missing.",
                     "Say it in a few words: reports show it.");
     check.require(range[0] < range[1], {effect_section}, "range", "is empty.",
                   "Give the smallest and the largest amplitude.");
-    check.require(range[0] <= null_value && null_value <= range[1], {effect_section}, "null value",
-                  "is outside of the range.", "Let the range begin or end with it.");
-    const bool up = sign != "below" && null_value + scale <= range[1];
-    const bool down = sign != "above" && null_value - scale >= range[0];
-    check.require(scale > 0. && (up || down), {effect_section}, "scale",
-                  "is " + format(scale) + ", which does not fit between null value and range.",
+    check.require(range[0] <= factor.null_value && factor.null_value <= range[1], {effect_section},
+                  "null value", "is outside of the range.", "Let the range begin or end with it.");
+    const bool up = sign != "below" && factor.null_value + factor.scale <= range[1];
+    const bool down = sign != "above" && factor.null_value - factor.scale >= range[0];
+    check.require(factor.scale > 0. && (up || down), {effect_section}, "scale",
+                  "is " + format(factor.scale) +
+                      ", which does not fit between null value and range.",
                   "Give a positive distance within the range.");
   }
 };
@@ -76,6 +87,32 @@ Factor::Sign sign_of(const std::string &word)
 std::string process_of(const std::string &word)
 {
   return word == "spreading" ? "powder spreading" : word;
+}
+
+/// Files of effects in a folder, in the order of their names.
+std::vector<std::string> files_of_effects(const std::string &folder)
+{
+  std::error_code failure;
+  std::vector<std::string> files;
+  for (const auto &entry : fs::directory_iterator(folder, failure))
+    if (entry.path().extension() == ".prm")
+      files.push_back(entry.path().string());
+  if (failure)
+    throw UserError(folder + " cannot be read: " + failure.message() +
+                    ". Name a folder of effects in 'effect folders'.");
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The folder of the effects that come with the program, installed or in the source tree.
+std::string standard_catalogue()
+{
+  std::error_code failure;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  const fs::path installed =
+      program.parent_path().parent_path() / "share" / "eunoe" / "prm" / "effects";
+  return fs::is_directory(installed, failure) ? installed.string()
+                                              : source_folder() + std::string("/prm/effects");
 }
 
 } // namespace
@@ -103,50 +140,34 @@ Effect read_effect(const std::string &text, const std::string &file, Problems &p
       {}, "", "has no entry that depends on the amplitude.",
       "Give the entries that the effect changes, with '${amplitude}' in their values.");
 
-  Factor &factor = effect.factor;
-  factor.name = fs::path(file).stem().string();
-  factor.kind = Factor::Kind::effect;
-  factor.null_value = parameters.null_value;
-  factor.scale = parameters.scale;
-  factor.lower = parameters.range[0];
-  factor.upper = parameters.range[1];
-  factor.sign = sign_of(parameters.sign);
-  factor.mechanism = parameters.mechanism;
-  factor.family = parameters.family;
-  factor.unit = parameters.unit;
-  factor.source = parameters.source;
-  factor.confounders = parameters.confounders;
-  factor.parameter = parameters.parameter;
+  effect.factor = parameters.factor;
+  effect.factor.name = fs::path(file).stem().string();
+  effect.factor.lower = parameters.range[0];
+  effect.factor.upper = parameters.range[1];
+  effect.factor.sign = sign_of(parameters.sign);
   effect.process = process_of(parameters.experiments);
   return effect;
 }
 
-std::vector<Effect> read_catalogue(const std::string &folder, Problems &problems,
-                                   const FileLoader &load)
+std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
+                                 Problems &problems)
 {
-  std::error_code failure;
-  std::vector<std::string> files;
-  for (const auto &entry : fs::directory_iterator(folder, failure))
-    if (entry.path().extension() == ".prm")
-      files.push_back(entry.path().string());
-  if (failure)
-    throw UserError(folder + " cannot be read: " + failure.message() +
-                    ". Name a folder of effects in 'effect folders'.");
-  std::sort(files.begin(), files.end());
-  std::vector<Effect> effects;
-  for (const std::string &file : files)
-    effects.push_back(read_effect(load(file), file, problems, load));
-  return effects;
-}
-
-std::string standard_catalogue()
-{
-  std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  const fs::path installed =
-      program.parent_path().parent_path() / "share" / "eunoe" / "prm" / "effects";
-  return fs::is_directory(installed, failure) ? installed.string()
-                                              : source_folder() + std::string("/prm/effects");
+  const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
+  std::vector<Effect> all;
+  for (const std::string &folder : folders)
+    for (const std::string &file :
+         files_of_effects(folder == "standard" ? standard_catalogue() : folder))
+    {
+      Effect effect = read_effect(load(file), file, problems, load);
+      const auto same = std::find_if(all.begin(), all.end(), [&](const Effect &e) {
+        return e.factor.name == effect.factor.name;
+      });
+      if (same != all.end())
+        problems.add(file + ":", "has the name of " + same->file + ".", "Rename it.");
+      else
+        all.push_back(std::move(effect));
+    }
+  return all;
 }
 
 std::vector<Effect> select(const std::vector<Effect> &all, const std::vector<std::string> &wanted,

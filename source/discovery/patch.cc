@@ -1,5 +1,5 @@
 #include <eunoe/core/silent_errors.h>
-#include <eunoe/discovery/patch.h>
+#include <eunoe/discovery/catalogue.h>
 
 #include <deal.II/base/function_parser.h>
 

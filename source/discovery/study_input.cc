@@ -61,26 +61,6 @@ std::map<std::string, std::string> StudyInput::identity() const
   return parts;
 }
 
-std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
-                                 Problems &problems)
-{
-  const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
-  std::vector<Effect> all;
-  for (const std::string &folder : folders)
-    for (Effect &effect :
-         read_catalogue(folder == "standard" ? standard_catalogue() : folder, problems, load))
-    {
-      const auto same = std::find_if(all.begin(), all.end(), [&](const Effect &e) {
-        return e.factor.name == effect.factor.name;
-      });
-      if (same != all.end())
-        problems.add(effect.file + ":", "has the name of " + same->file + ".", "Rename it.");
-      else
-        all.push_back(std::move(effect));
-    }
-  return all;
-}
-
 StudyInput read_study(const std::string &file, const std::vector<std::string> &overrides,
                       const bool with_synthetic_data, MPI_Comm comm, Problems &problems)
 {

@@ -1,6 +1,6 @@
 // Values of patched entries: expressions of the amplitude and of the case's own value.
 
-#include <eunoe/discovery/patch.h>
+#include <eunoe/discovery/catalogue.h>
 
 #include "../tests.h"
 

@@ -1,7 +1,6 @@
 // The error messages for bad studies, effects and measurements; and files that are written can be
 // read back.
 
-#include <eunoe/core/files.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
 
@@ -89,16 +88,14 @@ void effects()
          "subsection effect\n set mechanism = m\n set source = s\n set range = 0, 1\n"
          " set null value = -1\n set scale = 3\nend\nset process = ${amplitude}\n");
   Problems problems;
-  const std::vector<Effect> all =
-      read_catalogue(folder + "/effects", problems,
-                     [](const std::string &path) { return read_file(path, MPI_COMM_WORLD); });
+  const std::vector<Effect> all = read_effects({folder + "/effects"}, MPI_COMM_WORLD, problems);
   check("three effects", all.size() == 3 && problems.empty());
   select(all, {"all"}, {"bonce"}, "study.prm", problems);
   select(all, {"humidity"}, {}, "study.prm", problems);
   print_problems("selection", problems);
   check("all but one", select(all, {"all"}, {"tilt"}, "study.prm", problems).size() == 2);
   try {
-    read_catalogue(folder + "/no_such_folder", problems, {});
+    read_effects({folder + "/no_such_folder"}, MPI_COMM_WORLD, problems);
   } catch (const UserError &error) {
     print(std::string(error.what()).substr(folder.size() + 1));
   }

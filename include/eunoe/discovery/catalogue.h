@@ -1,12 +1,29 @@
 #ifndef eunoe_discovery_catalogue_h
 #define eunoe_discovery_catalogue_h
 
+#include <eunoe/core/input_file.h>
 #include <eunoe/discovery/factor.h>
-#include <eunoe/discovery/patch.h>
 
+#include <mpi.h>
 #include <set>
 
 namespace eunoe::discovery {
+
+/// The value of an entry at an amplitude. `${...}` in @p pattern are expressions of 'amplitude' and
+/// of 'base', the number in @p base. If the pattern is one expression of 'base' and base is a
+/// list, it is evaluated for each of its numbers; within a list, each takes the number at its
+/// place. Throws a std::invalid_argument with half a sentence.
+std::string patched_value(const std::string &pattern, const std::string &base, double amplitude);
+
+/// Entries of an input file that depend on an amplitude.
+struct Patch
+{
+  std::vector<InputEntry> entries; ///< with patterns as values
+
+  /// Applies the patch to the values of a case, and adds its entries to the overrides. Throws a
+  /// UserError that names the entry.
+  void apply(double amplitude, EntryValues &values, std::vector<std::string> &overrides) const;
+};
 
 /// An effect of the catalogue: its factor, and the patch that puts it into a case.
 struct Effect
@@ -27,13 +44,11 @@ struct Effect
 Effect read_effect(const std::string &text, const std::string &file, Problems &problems,
                    const FileLoader &load = {});
 
-/// Reads all effects "*.prm" in a folder, in the order of their names. Throws a UserError if the
-/// folder cannot be read. Collective if @p load is.
-std::vector<Effect> read_catalogue(const std::string &folder, Problems &problems,
-                                   const FileLoader &load);
-
-/// The folder of the effects that come with the program, installed or in the source tree.
-std::string standard_catalogue();
+/// Reads the effects of folders, files "*.prm" in the order of their names; the folder "standard"
+/// is that of the effects that come with the program. Throws a UserError if a folder cannot be
+/// read; collective.
+std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
+                                 Problems &problems);
 
 /// The effects among @p all that a study looks at. Names that are unknown go to @p problems.
 /// @param wanted names, or "all"

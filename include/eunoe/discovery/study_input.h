@@ -34,10 +34,6 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
 /// Reads its measured data.
 void read_data(StudyInput &study, MPI_Comm comm, Problems &problems);
 
-/// Reads the effects of folders, "standard" for those that come with the program; collective.
-std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
-                                 Problems &problems);
-
 /// Notes effects and nuisances whose patches do not fit the cases at a clear amplitude.
 void check_patches(const StudyInput &study, Problems &problems);
 
