@@ -18,13 +18,6 @@ std::vector<Factor> StudyInput::plain_factors() const
   return plain;
 }
 
-std::size_t StudyInput::n_effects() const
-{
-  return static_cast<std::size_t>(
-      std::count_if(factors.begin(), factors.end(),
-                    [](const Effect &e) { return e.factor.kind == Factor::Kind::effect; }));
-}
-
 std::map<std::string, std::string> StudyInput::identity() const
 {
   std::map<std::string, std::string> parts;

@@ -4,7 +4,7 @@
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/measured_csv.h>
-#include <eunoe/discovery/study_folder.h>
+#include <eunoe/discovery/results.h>
 #include <eunoe/discovery/synthetic_data.h>
 
 #include <boost/algorithm/string.hpp>

@@ -20,7 +20,6 @@ struct StudyInput
   std::map<std::string, std::string> digests;
 
   std::vector<Factor> plain_factors() const;
-  std::size_t n_effects() const;
 
   /// All that decides the study's results, by name.
   std::map<std::string, std::string> identity() const;
