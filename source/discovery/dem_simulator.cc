@@ -1,4 +1,3 @@
-#include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/stop_request.h>
@@ -12,6 +11,7 @@
 #include <cmath>
 #include <new>
 #include <sstream>
+#include <utility>
 
 namespace eunoe::discovery {
 
@@ -40,15 +40,48 @@ double value_at(const DataPoint &point, const RunRecord &record)
 DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
                            const std::vector<Effect> &factors, const std::string &table_file,
                            const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
-    : experiments(experiments), factors(factors), maker(experiments, factors, comm),
-      table(table_file, comm), queue(comm, ranks_per_run), comm(comm), log(log)
+    : experiments(experiments), factors(factors), table(table_file, comm),
+      queue(comm, ranks_per_run), comm(comm), log(log)
 {
   table.open();
   earlier = table.rows();
-  maker.remember(table.keys());
+  keys_by_recipe = table.keys();
   for (const RunTable::Row &row : earlier)
     if (row.engine == engine_digest())
       records[row.key] = row.record;
+}
+
+const Experiment &DemSimulator::find(const std::string &experiment) const
+{
+  return *std::find_if(experiments.begin(), experiments.end(),
+                       [&](const Experiment &e) { return e.name() == experiment; });
+}
+
+bool DemSimulator::is_of_study(const RunRequest &request) const
+{
+  return std::any_of(experiments.begin(), experiments.end(),
+                     [&](const Experiment &e) { return e.name() == request.experiment; }) &&
+         std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
+           return std::any_of(factors.begin(), factors.end(),
+                              [&](const Effect &e) { return e.factor.name == a.first; });
+         });
+}
+
+std::string DemSimulator::key_of(const RunRequest &request)
+{
+  std::string recipe;
+  try {
+    recipe = find(request.experiment).recipe(factors, request);
+  } catch (const UserError &) {
+    return case_of(request).key;
+  }
+  if (const auto known = keys_by_recipe.find(recipe); known != keys_by_recipe.end())
+    return known->second;
+  const StudyCase one = case_of(request);
+  // Files that a case names may change without their names.
+  if (one.problem.empty() && !one.names_files)
+    keys_by_recipe[recipe] = new_keys[recipe] = one.key;
+  return one.key;
 }
 
 /// Runs simulations of another engine again, as far as this one has not made them.
@@ -59,7 +92,7 @@ std::set<std::string> DemSimulator::find_changes(
   std::vector<StudyCase> cases;
   for (const auto &[part, row] : samples)
     if (records.count(row->key) == 0)
-      cases.push_back(maker.make(row->request));
+      cases.push_back(case_of(row->request));
   simulate_missing(cases);
   std::set<std::string> changed;
   for (const auto &[part, row] : samples)
@@ -110,8 +143,8 @@ void DemSimulator::adopt_earlier_runs()
   for (const RunTable::Row &row : earlier)
     // A failure may have been the engine's. The case may have changed since, or belong to another
     // study.
-    if (row.engine != engine_digest() && row.record.failure.empty() &&
-        maker.is_of_study(row.request) && maker.key(row.request) == row.key)
+    if (row.engine != engine_digest() && row.record.failure.empty() && is_of_study(row.request) &&
+        key_of(row.request) == row.key)
       others[row.engine].push_back(&row);
   for (const auto &[engine, rows] : others)
     adopt(rows);
@@ -120,7 +153,7 @@ void DemSimulator::adopt_earlier_runs()
 bool DemSimulator::concerns(const std::string &experiment,
                             const std::vector<std::string> &effects) const
 {
-  const std::string &process = maker.find(experiment).process_name();
+  const std::string &process = find(experiment).process_name();
   return effects.empty() || std::any_of(factors.begin(), factors.end(), [&](const Effect &e) {
            return e.concerns(process) &&
                   std::find(effects.begin(), effects.end(), e.factor.name) != effects.end();
@@ -133,26 +166,26 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
   std::set<std::string> given; // a row of each engine may have it
   for (const RunTable::Row &row : earlier) {
     if (row.request.experiment != experiment || row.number > last_known ||
-        records.count(row.key) == 0 || !maker.is_of_study(row.request))
+        records.count(row.key) == 0 || !is_of_study(row.request))
       continue;
     const std::string text = text_of(row.request);
     if (keys.count(text) == 0) {
       // The case may have changed since, or belong to another study.
-      if (maker.key(row.request) != row.key)
+      if (key_of(row.request) != row.key)
         continue;
       add_to_ledger(row.request, row.key, true);
     }
     if (keys.at(text) == row.key && given.insert(text).second)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
-  if (const auto found = maker.new_keys(); !found.empty())
-    table.store_keys(found);
+  if (!new_keys.empty())
+    table.store_keys(std::exchange(new_keys, {}));
   return result;
 }
 
 void DemSimulator::take_over(const RunRequest &request, const RunRecord &record)
 {
-  const StudyCase one = maker.make(request);
+  const StudyCase one = case_of(request);
   if (!one.problem.empty())
     throw UserError(one.problem);
   on_first_rank(comm, [&] { table.store({0, one.key, engine_digest(), request, record}); });
@@ -346,7 +379,7 @@ std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests
   std::set<std::string> texts;
   for (const RunRequest &request : requests)
     if (keys.count(text_of(request)) == 0 && texts.insert(text_of(request)).second)
-      unknown.push_back(maker.make(request));
+      unknown.push_back(case_of(request));
   const std::set<std::string> begun = simulate_missing(unknown);
   for (const StudyCase &one : unknown)
     add_to_ledger(one.request, one.key, begun.count(one.key) == 0);

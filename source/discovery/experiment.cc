@@ -1,9 +1,14 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/named_files.h>
 #include <eunoe/core/quoted_text.h>
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/version.h>
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace eunoe::discovery {
 
@@ -103,14 +108,46 @@ std::vector<std::string> Experiment::run_overrides(const std::vector<Effect> &fa
   return list;
 }
 
-std::string Experiment::recipe(const std::vector<std::string> &overrides) const
+StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunRequest &request,
+                                MPI_Comm comm) const
 {
-  std::string all;
+  StudyCase one;
+  one.experiment = this;
+  one.request = request;
+  std::string input;
+  EntryValues naming_files;
+  try {
+    // Ranks may see different files.
+    on_every_rank(comm, [&] {
+      one.overrides = run_overrides(factors, request);
+      Problems found;
+      const Parameters made = make(one.overrides, found);
+      input = made.as_input_file();
+      naming_files = made.file_entries();
+      if (!found.empty())
+        throw UserError(found);
+    });
+  } catch (const UserError &error) {
+    one.problem = error.what();
+    one.key = sha256(one.problem + text_of(request));
+    return one;
+  }
+  std::string files;
+  for (const auto &[place, digest] : named_files(naming_files, comm))
+    files += digest;
+  one.names_files = !files.empty();
+  one.key = sha256(files + input);
+  return one;
+}
+
+std::string Experiment::recipe(const std::vector<Effect> &factors, const RunRequest &request) const
+{
+  std::string all = engine_digest(); // the engine reads the parameters
   for (const auto &[file, text] : texts)
     all += file + "\n" + text + "\n";
-  for (const std::string &line : overrides)
+  for (const std::string &line : run_overrides(factors, request))
     all += line + "\n";
-  return all;
+  return sha256(all);
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
@@ -122,6 +159,17 @@ Parameters Experiment::make(const std::vector<std::string> &overrides, Problems 
         const auto known = texts.find(path);
         return known != texts.end() ? known->second : read_file(path, MPI_COMM_SELF);
       });
+}
+
+std::string text_of(const RunRequest &request)
+{
+  std::string text = request.experiment + " " + std::to_string(request.seed);
+  for (const auto &[name, amplitude] : request.amplitudes) {
+    char number[40];
+    std::snprintf(number, sizeof number, "=%.17g", amplitude);
+    text += " " + name + number;
+  }
+  return text;
 }
 
 Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems)

@@ -2,7 +2,7 @@
 #define eunoe_discovery_dem_simulator_h
 
 #include <eunoe/core/log.h>
-#include <eunoe/discovery/case_maker.h>
+#include <eunoe/discovery/experiment.h>
 #include <eunoe/discovery/run_table.h>
 #include <eunoe/discovery/work_queue.h>
 
@@ -56,6 +56,16 @@ public:
   const nlohmann::ordered_json &ledger() const { return runs; }
 
 private:
+  const Experiment &find(const std::string &experiment) const;
+  /// Whether the study has the experiment and all factors of a request.
+  bool is_of_study(const RunRequest &request) const;
+  /// Collective.
+  StudyCase case_of(const RunRequest &request) const
+  {
+    return find(request.experiment).make_case(factors, request, comm);
+  }
+  /// The key of the case of a request, which is made only if no recipe tells it; collective.
+  std::string key_of(const RunRequest &request);
   RunRecord simulate(const StudyCase &one);
   void serve_and_check_stop(unsigned long long step);
   /// Runs those cases of which there is no result, each once.
@@ -72,7 +82,6 @@ private:
 
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
-  CaseMaker maker;
   RunTable table;
   std::vector<RunTable::Row> earlier; ///< rows that were there at the start
   std::int64_t last_known = std::numeric_limits<std::int64_t>::max();
@@ -81,8 +90,9 @@ private:
   Log &log;
   std::map<std::string, std::vector<DataPoint>> known_points;
   std::set<DataPoint> rare, required;
-  std::map<std::string, RunRecord> records; ///< by key
-  std::map<std::string, std::string> keys;  ///< by what was requested
+  std::map<std::string, RunRecord> records;                    ///< by key
+  std::map<std::string, std::string> keys;                     ///< by what was requested
+  std::map<std::string, std::string> keys_by_recipe, new_keys; ///< the new ones not in the table
   std::uint64_t made = 0, cached = 0;
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
 };
