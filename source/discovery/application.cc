@@ -52,16 +52,14 @@ std::string word_for(const Factor::Sign sign)
 
 void list_effects(const std::vector<Effect> &effects, Log &log)
 {
-  for (const Effect &effect : effects) {
-    const Factor &f = effect.factor;
+  for (const Effect &f : effects) {
     if (f.kind != Factor::Kind::effect)
       continue;
     const std::string others = boost::join(f.confounders, ", ");
     log.line(f.name + ": " + f.mechanism + "\n  amplitude: " + f.parameter + " (" + f.unit +
              "), null value " + format(f.null_value) + ", scale " + format(f.scale) + ", range " +
              format(f.lower) + " to " + format(f.upper) + "; sign: " + word_for(f.sign) +
-             "; confounders: " + (others.empty() ? "none" : others) +
-             "; process: " + effect.process);
+             "; confounders: " + (others.empty() ? "none" : others) + "; process: " + f.process);
   }
 }
 
@@ -93,8 +91,8 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
   std::string names;
   double n_effects = 0., n_nuisances = 0.;
   for (const Effect &effect : study.factors) {
-    names += (names.empty() ? "" : ", ") + effect.factor.name;
-    (effect.factor.kind == Factor::Kind::effect ? n_effects : n_nuisances) += 1.;
+    names += (names.empty() ? "" : ", ") + effect.name;
+    (effect.kind == Factor::Kind::effect ? n_effects : n_nuisances) += 1.;
   }
   double runs = 0., core_hours = 0.;
   std::uint64_t of_base = 0; // without which there is no study

@@ -24,34 +24,34 @@ struct EffectParameters : public ParameterSection
 {
   EffectParameters()
   {
-    factor.unit = "1";
-    factor.scale = 0.;
+    effect.unit = "1";
+    effect.scale = 0.;
   }
 
-  Factor factor;
+  Effect effect;
   std::string sign = "above", experiments = "all";
   std::vector<double> range = {0., 0.};
 
   void declare(dealii::ParameterHandler &prm) override
   {
     declare::enter(prm, effect_section);
-    declare::entry(prm, "mechanism", factor.mechanism,
+    declare::entry(prm, "mechanism", effect.mechanism,
                    "What happens in the powder or the machine.");
-    declare::entry(prm, "family", factor.family,
+    declare::entry(prm, "family", effect.family,
                    "What it has in common with other effects. An answer that cannot tell these "
                    "apart says how likely one of them is.");
-    declare::entry(prm, "parameter", factor.parameter, "What the amplitude is.");
-    declare::entry(prm, "unit", factor.unit, "Unit of the amplitude.");
-    declare::entry(prm, "null value", factor.null_value,
+    declare::entry(prm, "parameter", effect.parameter, "What the amplitude is.");
+    declare::entry(prm, "unit", effect.unit, "Unit of the amplitude.");
+    declare::entry(prm, "null value", effect.null_value,
                    "Amplitude at which the effect is absent.");
-    declare::not_negative(prm, "scale", factor.scale,
+    declare::not_negative(prm, "scale", effect.scale,
                           "Distance from the null value that changes results clearly.");
     declare::list(prm, "range", range, {2, 2}, "Smallest and largest amplitude that make sense.");
     declare::choice(prm, "sign", sign, "above|below|both",
                     "Side of the null value that physics allows.");
-    declare::entry(prm, "confounders", factor.confounders,
+    declare::entry(prm, "confounders", effect.confounders,
                    "Effects that are likely to look alike.");
-    declare::entry(prm, "source", factor.source, "Where the mechanism or its size is described.");
+    declare::entry(prm, "source", effect.source, "Where the mechanism or its size is described.");
     declare::choice(prm, "experiments", experiments, "all|spreading|heap",
                     "Kind of process that can have the effect.");
     declare::leave(prm);
@@ -60,17 +60,17 @@ struct EffectParameters : public ParameterSection
   void check(const ParameterCheck &check) const override
   {
     for (const auto &[entry, text] :
-         {std::pair("mechanism", &factor.mechanism), {"source", &factor.source}})
+         {std::pair("mechanism", &effect.mechanism), {"source", &effect.source}})
       check.require(!text->empty(), {effect_section}, entry, "is missing.",
                     "Say it in a few words: reports show it.");
     check.require(range[0] < range[1], {effect_section}, "range", "is empty.",
                   "Give the smallest and the largest amplitude.");
-    check.require(range[0] <= factor.null_value && factor.null_value <= range[1], {effect_section},
+    check.require(range[0] <= effect.null_value && effect.null_value <= range[1], {effect_section},
                   "null value", "is outside of the range.", "Let the range begin or end with it.");
-    const bool up = sign != "below" && factor.null_value + factor.scale <= range[1];
-    const bool down = sign != "above" && factor.null_value - factor.scale >= range[0];
-    check.require(factor.scale > 0. && (up || down), {effect_section}, "scale",
-                  "is " + format(factor.scale) +
+    const bool up = sign != "below" && effect.null_value + effect.scale <= range[1];
+    const bool down = sign != "above" && effect.null_value - effect.scale >= range[0];
+    check.require(effect.scale > 0. && (up || down), {effect_section}, "scale",
+                  "is " + format(effect.scale) +
                       ", which does not fit between null value and range.",
                   "Give a positive distance within the range.");
   }
@@ -120,13 +120,13 @@ std::string standard_catalogue()
 Effect read_effect(const std::string &text, const std::string &file, Problems &problems,
                    const FileLoader &load)
 {
-  Effect effect;
+  EffectParameters parameters;
+  Effect &effect = parameters.effect;
   effect.file = file;
   std::vector<InputEntry> own;
   for (const InputEntry &entry : parse_input(text, file, problems, load))
-    (!entry.path.empty() && entry.path.front() == effect_section ? own : effect.patch.entries)
+    (!entry.path.empty() && entry.path.front() == effect_section ? own : effect.entries)
         .push_back(entry);
-  EffectParameters parameters;
   dealii::ParameterHandler prm;
   parameters.declare(prm);
   const std::size_t n_before = problems.all().size();
@@ -135,16 +135,15 @@ Effect read_effect(const std::string &text, const std::string &file, Problems &p
   if (problems.all().size() == n_before)
     parameters.check(check);
   check.require(
-      std::any_of(effect.patch.entries.begin(), effect.patch.entries.end(),
+      std::any_of(effect.entries.begin(), effect.entries.end(),
                   [](const InputEntry &e) { return e.value.find("${") != std::string::npos; }),
       {}, "", "has no entry that depends on the amplitude.",
       "Give the entries that the effect changes, with '${amplitude}' in their values.");
 
-  effect.factor = parameters.factor;
-  effect.factor.name = fs::path(file).stem().string();
-  effect.factor.lower = parameters.range[0];
-  effect.factor.upper = parameters.range[1];
-  effect.factor.sign = sign_of(parameters.sign);
+  effect.name = fs::path(file).stem().string();
+  effect.lower = parameters.range[0];
+  effect.upper = parameters.range[1];
+  effect.sign = sign_of(parameters.sign);
   effect.process = process_of(parameters.experiments);
   return effect;
 }
@@ -159,9 +158,8 @@ std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Co
          files_of_effects(folder == "standard" ? standard_catalogue() : folder))
     {
       Effect effect = read_effect(load(file), file, problems, load);
-      const auto same = std::find_if(all.begin(), all.end(), [&](const Effect &e) {
-        return e.factor.name == effect.factor.name;
-      });
+      const auto same = std::find_if(all.begin(), all.end(),
+                                     [&](const Effect &e) { return e.name == effect.name; });
       if (same != all.end())
         problems.add(file + ":", "has the name of " + same->file + ".", "Rename it.");
       else
@@ -176,7 +174,7 @@ std::vector<Effect> select(const std::vector<Effect> &all, const std::vector<std
 {
   std::vector<std::string> names;
   for (const Effect &effect : all)
-    names.push_back(effect.factor.name);
+    names.push_back(effect.name);
   const auto contains = [](const std::vector<std::string> &list, const std::string &name) {
     return std::find(list.begin(), list.end(), name) != list.end();
   };
@@ -191,8 +189,7 @@ std::vector<Effect> select(const std::vector<Effect> &all, const std::vector<std
   const bool takes_all = contains(wanted, "all");
   std::vector<Effect> chosen;
   for (const Effect &effect : all)
-    if ((takes_all || contains(wanted, effect.factor.name)) &&
-        !contains(excluded, effect.factor.name))
+    if ((takes_all || contains(wanted, effect.name)) && !contains(excluded, effect.name))
       chosen.push_back(effect);
   return chosen;
 }

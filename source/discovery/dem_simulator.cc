@@ -63,7 +63,7 @@ bool DemSimulator::is_of_study(const RunRequest &request) const
                      [&](const Experiment &e) { return e.name() == request.experiment; }) &&
          std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
            return std::any_of(factors.begin(), factors.end(),
-                              [&](const Effect &e) { return e.factor.name == a.first; });
+                              [&](const Effect &e) { return e.name == a.first; });
          });
 }
 
@@ -156,7 +156,7 @@ bool DemSimulator::concerns(const std::string &experiment,
   const std::string &process = find(experiment).process_name();
   return effects.empty() || std::any_of(factors.begin(), factors.end(), [&](const Effect &e) {
            return e.concerns(process) &&
-                  std::find(effects.begin(), effects.end(), e.factor.name) != effects.end();
+                  std::find(effects.begin(), effects.end(), e.name) != effects.end();
          });
 }
 

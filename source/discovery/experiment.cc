@@ -82,19 +82,19 @@ std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factor
   EntryValues values = base;
   std::vector<const Effect *> active;
   for (const Effect &effect : factors) {
-    const auto amplitude = amplitudes.find(effect.factor.name);
-    if (amplitude != amplitudes.end() && amplitude->second != effect.factor.null_value &&
+    const auto amplitude = amplitudes.find(effect.name);
+    if (amplitude != amplitudes.end() && amplitude->second != effect.null_value &&
         effect.concerns(process))
       active.push_back(&effect);
   }
   std::sort(active.begin(), active.end(), [](const Effect *a, const Effect *b) {
     const auto key = [](const Effect *e) {
-      return std::pair(e->factor.kind == Factor::Kind::effect, e->factor.name);
+      return std::pair(e->kind == Factor::Kind::effect, e->name);
     };
     return key(a) < key(b);
   });
   for (const Effect *const effect : active)
-    effect->patch.apply(amplitudes.at(effect->factor.name), values, list);
+    effect->apply(amplitudes.at(effect->name), values, list);
   return list;
 }
 
@@ -175,19 +175,18 @@ std::string text_of(const RunRequest &request)
 Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems)
 {
   Effect effect;
-  Factor &factor = effect.factor;
-  factor.name = parameters.name;
-  factor.kind = Factor::Kind::nuisance;
-  factor.scale = factor.prior_deviation = parameters.standard_deviation;
-  factor.lower = -3. * parameters.standard_deviation;
-  factor.upper = 3. * parameters.standard_deviation;
-  factor.sign = Factor::Sign::both;
-  factor.mechanism = "uncertain number of the base model";
+  effect.name = parameters.name;
+  effect.kind = Factor::Kind::nuisance;
+  effect.scale = effect.prior_deviation = parameters.standard_deviation;
+  effect.lower = -3. * parameters.standard_deviation;
+  effect.upper = 3. * parameters.standard_deviation;
+  effect.sign = Factor::Sign::both;
+  effect.mechanism = "uncertain number of the base model";
   const std::string where = "Nuisance '" + parameters.name + "'";
   for (const std::string &entry : parameters.entries) {
     Problems found;
-    effect.patch.entries.push_back(parse_override(entry + " = " + parameters.value, found));
-    effect.patch.entries.back().where = where;
+    effect.entries.push_back(parse_override(entry + " = " + parameters.value, found));
+    effect.entries.back().where = where;
     for (const Problem &problem : found.all())
       problems.add(where + " / entry 'entries': '" + shortened(entry) + "':", problem.what,
                    "Write 'subsection/entry', and ';' between several.");

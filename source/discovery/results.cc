@@ -206,8 +206,7 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
   origin["seed"] = study.parameters.options.seed;
   origin["measured_data"] = study.data.header;
   auto &effects = answer["catalogue"];
-  for (const Effect &effect : study.factors) {
-    const Factor &f = effect.factor;
+  for (const Factor &f : study.factors)
     effects.push_back({{"name", f.name},
                        {"kind", f.kind == Factor::Kind::effect ? "effect" : "nuisance"},
                        {"mechanism", f.mechanism},
@@ -219,7 +218,6 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                        {"range", {f.lower, f.upper}},
                        {"confounders", f.confounders},
                        {"source", f.source}});
-  }
   auto &observables = answer["observables"];
   for (const Experiment &experiment : study.experiments)
     for (const ObservableDescription &o : experiment.observables())

@@ -10,14 +10,6 @@
 
 namespace eunoe::discovery {
 
-std::vector<Factor> StudyInput::plain_factors() const
-{
-  std::vector<Factor> plain;
-  for (const Effect &effect : factors)
-    plain.push_back(effect.factor);
-  return plain;
-}
-
 std::map<std::string, std::string> StudyInput::identity() const
 {
   std::map<std::string, std::string> parts;
@@ -37,18 +29,17 @@ std::map<std::string, std::string> StudyInput::identity() const
         experiment.make(experiment.overrides({}, {}), none).as_input_file();
   for (const auto &[name, digest] : digests)
     parts["files of " + name] = digest;
-  for (const Effect &effect : factors)
-    if (effect.factor.kind == Factor::Kind::effect) {
-      std::string &text = parts["effect " + effect.factor.name];
-      const Factor &f = effect.factor;
+  for (const Effect &f : factors)
+    if (f.kind == Factor::Kind::effect) {
+      std::string &text = parts["effect " + f.name];
       for (const double number :
            {f.null_value, f.scale, f.lower, f.upper, static_cast<double>(f.sign)}) {
         char exactly[32];
         std::snprintf(exactly, sizeof exactly, "%.17g ", number);
         text += exactly;
       }
-      text += effect.process + "\n";
-      for (const InputEntry &entry : effect.patch.entries)
+      text += f.process + "\n";
+      for (const InputEntry &entry : f.entries)
         text += describe(entry.path, entry.name) + entry.value + "\n";
     }
   return parts;
@@ -75,10 +66,10 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
                     [&](const Experiment &e) { return effect.concerns(e.process_name()); }))
       study.factors.push_back(std::move(effect));
     else
-      study.left_out.push_back(effect.factor.name);
+      study.left_out.push_back(effect.name);
   for (const NuisanceParameters &nuisance : p.nuisances) {
     if (std::any_of(study.factors.begin(), study.factors.end(),
-                    [&](const Effect &e) { return e.factor.name == nuisance.name; }))
+                    [&](const Effect &e) { return e.name == nuisance.name; }))
       problems.add(file + ": nuisance '" + nuisance.name + "'", "has the name of an effect.",
                    "Rename it, or exclude the effect.");
     study.factors.push_back(make_nuisance(nuisance, problems));
@@ -102,9 +93,8 @@ void read_data(StudyInput &study, MPI_Comm comm, Problems &problems)
 
 void check_patches(const StudyInput &study, Problems &problems)
 {
-  for (const Effect &effect : study.factors)
+  for (const Effect &f : study.factors)
     for (const Experiment &experiment : study.experiments) {
-      const Factor &f = effect.factor;
       const double amplitude = f.null_value + (f.sign == Factor::Sign::below ? -f.scale : f.scale);
       Problems found;
       try {
@@ -113,8 +103,8 @@ void check_patches(const StudyInput &study, Problems &problems)
         problems.add("Experiment '" + experiment.name() + "':", error.what(), "");
       }
       for (const Problem &problem : found.all())
-        problems.add((effect.file.empty() ? "Nuisance '" + f.name + "'" : effect.file) +
-                         ", in experiment '" + experiment.name() + "':",
+        problems.add((f.file.empty() ? "Nuisance '" + f.name + "'" : f.file) + ", in experiment '" +
+                         experiment.name() + "':",
                      problem.text(), "");
     }
 }

@@ -45,8 +45,8 @@ Amplitudes truth_of(const SyntheticDataParameters &synthetic, const std::vector<
   Amplitudes truth;
   std::vector<std::string> names;
   for (const Effect &effect : factors)
-    if (effect.factor.kind == Factor::Kind::effect)
-      names.push_back(effect.factor.name);
+    if (effect.kind == Factor::Kind::effect)
+      names.push_back(effect.name);
   const std::string where = "subsection 'twin' / entry 'effects'";
   for (const std::string &text : synthetic.effects) {
     const std::size_t colon = text.find(':');
@@ -184,9 +184,9 @@ Truth draw_truth(const SyntheticDataParameters &synthetic, const std::vector<Eff
   truth.sealed["effects"] = truth.amplitudes;
   truth.sealed["nuisances"] = nlohmann::ordered_json::object();
   for (const Effect &factor : factors)
-    if (factor.factor.kind == Factor::Kind::nuisance && synthetic.jitter_nuisances)
-      truth.sealed["nuisances"][factor.factor.name] = truth.amplitudes[factor.factor.name] =
-          factor.factor.prior_deviation * normal();
+    if (factor.kind == Factor::Kind::nuisance && synthetic.jitter_nuisances)
+      truth.sealed["nuisances"][factor.name] = truth.amplitudes[factor.name] =
+          factor.prior_deviation * normal();
   truth.amplitudes[time_step_change] = synthetic.time_step_factor - 1.;
   truth.sealed["time_step_factor"] = synthetic.time_step_factor;
   truth.sealed["overrides"] = synthetic.overrides;

@@ -15,23 +15,16 @@ namespace eunoe::discovery {
 /// place. Throws a std::invalid_argument with half a sentence.
 std::string patched_value(const std::string &pattern, const std::string &base, double amplitude);
 
-/// Entries of an input file that depend on an amplitude.
-struct Patch
+/// An effect of the catalogue, or a nuisance: a factor, and the entries that put it into a case.
+struct Effect : Factor
 {
   std::vector<InputEntry> entries; ///< with patterns as values
+  std::string process = "all";     ///< the only process that can have it, or "all"
+  std::string file;                ///< that describes it; empty for a nuisance
 
-  /// Applies the patch to the values of a case, and adds its entries to the overrides. Throws a
-  /// UserError that names the entry.
+  /// Puts it into the values of a case, and adds its entries to the overrides. Throws a UserError
+  /// that names the entry.
   void apply(double amplitude, EntryValues &values, std::vector<std::string> &overrides) const;
-};
-
-/// An effect of the catalogue: its factor, and the patch that puts it into a case.
-struct Effect
-{
-  Factor factor;
-  Patch patch;
-  std::string process = "all"; ///< the only process that can have it, or "all"
-  std::string file;
 
   bool concerns(const std::string &process_name) const
   {

@@ -19,7 +19,7 @@ struct StudyInput
   /// Digests of the files that a case names, by experiment.
   std::map<std::string, std::string> digests;
 
-  std::vector<Factor> plain_factors() const;
+  std::vector<Factor> plain_factors() const { return {factors.begin(), factors.end()}; }
 
   /// All that decides the study's results, by name.
   std::map<std::string, std::string> identity() const;
