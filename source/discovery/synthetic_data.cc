@@ -1,4 +1,5 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
@@ -19,6 +20,7 @@ namespace eunoe::discovery {
 
 namespace {
 
+/// A nuisance that only the truth has.
 const std::string time_step_change = "time step of the truth";
 
 /// Normal numbers, the same everywhere: the standard library's distribution is not.
@@ -83,17 +85,6 @@ std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm co
   return experiments;
 }
 
-/// A nuisance that changes the time step of the truth.
-Effect make_time_step_change()
-{
-  NuisanceParameters p;
-  p.name = time_step_change;
-  p.entries = {"simulation control/time step"};
-  p.value = "${base * (1 + amplitude)}";
-  Problems none;
-  return make_nuisance(p, none);
-}
-
 /// Readings of an instrument with noise, from simulated repeats.
 /// @param runs values of all data points, one row per repeat
 std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
@@ -137,15 +128,6 @@ std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
       rows.push_back(row);
   }
   return rows;
-}
-
-void refuse_existing(const std::string &file, MPI_Comm comm)
-{
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  std::error_code failure;
-  if (!broadcast(rank == 0 && std::filesystem::exists(file, failure) ? "yes" : "", comm).empty())
-    throw UserError(file + " is there already. Remove it, or name another file.");
 }
 
 /// Refuses observables that no experiment has, before any run is made.
@@ -237,13 +219,19 @@ void make_synthetic_data(const StudyParameters &study, const std::vector<Effect>
 {
   const SyntheticDataParameters &synthetic = study.synthetic;
   const std::string data_file = study.measured_data, sealed_file = synthetic.sealed_file;
-  refuse_existing(data_file, comm);
-  refuse_existing(sealed_file, comm);
+  on_first_rank(comm, [&] {
+    std::error_code failure;
+    for (const std::string &file : {data_file, sealed_file})
+      if (std::filesystem::exists(file, failure))
+        throw UserError(file + " is there already. Remove it, or name another file.");
+  });
 
   NormalNumbers normal(synthetic.seed);
   const Truth truth = draw_truth(synthetic, factors, normal);
   std::vector<Effect> changes = factors;
-  changes.push_back(make_time_step_change());
+  Problems none;
+  changes.push_back(make_nuisance(
+      {time_step_change, {"simulation control/time step"}, "${base * (1 + amplitude)}"}, none));
   const std::vector<Experiment> experiments = experiments_of(study, comm);
   check_observables(synthetic.observables, experiments);
   for (const std::string &file : {data_file, sealed_file})
