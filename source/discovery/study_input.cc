@@ -95,7 +95,9 @@ void check_patches(const StudyInput &study, Problems &problems)
 {
   for (const Effect &f : study.factors)
     for (const Experiment &experiment : study.experiments) {
-      const double amplitude = f.null_value + (f.sign == Factor::Sign::below ? -f.scale : f.scale);
+      // Of an effect of both signs the scale may fit on one side only.
+      const bool is_above = f.sign != Factor::Sign::below && f.null_value + f.scale <= f.upper;
+      const double amplitude = f.null_value + (is_above ? f.scale : -f.scale);
       Problems found;
       try {
         experiment.make(experiment.overrides(study.factors, {{f.name, amplitude}}), found);

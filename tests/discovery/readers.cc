@@ -99,6 +99,17 @@ void effects()
   } catch (const UserError &error) {
     print(std::string(error.what()).substr(folder.size() + 1));
   }
+  Problems none;
+  StudyInput study;
+  study.experiments = experiments();
+  study.factors = {read_effect(
+      "subsection effect\n set mechanism = m\n set source = s\n set range = -0.55, 0.2\n"
+      " set scale = 0.5\n set sign = both\nend\nsubsection lagrangian physical properties\n"
+      " subsection particle type 0\n"
+      "  set restitution coefficient particles = ${base + amplitude}\n end\nend\n",
+      "effects/dull.prm", none)};
+  check_patches(study, none);
+  check("a scale that fits on one side only is tried there", none.empty());
 }
 
 void measurements()
