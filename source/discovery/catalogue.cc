@@ -104,18 +104,15 @@ std::vector<std::string> files_of_effects(const std::string &folder)
   return files;
 }
 
-/// The folder of the effects that come with the program, installed or in the source tree.
-std::string standard_catalogue()
+} // namespace
+
+std::string shipped(const std::string &name)
 {
   std::error_code failure;
   const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  const fs::path installed =
-      program.parent_path().parent_path() / "share" / "eunoe" / "prm" / "effects";
-  return fs::is_directory(installed, failure) ? installed.string()
-                                              : source_folder() + std::string("/prm/effects");
+  const fs::path installed = program.parent_path().parent_path() / "share" / "eunoe" / name;
+  return (fs::exists(installed, failure) ? installed : fs::path(source_folder()) / name).string();
 }
-
-} // namespace
 
 Effect read_effect(const std::string &text, const std::string &file, Problems &problems,
                    const FileLoader &load)
@@ -155,7 +152,7 @@ std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Co
   std::vector<Effect> all;
   for (const std::string &folder : folders)
     for (const std::string &file :
-         files_of_effects(folder == "standard" ? standard_catalogue() : folder))
+         files_of_effects(folder == "standard" ? shipped("prm/effects") : folder))
     {
       Effect effect = read_effect(load(file), file, problems, load);
       const auto same = std::find_if(all.begin(), all.end(),

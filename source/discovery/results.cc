@@ -102,21 +102,6 @@ std::string quoted(const std::string &text)
   return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
 }
 
-/// Command that makes discovery.html of a folder; empty if the script is not there.
-std::string page_command(const std::string &folder)
-{
-  std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  for (const fs::path &script : {program.parent_path().parent_path() / "share/eunoe/contrib/tools",
-                                 fs::path(source_folder()) / "contrib/tools"})
-    if (fs::is_regular_file(script, failure)) {
-      const bool has_own = fs::exists("/usr/bin/python3", failure);
-      return std::string(has_own ? "/usr/bin/python3" : "python3") + " " + quoted(script.string()) +
-             " discovery-report " + quoted(folder);
-    }
-  return "";
-}
-
 } // namespace
 
 std::string StudyFolder::file(const std::string &name) const
@@ -243,8 +228,11 @@ void write_page(const std::string &folder, MPI_Comm comm, Log &log)
 {
   if (!is_first_rank(comm))
     return;
-  const std::string command = page_command(folder);
-  if (command.empty() || std::system(command.c_str()) != 0)
+  std::error_code failure;
+  const std::string script = shipped("contrib/tools"), python = "/usr/bin/python3";
+  const std::string command = (fs::exists(python, failure) ? python : "python3") + " " +
+                              quoted(script) + " discovery-report " + quoted(folder);
+  if (!fs::is_regular_file(script, failure) || std::system(command.c_str()) != 0)
     log.warning("discovery.html was not written. Run contrib/tools discovery-report " + folder +
                 " where Python has Matplotlib.");
 }

@@ -5,7 +5,6 @@
 #include <eunoe/discovery/factor.h>
 
 #include <mpi.h>
-#include <set>
 
 namespace eunoe::discovery {
 
@@ -31,6 +30,9 @@ struct Effect : Factor
     return process == "all" || process == process_name;
   }
 };
+
+/// Path of a file or folder that comes with the program, installed or in the source tree.
+std::string shipped(const std::string &name);
 
 /// Reads the text of an effect's file; its name is that of the file. What is wrong goes to
 /// @p problems.

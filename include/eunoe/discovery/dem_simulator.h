@@ -8,6 +8,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include <limits>
+#include <set>
+
 namespace eunoe::discovery {
 
 /// Runs DEM simulations on groups of ranks, each simulation once, and keeps their results in a
