@@ -34,19 +34,23 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     problems.add("Experiment '" + name() + "':", error.what(), "");
     return;
   }
-  const std::size_t n_before = problems.all().size();
+  Problems wrong; // its doubts are among those of the run below
   const Parameters read = Parameters::read(
-      texts[file], file, parameters.overrides, problems,
+      texts[file], file, parameters.overrides, wrong,
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
   base = values_in(read.as_input_file());
   process = read.process_name;
   // Every run begins from nothing.
   if (base.at({{"restart"}, "restart"}) == "true")
-    problems.add(file + ": subsection 'restart' / entry 'restart'",
-                 "is true, and a study simulates a case from its beginning, without checkpoints.",
-                 "Make a case of it that needs none, and set it to false.");
-  if (problems.all().size() != n_before)
+    wrong.add(file + ": subsection 'restart' / entry 'restart'",
+              "is true, and a study simulates a case from its beginning, without checkpoints.",
+              "Make a case of it that needs none, and set it to false.");
+  for (const Problem &problem : wrong.all())
+    problems.add(problem.where, problem.what, problem.mend);
+  if (!wrong.empty())
     return;
+  for (const auto &[place, digest] : named_files(read.file_entries(), comm))
+    digests += digest;
   try {
     // Building the parts of a run finds what reading alone cannot.
     std::vector<std::string> list = parameters.overrides;

@@ -1,5 +1,4 @@
 #include <eunoe/core/files.h>
-#include <eunoe/core/named_files.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
@@ -24,11 +23,12 @@ std::map<std::string, std::string> StudyInput::identity() const
     if (places.count(place.second) == 0)
       parts["study file"] += describe(place.first, place.second) + value + "\n";
   Problems none;
-  for (const Experiment &experiment : experiments)
+  for (const Experiment &experiment : experiments) {
     parts["case of " + experiment.name()] =
         experiment.make(experiment.overrides({}, {}), none).as_input_file();
-  for (const auto &[name, digest] : digests)
-    parts["files of " + name] = digest;
+    if (!experiment.named_digests().empty())
+      parts["files of " + experiment.name()] = experiment.named_digests();
+  }
   for (const Effect &f : factors)
     if (f.kind == Factor::Kind::effect) {
       std::string &text = parts["effect " + f.name];
@@ -76,11 +76,6 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
   }
   if (problems.empty())
     check_patches(study, problems);
-  if (problems.empty())
-    for (const Experiment &experiment : study.experiments)
-      for (const auto &[place, digest] : named_files(
-               experiment.make(experiment.overrides({}, {}), problems).file_entries(), comm))
-        study.digests[experiment.name()] += digest;
   return study;
 }
 

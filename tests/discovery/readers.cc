@@ -112,6 +112,18 @@ void effects()
   check("a scale that fits on one side only is tried there", none.empty());
 }
 
+void doubts()
+{
+  Problems problems;
+  ExperimentParameters box;
+  box.name = "box";
+  box.case_file = folder + "/drop.prm";
+  box.overrides = {"drop/seed = 3", "simulation control/seed = 5"};
+  const Experiment experiment(box, MPI_COMM_WORLD, problems);
+  check("a doubt about a case is told once",
+        problems.empty() && problems.warnings().empty() && experiment.doubts().size() == 1);
+}
+
 void measurements()
 {
   const std::string row = "box,height,0,1e-3,1e-4,3,fit\n";
@@ -156,5 +168,6 @@ EUNOE_MPI_TEST()
 {
   studies();
   effects();
+  doubts();
   measurements();
 }

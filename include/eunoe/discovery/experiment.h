@@ -37,6 +37,8 @@ public:
   const std::string &process_name() const { return process; }
   const RunEstimate &estimate() const { return cost; }
   const std::vector<ObservableDescription> &observables() const { return described; }
+  /// Digests of the files that the base case names.
+  const std::string &named_digests() const { return digests; }
   /// Warnings about the base case, which do not forbid the study.
   const std::vector<Problem> &doubts() const { return doubtful; }
 
@@ -64,7 +66,7 @@ private:
                                          const RunRequest &request) const;
 
   ExperimentParameters parameters;
-  std::string process;
+  std::string process, digests;
   std::vector<ObservableDescription> described;
   RunEstimate cost;
   std::vector<Problem> doubtful;

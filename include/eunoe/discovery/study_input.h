@@ -16,8 +16,6 @@ struct StudyInput
   std::vector<std::string> left_out; ///< names of effects that no experiment can have
   MeasuredData data;
   std::string data_text; ///< the whole table
-  /// Digests of the files that a case names, by experiment.
-  std::map<std::string, std::string> digests;
 
   std::vector<Factor> plain_factors() const { return {factors.begin(), factors.end()}; }
 
