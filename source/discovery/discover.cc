@@ -20,8 +20,8 @@ namespace {
 struct Round
 {
   Round(const std::vector<MeasuredExperiment> &measured, const Samples &samples,
-        const FactorSpace &space, const StudyOptions &options, const DecisionRule &rule)
-      : target(measured, samples, space, options.model_tolerance), evidence(target, space),
+        const StudyOptions &options, const DecisionRule &rule)
+      : target(measured, samples, options.model_tolerance), evidence(target, samples.space()),
         options(options)
   {
     look(rule);
@@ -228,14 +228,13 @@ void Study::run()
 {
   design.run_base();
   const std::uint64_t kept = keep_for_tests();
-  const auto measured = sort_by_experiment(data.fit, samples, samples.simulator(), notes);
-  if (measured.empty())
-    throw UserError("No measured data point varies in the runs of the base model, so nothing can "
-                    "be compared: give standard deviations, or data points that vary.");
-  design.run_effects([&] { return Target(measured, samples, space, options.model_tolerance); });
+  if (data.fit.empty())
+    throw UserError("Nothing that was measured is to be fitted, so nothing can be compared.");
+  const auto measured = sort_by_experiment(data.fit, samples);
+  design.run_effects([&] { return Target(measured, samples, options.model_tolerance); });
   bool settled = false;
   while (true) {
-    round = std::make_unique<Round>(measured, samples, space, options, rule.quick());
+    round = std::make_unique<Round>(measured, samples, options, rule.quick());
     const Findings &findings = round->findings;
     curve.add(findings, space, n_runs());
     const Json &last = curve.rows().back();

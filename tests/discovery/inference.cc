@@ -37,10 +37,8 @@ struct Laboratory
 
   Target target(const Amplitudes &truth, std::uint32_t seed, const double tolerance = 0.)
   {
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(simulator.measure(both, {}, truth, 4, 0.3, seed).fit, samples,
-                                     simulator, notes),
-                  samples, space, tolerance);
+    return Target(sort_by_experiment(simulator.measure(both, {}, truth, 4, 0.3, seed).fit, samples),
+                  samples, tolerance);
   }
 
   SyntheticSimulator simulator;
@@ -204,9 +202,7 @@ void unequal_repeats(Laboratory &lab)
         points.back().repeats = is_seldom ? 1 : often;
       }
     }
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(points, lab.samples, lab.simulator, notes), lab.samples,
-                  lab.space, 0.);
+    return Target(sort_by_experiment(points, lab.samples), lab.samples, 0.);
   };
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(measure(0).data().size());
   for (unsigned int k = 0; k < number; ++k) {
@@ -320,10 +316,8 @@ void without_runs()
   Design design(options, space, samples, both);
   design.run_base();
   const auto evaluate = [&] {
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(simulator.measure(both, {}, {}, 4, 0.3, 3).fit, samples,
-                                     simulator, notes),
-                  samples, space, 0.);
+    return Target(sort_by_experiment(simulator.measure(both, {}, {}, 4, 0.3, 3).fit, samples),
+                  samples, 0.);
   };
   {
     const Target target = evaluate();
@@ -375,9 +369,7 @@ void constant_observable()
     for (MeasuredPoint &point : data)
       if (point.point.observable == still.constant && k % 2 == 0)
         point.repeats = 1;
-    std::vector<std::string> notes;
-    const Target target(sort_by_experiment(data, lab.samples, lab.simulator, notes), lab.samples,
-                        lab.space, 0.);
+    const Target target(sort_by_experiment(data, lab.samples), lab.samples, 0.);
     const Evidence evidence(target, lab.space);
     alarms +=
         null_distribution(evidence, 100, 1).p(evidence.log_bayes_factors(target.data())(0)) < 0.05;

@@ -298,10 +298,9 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
                     experiments.end());
   experiments.insert(experiments.end(), made.begin(), made.end());
   try {
-    const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
+    const auto measured = imagined(experiments, samples, repeats, known);
     if (!measured.empty()) {
-      for (Json row :
-           rank(Target(measured, samples, space, options.model_tolerance), options.seed + 6)) {
+      for (Json row : rank(Target(measured, samples, options.model_tolerance), options.seed + 6)) {
         row["again"] = false;
         if (row["observable"] == "all" &&
             std::find(made.begin(), made.end(), row["experiment"].get<std::string>()) != made.end())
