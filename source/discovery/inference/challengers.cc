@@ -7,12 +7,6 @@ namespace eunoe::discovery {
 
 namespace {
 
-bool is_part(const Model &part, const Model &whole)
-{
-  return std::includes(whole.effects.begin(), whole.effects.end(), part.effects.begin(),
-                       part.effects.end());
-}
-
 /// Log of prior and evidence that an effect could have, all its amplitudes together.
 double log_hope(const Evidence &evidence, const std::size_t effect)
 {

@@ -33,6 +33,14 @@ struct Model
 
 /// Whether one of the models has the same effects.
 bool is_among(const Model &model, const std::vector<Model> &models);
+/// Whether a model has all effects of another one.
+bool is_part(const Model &part, const Model &whole);
+
+/// Gives models their probabilities by the evidence to the power of one over the temperature, and
+/// sorts them. Priors stay what they are: models of two effects are many.
+void temper(std::vector<Model> &models, double temperature);
+/// The likeliest come first.
+void sort_by_probability(std::vector<Model> &models);
 
 /// Marginal likelihoods of all models: amplitudes are integrated, too.
 class Evidence : public Likelihood
@@ -110,12 +118,9 @@ private:
   /// @param roughly without the levels of the instrument's noise
   void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
   void polish(Model &pair, const Eigen::VectorXd &data) const;
-  /// Number of the first place on the side of the null value on which an amplitude lies.
-  std::size_t first_of_side(std::size_t effect, double amplitude) const;
+  /// The places on the side of the null value on which an amplitude lies.
+  const Place *side_of(std::size_t effect, double amplitude) const;
   double log_density(std::size_t effect, double amplitude) const;
-  /// Whether the prior reaches an amplitude.
-  bool is_possible(std::size_t effect, double amplitude) const;
-  double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   double likeliest(std::size_t effect, const Eigen::ArrayXXd &of_places) const;
