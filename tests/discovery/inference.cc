@@ -129,7 +129,7 @@ void levels(Laboratory &lab)
     alarms +=
         null.p(evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction))(0)) < 0.1;
     Target::Prediction truth = evidence.nothing().prediction;
-    truth.mean += truth.gradient * draws.nuisances[static_cast<std::size_t>(k)];
+    truth.mean += truth.gradient * draws[static_cast<std::size_t>(k)].nuisances;
     truth.gradient.resize(truth.mean.size(), 0);
     refuted += predictive.p(twins.draw(truth)) < 0.1;
   }
@@ -246,12 +246,13 @@ void contests(Laboratory &lab)
   const Contest contest({right, wrong});
   constexpr double level = 0.05;
   unsigned int truths = 0, alone = 0, against_right = 0;
-  for (const Predictive::Conditional &draw : fresh.draws()) {
-    truths += contest.p(0, draw.twin) < level;
-    alone += wrong.p(draw.twin) < level;
-    against_right += contest.p(1, draw.twin) < level;
+  for (Eigen::Index k = 0; k < fresh.twins().cols(); ++k) {
+    const Eigen::VectorXd twin = fresh.twins().col(k);
+    truths += contest.p(0, twin) < level;
+    alone += wrong.p(twin) < level;
+    against_right += contest.p(1, twin) < level;
   }
-  const auto number = static_cast<double>(fresh.draws().size());
+  const auto number = static_cast<double>(fresh.twins().cols());
   const double error = 4. * std::sqrt(level * (1. - level) / number);
   check("a contest keeps its level", truths / number < level + error, std::to_string(truths));
   check("a contest refutes more wrong models",

@@ -108,9 +108,9 @@ Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
     const auto [low, high] = posterior.likeliest(findings.calibration.interval);
     Json shape = Json::array();
     constexpr double least = 1e-3;
-    for (const auto &[position, weight] : posterior.weights())
-      if (weight > least)
-        shape.push_back({amplitude_of(effect, position), weight});
+    for (const AmplitudePosterior::Place &place : posterior.places())
+      if (place.probability > least)
+        shape.push_back({amplitude_of(effect, place.amplitude), place.probability});
     const double range_low = evidence.space().lower(k), range_high = evidence.space().upper(k);
     rows.push_back({{"effect", effect.name},
                     {"unit", effect.unit},

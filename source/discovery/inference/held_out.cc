@@ -207,9 +207,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
 
   const Target &held_out = last->target;
   const auto fitted = [&](const Model &model) {
-    const Eigen::VectorXd nuisances =
-        best_nuisances(evidence, evidence.prepare(evidence.target().predict(model.best)));
-    return fit_to(held_out, model.best, nuisances);
+    return fit_to(held_out, model.best, nuisances_given(evidence, model.best).mean);
   };
   std::optional<Fitted> after;
   if (leader)
