@@ -83,12 +83,13 @@ Target::Part::Part(const MeasuredExperiment &one, const Samples &samples,
                 emulator.base_mean().cwiseQuotient(emulator.base_deviation()).cwiseAbs()),
       repeats(1. / one.repeats.cwiseInverse().mean()), first(first)
 {
+  const auto &groups = emulator.modes().groups();
   Eigen::MatrixXd excess = Eigen::MatrixXd::Zero(tolerance.size(), n_noise_levels); // of each point
-  for (std::size_t l = 0; l < n_noise_levels; ++l) {
-    const Eigen::VectorXd of_groups = noise.at((static_cast<double>(l) + 0.5) / n_noise_levels);
-    for (Eigen::Index g = 0; g < of_groups.size(); ++g)
-      for (const Eigen::Index c : emulator.modes().groups()[static_cast<std::size_t>(g)].points)
-        excess(c, static_cast<Eigen::Index>(l)) = of_groups(g);
+  for (Eigen::Index l = 0; l < excess.cols(); ++l) {
+    const auto &level = noise.at((static_cast<double>(l) + 0.5) / n_noise_levels);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const Eigen::Index c : groups[g].points)
+        excess(c, l) = level[g].mean();
   }
   const Eigen::VectorXd mean_excess = excess.rowwise().mean();
   point_ratio = mean_excess.array() + 1.;
