@@ -83,8 +83,7 @@ Json describe_remainder(const Evidence &evidence, const Findings &findings)
   for (std::size_t k = 0; k < evidence.space().n_effects(); ++k) {
     double largest = 0.;
     for (const Evidence::Place &place : evidence.places(k)) {
-      const Eigen::VectorXd change =
-          place.hypothesis.prediction.mean - evidence.nothing().prediction.mean;
+      const Eigen::VectorXd change = evidence.change(place.hypothesis.prediction);
       largest = std::max(largest, change.dot(deviation) /
                                       std::max(change.norm() * deviation.norm(), 1e-300));
     }

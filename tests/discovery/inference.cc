@@ -540,11 +540,9 @@ void unpopular_amplitude()
   lab.samples.run(many, both);
   const Target target = lab.target({{"c", amplitude}}, 3);
   const Evidence evidence(target, lab.space);
-  Model model;
-  model.effects = {c};
   const Eigen::VectorXd data = target.predict({{c, truth}}).mean;
-  model.best[c] = evidence.best_amplitude(c, data);
-  const double median = AmplitudePosterior(evidence, model, data, c).quantile(0.5);
+  const double median =
+      AmplitudePosterior(evidence, evidence.single(c, data), data, c).quantile(0.5);
   check("an amplitude near which little was run is not disfavoured",
         std::abs(median / truth - 1.) < 0.03, std::to_string(median / truth));
 }
@@ -557,13 +555,10 @@ void intervals(Laboratory &lab)
   constexpr double inside = 0.95;
   const Target target = lab.target({}, 3);
   const Evidence evidence(target, lab.space);
-  Model model;
-  model.effects = {b};
   const auto &places = evidence.places(b);
   const auto of_data_from = [&](const std::size_t place) {
     const Eigen::VectorXd data = places[place].hypothesis.prediction.mean;
-    model.best[b] = evidence.best_amplitude(b, data);
-    return AmplitudePosterior(evidence, model, data, b);
+    return AmplitudePosterior(evidence, evidence.single(b, data), data, b);
   };
   const double end = places.back().amplitude;
   const AmplitudePosterior at_end = of_data_from(places.size() - 1);
@@ -600,10 +595,7 @@ void sharpened()
   const auto sharpen = [&] {
     const Target target = lab.target(truth, 3);
     const Evidence evidence(target, lab.space);
-    Model model;
-    model.effects = {c};
-    model.best = {{c, evidence.best_amplitude(c, target.data())}};
-    return lab.design.sharpen(evidence, {model});
+    return lab.design.sharpen(evidence, {evidence.single(c, target.data())});
   };
   while (sharpen())
     continue;

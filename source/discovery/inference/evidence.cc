@@ -78,17 +78,6 @@ double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data)
          log_likelihood(best, data);
 }
 
-void Evidence::set_strengths(std::vector<Place> &side) const
-{
-  double largest = prior.just_visible;
-  for (Place &place : side) {
-    const Target::Prediction &with = place.hypothesis.prediction;
-    const double square =
-        (with.mean - nothing().prediction.mean).squaredNorm() - with.leverage.sum();
-    place.strength = largest = std::max(largest, std::sqrt(std::max(0., square)));
-  }
-}
-
 /// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of
 /// strength are equally likely, and a little of the probability is shared by equal ratios of
 /// amplitude: the prior does not depend on how an effect is parametrised, and favours none for its
@@ -101,15 +90,17 @@ void Evidence::make_grid(const std::size_t k)
       continue;
     double first = std::min(prior.least_range, 0.5 * std::abs(limit)) * (limit < 0. ? -1. : 1.);
     while (std::abs(first) * least_ratio < std::abs(limit) &&
-           (target().predict({{k, first}}).mean - nothing().prediction.mean).norm() <
-               prior.just_visible)
+           change(target().predict({{k, first}})).norm() < prior.just_visible)
       first *= least_ratio;
     std::vector<Place> side;
+    double strongest = prior.just_visible;
     for (int i = 0; i < n_places; ++i) {
       const double u = first * std::pow(limit / first, i / (n_places - 1.));
-      side.push_back({u, 0., 0., 0., prepare(target().predict({{k, u}}))});
+      const Target::Prediction with = target().predict({{k, u}});
+      const double square = change(with).squaredNorm() - with.leverage.sum();
+      strongest = std::max(strongest, std::sqrt(std::max(0., square)));
+      side.push_back({u, 0., 0., strongest, prepare(with)});
     }
-    set_strengths(side);
     const double step = std::log(limit / first) / (n_places - 1.);
     const double whole = std::log(side.back().strength / prior.just_visible) + share_by_amplitude;
     for (std::size_t i = 0; i < side.size(); ++i) {
@@ -141,11 +132,10 @@ std::vector<Evidence::Covariance> Evidence::make_discrepancies() const
   for (const auto &places : grid)
     for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
       const Target::Prediction &with = places[i].hypothesis.prediction;
-      const Eigen::VectorXd change = with.mean - nothing().prediction.mean;
-      const double noise = with.leverage.sum();
-      const double square = change.squaredNorm();
+      const Eigen::VectorXd moved = change(with);
+      const double noise = with.leverage.sum(), square = moved.squaredNorm();
       if (square > noise)
-        along += change * change.transpose() / square * (1. - noise / square);
+        along += moved * moved.transpose() / square * (1. - noise / square);
     }
   const double trace = along.trace();
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
@@ -180,16 +170,17 @@ Eigen::ArrayXd Evidence::log_single(const std::size_t effect,
   return log_sums(log_of_places(effect, data));
 }
 
-double Evidence::best_amplitude(const std::size_t effect, const Eigen::VectorXd &data) const
+Model Evidence::single(const std::size_t effect, const Eigen::VectorXd &data) const
 {
-  return likeliest(effect, log_of_places(effect, data));
-}
-
-double Evidence::likeliest(const std::size_t effect, const Eigen::ArrayXXd &of_places) const
-{
+  const Eigen::ArrayXXd of_places = log_of_places(effect, data);
   Eigen::Index best = 0;
   of_places.col(0).maxCoeff(&best);
-  return grid[effect][static_cast<std::size_t>(best)].amplitude;
+  Model model;
+  model.effects = {effect};
+  model.log_prior = std::log(prior.one_effect / static_cast<double>(usable().size()));
+  model.log_evidence = log_sums(of_places)(0);
+  model.best[effect] = grid[effect][static_cast<std::size_t>(best)].amplitude;
+  return model;
 }
 
 Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -348,15 +339,8 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   all[0].log_evidence = log_discrepancy(data)(0);
   const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<double>(effects.size());
-  for (const std::size_t k : effects) {
-    Model one;
-    one.effects = {k};
-    one.log_prior = std::log(prior.one_effect / n);
-    const Eigen::ArrayXXd of_places = log_of_places(k, data);
-    one.log_evidence = log_sums(of_places)(0);
-    one.best[k] = likeliest(k, of_places);
-    all.push_back(one);
-  }
+  for (const std::size_t k : effects)
+    all.push_back(single(k, data));
   for (std::size_t i = 0; i < effects.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       Model two;

@@ -81,8 +81,8 @@ public:
   Eigen::ArrayXd log_single(std::size_t effect,
                             const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  /// The likeliest amplitude of an effect.
-  double best_amplitude(std::size_t effect, const Eigen::VectorXd &data) const;
+  /// The model of an effect, without its probability.
+  Model single(std::size_t effect, const Eigen::VectorXd &data) const;
 
   /// Log Bayes factors of "an effect is missing, or something else" against nothing.
   Eigen::ArrayXd log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
@@ -110,7 +110,6 @@ public:
 
 private:
   void make_grid(std::size_t effect);
-  void set_strengths(std::vector<Place> &side) const;
   using Covariance = Eigen::LLT<Eigen::MatrixXd>;
   /// Of data by a change that is not catalogued, for each size of it and level of noise.
   std::vector<Covariance> make_discrepancies() const;
@@ -123,7 +122,6 @@ private:
   double log_density(std::size_t effect, double amplitude) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  double likeliest(std::size_t effect, const Eigen::ArrayXXd &of_places) const;
 
   const FactorSpace &factors;
   const Prior prior;

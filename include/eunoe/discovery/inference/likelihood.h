@@ -59,6 +59,11 @@ public:
 
   const Target &target() const { return aim; }
   const Hypothesis &nothing() const { return base; }
+  /// Of the mean, from that of the base model.
+  Eigen::VectorXd change(const Target::Prediction &with) const
+  {
+    return with.mean - base.prediction.mean;
+  }
   double degrees_of_freedom() const { return dof; } ///< of the t-distribution
 
 protected:
