@@ -166,7 +166,7 @@ public:
         Simulator &simulator, Log &log)
       : options(options), data(data), space(factors), log(log), fit(experiments_of(data.fit)),
         samples(options, space, simulator, all_experiments()),
-        held_out(options, rule, data, space, samples), design(options, space, samples, fit)
+        held_out(options, rule, data, samples), design(options, space, samples, fit)
   {
     if (samples.n_known() > 0)
       log.line("  " + std::to_string(samples.n_known()) + " runs are in the table already");
@@ -214,8 +214,8 @@ std::uint64_t Study::keep_for_tests()
 {
   constexpr unsigned int most_members = 4;
   const std::uint64_t wanted =
-      held_out.n_runs() + runs_to_test(most_members, options.validate_runs, space,
-                                       options.further_experiments, samples);
+      held_out.n_runs() +
+      runs_to_test(most_members, options.validate_runs, options.further_experiments, samples);
   const std::uint64_t kept = std::min(wanted, samples.remaining() / 2);
   samples.set_aside(kept);
   return kept;
@@ -319,7 +319,7 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
     c["tie"].push_back(
         {{"effects", "none of the catalogue"}, {"probability", findings.off_catalogue}});
   c["measurements that would break the tie"] =
-      is_tie ? plan_for_tie(evidence, findings, options, space, samples) : Json::array();
+      is_tie ? plan_for_tie(evidence, findings, options, samples) : Json::array();
   c["remainder"] = findings.verdict == Verdict::off_catalogue
                        ? describe_remainder(evidence, findings)
                        : Json::object();

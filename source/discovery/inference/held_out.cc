@@ -42,21 +42,21 @@ std::string sentence(const double p_before, const double p_after, const double l
 } // namespace
 
 HeldOut::HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
-                 const FactorSpace &space, Samples &samples)
-    : options(options), rule(rule), data(data), space(space), samples(samples),
+                 Samples &samples)
+    : options(options), rule(rule), data(data), samples(samples),
       experiments(experiments_of(data.held_out))
 {
 }
 
 std::uint64_t HeldOut::n_runs() const
 {
-  return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
+  return runs_to_test(most_tested, options.validate_runs, experiments, samples);
 }
 
 HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &wanted,
                                const unsigned int runs)
 {
-  run_near(fit, wanted, runs, space, experiments, samples);
+  run_near(fit, wanted, runs, experiments, samples);
   std::vector<Model> models;
   std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(models), [&](const Model &model) {
     return std::all_of(model.effects.begin(), model.effects.end(),
@@ -106,8 +106,8 @@ void HeldOut::add(const std::vector<Model> &wanted, const std::size_t most,
                   std::vector<Model> &models) const
 {
   const auto runs_of = [&](const std::size_t n_effects) {
-    return runs_to_test(static_cast<unsigned int>(n_effects), options.validate_runs, space,
-                        experiments, samples);
+    return runs_to_test(static_cast<unsigned int>(n_effects), options.validate_runs, experiments,
+                        samples);
   };
   const std::size_t before = models.size();
   // Those of the base model are made once for all.
@@ -139,7 +139,7 @@ Json HeldOut::describe_test(const Test &test, const Findings &by_fit,
     Json members = Json::array();
     for (std::size_t m = 0; m < tested.models.size(); ++m)
       if (is_among(tested.models[m], by_fit.answer))
-        members.push_back({{"effects", name_of(tested.models[m], space)},
+        members.push_back({{"effects", name_of(tested.models[m], samples.space())},
                            {"p", tested.p[m]},
                            {"result", sentence(tested.p_nothing, tested.p[m], rule.refuted)}});
     table["members of the tie"] = members;
@@ -164,7 +164,7 @@ Json HeldOut::describe_test(const Test &test, const Findings &by_fit,
   add("nothing", tested.p_nothing, base);
   for (std::size_t m = 0; m < tested.models.size(); ++m)
     if (m != leader)
-      add(name_of(tested.models[m], space), tested.p[m], first + m);
+      add(name_of(tested.models[m], samples.space()), tested.p[m], first + m);
   table["could have refuted"] = refutable;
   return table;
 }

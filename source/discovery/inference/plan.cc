@@ -199,22 +199,20 @@ std::vector<DesignPoint> base_near(const unsigned int runs, const FactorSpace &s
 } // namespace
 
 std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
-                           const FactorSpace &space, const std::vector<std::string> &experiments,
-                           const Samples &samples)
+                           const std::vector<std::string> &experiments, const Samples &samples)
 {
   std::uint64_t result = experiments.size() * models * most_runs_near(runs);
-  for (const DesignPoint &point : base_near(runs, space))
+  for (const DesignPoint &point : base_near(runs, samples.space()))
     for (const std::string &experiment : experiments)
       result += samples.n_missing(point, experiment);
   return result;
 }
 
 void run_near(const Evidence &evidence, const std::vector<Model> &models, const unsigned int runs,
-              const FactorSpace &space, const std::vector<std::string> &experiments,
-              Samples &samples)
+              const std::vector<std::string> &experiments, Samples &samples)
 {
   const unsigned int few = std::max(1u, runs / 2);
-  std::vector<DesignPoint> points = base_near(runs, space);
+  std::vector<DesignPoint> points = base_near(runs, samples.space());
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
       const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
@@ -222,7 +220,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
         const double amplitude = posterior.quantile(share);
         if (samples.has_near(k, amplitude, most_runs_near(runs), experiments))
           continue;
-        points.push_back({space.origin(), few});
+        points.push_back({samples.space().origin(), few});
         points.back().position(static_cast<Eigen::Index>(k)) = amplitude;
       }
     }
@@ -230,7 +228,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
 }
 
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
-                  const FactorSpace &space, Samples &samples)
+                  Samples &samples)
 {
   constexpr std::size_t most_models = 4;
   constexpr unsigned int draws = 100, repeats = 4;
@@ -253,7 +251,7 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   for (Json &row : rows)
     row["again"] = true;
   if (!options.further_experiments.empty())
-    run_near(evidence, models, options.validate_runs, space, options.further_experiments, samples);
+    run_near(evidence, models, options.validate_runs, options.further_experiments, samples);
   // What else could be measured: further experiments, and more in those that were made.
   std::vector<std::string> experiments = options.further_experiments, made;
   std::set<DataPoint> known;

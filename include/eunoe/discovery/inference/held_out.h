@@ -16,7 +16,7 @@ class HeldOut
 {
 public:
   HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
-          const FactorSpace &space, Samples &samples);
+          Samples &samples);
 
   /// Largest number of runs of a test that is not in doubt.
   std::uint64_t n_runs() const;
@@ -52,7 +52,6 @@ private:
   const StudyOptions &options;
   const DecisionRule &rule;
   const MeasuredData &data;
-  const FactorSpace &space;
   Samples &samples;
   const std::vector<std::string> experiments;
 };
