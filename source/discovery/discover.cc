@@ -135,7 +135,7 @@ Json describe_fit(const Round &round, const StudyOptions &options)
 {
   const Evidence &evidence = round.evidence;
   const Findings &findings = round.findings;
-  const auto fitted = [&](const std::map<std::size_t, double> &effects) {
+  const auto fitted = [&](const EffectPositions &effects) {
     const Eigen::VectorXd best = nuisances_given(evidence, effects).mean;
     return std::pair(fit_to(round.target, effects, best), best);
   };

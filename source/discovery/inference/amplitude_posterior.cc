@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 namespace eunoe::discovery {
 
@@ -82,7 +83,7 @@ AmplitudeDensity::AmplitudeDensity(const Evidence &evidence, const Model &model,
 {
 }
 
-double AmplitudeDensity::log(const std::map<std::size_t, double> &effects,
+double AmplitudeDensity::log(const EffectPositions &effects,
                              const Target::Prediction &prediction) const
 {
   double result = evidence.log_likelihoods_about(at_best, prediction.mean, data)(0);
@@ -112,8 +113,8 @@ std::vector<Member> members(const Evidence &evidence, const Model &model,
     result.clear();
     for (const double x : a.shifts)
       for (const double y : b.shifts) {
-        const std::map<std::size_t, double> effects = {{a.effect, a.best * std::exp(x)},
-                                                       {b.effect, b.best * std::exp(y)}};
+        const EffectPositions effects = {{a.effect, a.best * std::exp(x)},
+                                         {b.effect, b.best * std::exp(y)}};
         result.push_back({effects, evidence.target().predict(effects), 0.});
       }
     set_probabilities(density, result);

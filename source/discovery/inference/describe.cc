@@ -213,7 +213,7 @@ Json describe_fingerprints(const Evidence &evidence)
           {"similarity", {{"effects", names}, {"cosines", cosines}}}};
 }
 
-Fitted fit_to(const Target &target, const std::map<std::size_t, double> &effects,
+Fitted fit_to(const Target &target, const EffectPositions &effects,
               const Eigen::VectorXd &nuisances)
 {
   const Target::Prediction prediction = target.predict(effects);

@@ -198,7 +198,7 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
   for (const Model &model : answer)
     for (const auto &[k, best] : model.best)
       for (const Evidence::Place &place : evidence.places(k)) {
-        std::map<std::size_t, double> effects = model.best;
+        EffectPositions effects = model.best;
         effects[k] = place.amplitude;
         const Target::Prediction prediction = target.predict(effects);
         list.push_back({k, place.amplitude, unknown(target, prediction)});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace eunoe::discovery {
 
@@ -182,8 +183,7 @@ void ExperimentEmulator::share_base(BaseInformation all)
     processes[k].set_base(all - parts[k]);
 }
 
-ExperimentEmulator::Prediction ExperimentEmulator::predict(
-    const std::map<std::size_t, double> &effects) const
+ExperimentEmulator::Prediction ExperimentEmulator::predict(const EffectPositions &effects) const
 {
   Prediction result{alone, Eigen::VectorXd::Ones(size()), 1.};
   for (const auto &[k, amplitude] : effects) {

@@ -35,8 +35,7 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
   return Tail({of_twins.begin(), of_twins.end()}).p(misfits(data)(0));
 }
 
-NuisancePosterior nuisances_given(const Evidence &evidence,
-                                  const std::map<std::size_t, double> &effects)
+NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPositions &effects)
 {
   const Eigen::VectorXd &data = evidence.target().data();
   const Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));

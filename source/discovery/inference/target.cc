@@ -146,7 +146,7 @@ double Target::degrees_of_freedom() const
   return least;
 }
 
-Target::Prediction Target::predict(const std::map<std::size_t, double> &effects) const
+Target::Prediction Target::predict(const EffectPositions &effects) const
 {
   Prediction result;
   const auto n_parts = static_cast<Eigen::Index>(parts.size());

@@ -3,7 +3,6 @@
 
 #include <eunoe/discovery/inference/evidence.h>
 
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,7 @@ namespace eunoe::discovery {
 /// prior.
 struct Member
 {
-  std::map<std::size_t, double> effects;
+  EffectPositions effects;
   Target::Prediction prediction;
   double probability = 0.;
 };
@@ -27,8 +26,7 @@ public:
   AmplitudeDensity(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
 
   /// Its logarithm up to a constant, where @p prediction is that of these amplitudes.
-  double log(const std::map<std::size_t, double> &effects,
-             const Target::Prediction &prediction) const;
+  double log(const EffectPositions &effects, const Target::Prediction &prediction) const;
 
 private:
   const Evidence &evidence;

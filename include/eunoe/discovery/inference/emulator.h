@@ -7,7 +7,6 @@
 #include <eunoe/discovery/statistics/modes.h>
 
 #include <functional>
-#include <map>
 #include <vector>
 
 namespace eunoe::discovery {
@@ -42,7 +41,7 @@ public:
   /// Whether there are runs of an effect.
   bool knows(std::size_t effect) const { return processes[effect].n_points() > 0; }
   /// Prediction of a set of effects at their positions.
-  Prediction predict(const std::map<std::size_t, double> &effects) const;
+  Prediction predict(const EffectPositions &effects) const;
   /// Variance of each data point of a run over that of the base model, for one of whitened modes.
   Eigen::VectorXd growth(const Eigen::VectorXd &scatter) const;
 

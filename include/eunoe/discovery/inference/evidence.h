@@ -3,7 +3,6 @@
 
 #include <eunoe/discovery/inference/likelihood.h>
 
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -28,7 +27,7 @@ struct Model
   std::vector<std::size_t> effects;
   bool is_discrepancy = false;
   double log_prior = 0., log_evidence = 0., probability = 0.;
-  std::map<std::size_t, double> best; ///< likeliest amplitudes
+  EffectPositions best; ///< likeliest amplitudes
 };
 
 /// Whether one of the models has the same effects.

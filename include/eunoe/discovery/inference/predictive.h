@@ -14,14 +14,13 @@ struct NuisancePosterior
   Eigen::VectorXd mean;
   Eigen::MatrixXd root;
 };
-NuisancePosterior nuisances_given(const Evidence &evidence,
-                                  const std::map<std::size_t, double> &effects);
+NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPositions &effects);
 
 /// A model with amplitudes and nuisances as the data of the fit leave them uncertain: a draw from
 /// the posterior.
 struct PosteriorDraw
 {
-  std::map<std::size_t, double> effects;
+  EffectPositions effects;
   NuisancePosterior given; ///< these effects
   Eigen::VectorXd nuisances;
 };

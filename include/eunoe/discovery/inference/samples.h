@@ -42,6 +42,9 @@ private:
   std::size_t effects; ///< their number
 };
 
+/// Positions of effects by their number; all others are at their null value.
+using EffectPositions = std::map<std::size_t, double>;
+
 /// A simulation; without values if it did not reach its end.
 struct Sample
 {

@@ -50,7 +50,7 @@ public:
     Eigen::VectorXd scatter;  ///< variance of each coordinate of a run
     Eigen::VectorXd common;   ///< variance of a run as a whole, for each experiment
   };
-  Prediction predict(const std::map<std::size_t, double> &effects) const;
+  Prediction predict(const EffectPositions &effects) const;
 
   /// The instrument's noise is known by its posterior: levels of equal probability stand for it.
   static constexpr std::size_t n_noise_levels = 5;
