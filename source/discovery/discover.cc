@@ -20,8 +20,8 @@ namespace {
 struct Round
 {
   Round(const std::vector<MeasuredExperiment> &measured, const Samples &samples,
-        const FactorSpace &space, const StudyOptions &options, const DecisionRule &rule)
-      : target(measured, samples, space, options.model_tolerance), evidence(target, space),
+        const StudyOptions &options, const DecisionRule &rule)
+      : target(measured, samples, options.model_tolerance), evidence(target, samples.space()),
         options(options)
   {
     look(rule);
@@ -83,8 +83,7 @@ Json describe_remainder(const Evidence &evidence, const Findings &findings)
   for (std::size_t k = 0; k < evidence.space().n_effects(); ++k) {
     double largest = 0.;
     for (const Evidence::Place &place : evidence.places(k)) {
-      const Eigen::VectorXd change =
-          place.hypothesis.prediction.mean - evidence.nothing().prediction.mean;
+      const Eigen::VectorXd change = evidence.change(place.hypothesis.prediction);
       largest = std::max(largest, change.dot(deviation) /
                                       std::max(change.norm() * deviation.norm(), 1e-300));
     }
@@ -136,9 +135,8 @@ Json describe_fit(const Round &round, const StudyOptions &options, const Json &v
 {
   const Evidence &evidence = round.evidence;
   const Findings &findings = round.findings;
-  const auto fitted = [&](const std::map<std::size_t, double> &effects) {
-    const Eigen::VectorXd best =
-        best_nuisances(evidence, evidence.prepare(round.target.predict(effects)));
+  const auto fitted = [&](const EffectPositions &effects) {
+    const Eigen::VectorXd best = nuisances_given(evidence, effects).mean;
     return std::pair(fit_to(round.target, effects, best), best);
   };
   const auto [base, base_nuisances] = fitted({});
@@ -166,7 +164,7 @@ public:
         Simulator &simulator, Log &log)
       : options(options), data(data), space(factors), log(log), fit(experiments_of(data.fit)),
         samples(options, space, simulator, all_experiments()),
-        held_out(options, rule, data, space, samples), design(options, space, samples, fit)
+        held_out(options, rule, data, samples), design(options, space, samples, fit)
   {
     if (samples.n_known() > 0)
       log.line("  " + std::to_string(samples.n_known()) + " runs are in the table already");
@@ -214,8 +212,8 @@ std::uint64_t Study::keep_for_tests()
 {
   constexpr unsigned int most_members = 4;
   const std::uint64_t wanted =
-      held_out.n_runs() + runs_to_test(most_members, options.validate_runs, space,
-                                       options.further_experiments, samples);
+      held_out.n_runs() +
+      runs_to_test(most_members, options.validate_runs, options.further_experiments, samples);
   const std::uint64_t kept = std::min(wanted, samples.remaining() / 2);
   samples.set_aside(kept);
   return kept;
@@ -226,14 +224,13 @@ void Study::run()
 {
   design.run_base();
   const std::uint64_t kept = keep_for_tests();
-  const auto measured = sort_by_experiment(data.fit, samples, samples.simulator(), notes);
-  if (measured.empty())
-    throw UserError("No measured data point varies in the runs of the base model, so nothing can "
-                    "be compared: give standard deviations, or data points that vary.");
-  design.run_effects([&] { return Target(measured, samples, space, options.model_tolerance); });
+  if (data.fit.empty())
+    throw UserError("Nothing that was measured is to be fitted, so nothing can be compared.");
+  const auto measured = sort_by_experiment(data.fit, samples);
+  design.run_effects([&] { return Target(measured, samples, options.model_tolerance); });
   bool settled = false;
   while (true) {
-    round = std::make_unique<Round>(measured, samples, space, options, rule.quick());
+    round = std::make_unique<Round>(measured, samples, options, rule.quick());
     const Findings &findings = round->findings;
     curve.add(findings, space, n_runs());
     const Json &last = curve.rows().back();
@@ -320,7 +317,7 @@ Json Study::describe(const Json &power, const Json &of_fit)
     c["tie"].push_back(
         {{"effects", "none of the catalogue"}, {"probability", findings.off_catalogue}});
   c["measurements that would break the tie"] =
-      is_tie ? plan_for_tie(evidence, findings, options, space, samples) : Json::array();
+      is_tie ? plan_for_tie(evidence, findings, options, samples) : Json::array();
   c["remainder"] = findings.verdict == Verdict::off_catalogue
                        ? describe_remainder(evidence, findings)
                        : Json::object();

@@ -37,10 +37,8 @@ struct Laboratory
 
   Target target(const Amplitudes &truth, std::uint32_t seed, const double tolerance = 0.)
   {
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(simulator.measure(both, {}, truth, 4, 0.3, seed).fit, samples,
-                                     simulator, notes),
-                  samples, space, tolerance);
+    return Target(sort_by_experiment(simulator.measure(both, {}, truth, 4, 0.3, seed).fit, samples),
+                  samples, tolerance);
   }
 
   SyntheticSimulator simulator;
@@ -131,7 +129,7 @@ void levels(Laboratory &lab)
     alarms +=
         null.p(evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction))(0)) < 0.1;
     Target::Prediction truth = evidence.nothing().prediction;
-    truth.mean += truth.gradient * draws.nuisances[static_cast<std::size_t>(k)];
+    truth.mean += truth.gradient * draws[static_cast<std::size_t>(k)].nuisances;
     truth.gradient.resize(truth.mean.size(), 0);
     refuted += predictive.p(twins.draw(truth)) < 0.1;
   }
@@ -204,9 +202,7 @@ void unequal_repeats(Laboratory &lab)
         points.back().repeats = is_seldom ? 1 : often;
       }
     }
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(points, lab.samples, lab.simulator, notes), lab.samples,
-                  lab.space, 0.);
+    return Target(sort_by_experiment(points, lab.samples), lab.samples, 0.);
   };
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(measure(0).data().size());
   for (unsigned int k = 0; k < number; ++k) {
@@ -250,12 +246,13 @@ void contests(Laboratory &lab)
   const Contest contest({right, wrong});
   constexpr double level = 0.05;
   unsigned int truths = 0, alone = 0, against_right = 0;
-  for (const Predictive::Conditional &draw : fresh.draws()) {
-    truths += contest.p(0, draw.twin) < level;
-    alone += wrong.p(draw.twin) < level;
-    against_right += contest.p(1, draw.twin) < level;
+  for (Eigen::Index k = 0; k < fresh.twins().cols(); ++k) {
+    const Eigen::VectorXd twin = fresh.twins().col(k);
+    truths += contest.p(0, twin) < level;
+    alone += wrong.p(twin) < level;
+    against_right += contest.p(1, twin) < level;
   }
-  const auto number = static_cast<double>(fresh.draws().size());
+  const auto number = static_cast<double>(fresh.twins().cols());
   const double error = 4. * std::sqrt(level * (1. - level) / number);
   check("a contest keeps its level", truths / number < level + error, std::to_string(truths));
   check("a contest refutes more wrong models",
@@ -320,10 +317,8 @@ void without_runs()
   Design design(options, space, samples, both);
   design.run_base();
   const auto evaluate = [&] {
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(simulator.measure(both, {}, {}, 4, 0.3, 3).fit, samples,
-                                     simulator, notes),
-                  samples, space, 0.);
+    return Target(sort_by_experiment(simulator.measure(both, {}, {}, 4, 0.3, 3).fit, samples),
+                  samples, 0.);
   };
   {
     const Target target = evaluate();
@@ -375,9 +370,7 @@ void constant_observable()
     for (MeasuredPoint &point : data)
       if (point.point.observable == still.constant && k % 2 == 0)
         point.repeats = 1;
-    std::vector<std::string> notes;
-    const Target target(sort_by_experiment(data, lab.samples, lab.simulator, notes), lab.samples,
-                        lab.space, 0.);
+    const Target target(sort_by_experiment(data, lab.samples), lab.samples, 0.);
     const Evidence evidence(target, lab.space);
     alarms +=
         null_distribution(evidence, 100, 1).p(evidence.log_bayes_factors(target.data())(0)) < 0.05;
@@ -547,11 +540,9 @@ void unpopular_amplitude()
   lab.samples.run(many, both);
   const Target target = lab.target({{"c", amplitude}}, 3);
   const Evidence evidence(target, lab.space);
-  Model model;
-  model.effects = {c};
   const Eigen::VectorXd data = target.predict({{c, truth}}).mean;
-  model.best[c] = evidence.best_amplitude(c, data);
-  const double median = AmplitudePosterior(evidence, model, data, c).quantile(0.5);
+  const double median =
+      AmplitudePosterior(evidence, evidence.single(c, data), data, c).quantile(0.5);
   check("an amplitude near which little was run is not disfavoured",
         std::abs(median / truth - 1.) < 0.03, std::to_string(median / truth));
 }
@@ -564,13 +555,10 @@ void intervals(Laboratory &lab)
   constexpr double inside = 0.95;
   const Target target = lab.target({}, 3);
   const Evidence evidence(target, lab.space);
-  Model model;
-  model.effects = {b};
   const auto &places = evidence.places(b);
   const auto of_data_from = [&](const std::size_t place) {
     const Eigen::VectorXd data = places[place].hypothesis.prediction.mean;
-    model.best[b] = evidence.best_amplitude(b, data);
-    return AmplitudePosterior(evidence, model, data, b);
+    return AmplitudePosterior(evidence, evidence.single(b, data), data, b);
   };
   const double end = places.back().amplitude;
   const AmplitudePosterior at_end = of_data_from(places.size() - 1);
@@ -607,10 +595,7 @@ void sharpened()
   const auto sharpen = [&] {
     const Target target = lab.target(truth, 3);
     const Evidence evidence(target, lab.space);
-    Model model;
-    model.effects = {c};
-    model.best = {{c, evidence.best_amplitude(c, target.data())}};
-    return lab.design.sharpen(evidence, {model});
+    return lab.design.sharpen(evidence, {evidence.single(c, target.data())});
   };
   while (sharpen())
     continue;

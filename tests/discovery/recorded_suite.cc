@@ -161,9 +161,7 @@ public:
 
   Target target(const MeasuredData &data)
   {
-    std::vector<std::string> notes;
-    return Target(sort_by_experiment(data.fit, samples, samples.simulator(), notes), samples, space,
-                  options.model_tolerance);
+    return Target(sort_by_experiment(data.fit, samples), samples, options.model_tolerance);
   }
 
   DrawnCase drawn;

@@ -15,7 +15,7 @@ struct MeasuredPoint
 {
   DataPoint point;
   double value = 0.;              ///< mean of the repeats
-  double standard_deviation = 0.; ///< of a single repeat, instrument and process together
+  double standard_deviation = 0.; ///< of a single repeat, instrument and process together; > 0
   unsigned int repeats = 1;
 };
 

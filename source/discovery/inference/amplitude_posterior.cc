@@ -2,90 +2,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 namespace eunoe::discovery {
 
 namespace {
 
-/// A grid of two effects' amplitudes: logarithms of their ratios to the best ones, which have the
-/// same signs.
-class Grid
+/// Amplitudes of one of two effects, as logarithms of their ratios to the best one, which has the
+/// same sign.
+class Axis
 {
 public:
-  Grid(const Evidence &evidence, const Model &model, const AmplitudeDensity &density)
-      : evidence(evidence), density(density), best(model.best)
+  Axis(const std::vector<Evidence::Place> &places, const std::size_t effect, const double best)
+      : effect(effect), best(best)
   {
     constexpr double around = 1.2;
-    for (const auto &[k, amplitude] : best) {
-      auto &[low, high] = ranges[k];
-      for (const Evidence::Place &place : evidence.places(k))
-        if (place.amplitude / amplitude > 0.) {
-          low = std::min(low, std::log(place.amplitude / amplitude));
-          high = std::max(high, std::log(place.amplitude / amplitude));
-        }
-      axes[k] = points(std::max(low, -around), std::min(high, around));
-    }
-  }
-
-  std::vector<Member> evaluate() const
-  {
-    std::vector<Member> result;
-    const auto &[first, rows] = *axes.begin();
-    const auto &[second, columns] = *axes.rbegin();
-    for (const double x : rows)
-      for (const double y : columns) {
-        Member member;
-        member.effects = {{first, best.at(first) * std::exp(x)},
-                          {second, best.at(second) * std::exp(y)}};
-        member.prediction = evidence.target().predict(member.effects);
-        member.log_weight = density.log(member.effects, member.prediction);
-        result.push_back(std::move(member));
+    for (const Evidence::Place &place : places)
+      if (const double ratio = place.amplitude / best; ratio > 0.) {
+        lowest = std::min(lowest, std::log(ratio));
+        highest = std::max(highest, std::log(ratio));
       }
-    return result;
+    span(std::max(lowest, -around), std::min(highest, around));
   }
 
-  /// Fits the grid to the members that matter, with a cell around them, or with more where they lie
+  /// Fits the axis to the members that matter, with a cell around them, or with more where they lie
   /// at its end.
   /// @return whether it changed clearly
   bool fit(const std::vector<Member> &members)
   {
     constexpr double matters = 1e-4, growth = 0.5, clearly = 0.7;
-    const std::vector<double> probabilities = weights(members);
-    bool changed = false;
-    for (auto &[k, axis] : axes) {
-      double low = 1e300, high = -1e300;
-      for (std::size_t i = 0; i < members.size(); ++i)
-        if (probabilities[i] > matters) {
-          const double shift = std::log(members[i].effects.at(k) / best.at(k));
-          low = std::min(low, shift);
-          high = std::max(high, shift);
-        }
-      const double first = axis(0), last = axis(axis.size() - 1), cell = axis(1) - first;
-      const auto margin = [&](const double to_end) {
-        return to_end < 0.5 * cell ? growth * (last - first) : cell;
-      };
-      low = std::max(low - margin(low - first), ranges.at(k).first);
-      high = std::min(high + margin(last - high), ranges.at(k).second);
-      changed |= high - low < clearly * (last - first) || low < first - 0.5 * cell ||
-                 high > last + 0.5 * cell;
-      axis = points(low, high);
-    }
-    return changed;
+    double low = 1e300, high = -1e300;
+    for (const Member &member : members)
+      if (member.probability > matters) {
+        const double shift = std::log(member.effects.at(effect) / best);
+        low = std::min(low, shift);
+        high = std::max(high, shift);
+      }
+    const double first = shifts(0), last = shifts(shifts.size() - 1), cell = shifts(1) - first;
+    const auto margin = [&](const double to_end) {
+      return to_end < 0.5 * cell ? growth * (last - first) : cell;
+    };
+    low = std::max(low - margin(low - first), lowest);
+    high = std::min(high + margin(last - high), highest);
+    span(low, high);
+    return high - low < clearly * (last - first) || low < first - 0.5 * cell ||
+           high > last + 0.5 * cell;
   }
+
+  const std::size_t effect;
+  const double best;
+  Eigen::VectorXd shifts;
 
 private:
-  static Eigen::VectorXd points(const double low, const double high)
+  void span(const double low, const double high)
   {
     constexpr int number = 21;
-    return Eigen::VectorXd::LinSpaced(number, low, high);
+    shifts = Eigen::VectorXd::LinSpaced(number, low, high);
   }
 
-  const Evidence &evidence;
-  const AmplitudeDensity &density;
-  const std::map<std::size_t, double> best;
-  std::map<std::size_t, std::pair<double, double>> ranges;
-  std::map<std::size_t, Eigen::VectorXd> axes;
+  double lowest = 0., highest = 0.; ///< of the effect's range
 };
+
+void set_probabilities(const AmplitudeDensity &density, std::vector<Member> &members)
+{
+  std::vector<double> logs;
+  for (const Member &member : members)
+    logs.push_back(density.log(member.effects, member.prediction));
+  const std::vector<double> shares = shares_of(std::move(logs));
+  for (std::size_t i = 0; i < members.size(); ++i)
+    members[i].probability = shares[i];
+}
 
 } // namespace
 
@@ -96,7 +83,7 @@ AmplitudeDensity::AmplitudeDensity(const Evidence &evidence, const Model &model,
 {
 }
 
-double AmplitudeDensity::log(const std::map<std::size_t, double> &effects,
+double AmplitudeDensity::log(const EffectPositions &effects,
                              const Target::Prediction &prediction) const
 {
   double result = evidence.log_likelihoods_about(at_best, prediction.mean, data)(0);
@@ -112,92 +99,81 @@ std::vector<Member> members(const Evidence &evidence, const Model &model,
   std::vector<Member> result;
   if (model.effects.size() == 1) {
     const std::size_t k = model.effects.front();
-    for (const Evidence::Place &place : evidence.places(k)) {
-      const std::map<std::size_t, double> effects = {{k, place.amplitude}};
-      const Target::Prediction &prediction = place.hypothesis.prediction;
-      result.push_back({effects, prediction, density.log(effects, prediction)});
-    }
+    for (const Evidence::Place &place : evidence.places(k))
+      result.push_back({{{k, place.amplitude}}, place.hypothesis.prediction, 0.});
+    set_probabilities(density, result);
     return result;
   }
+  std::vector<Axis> axes;
+  for (const auto &[k, amplitude] : model.best)
+    axes.emplace_back(evidence.places(k), k, amplitude);
+  const Axis &a = axes[0], &b = axes[1];
   constexpr int most_rounds = 8;
-  Grid grid(evidence, model, density);
-  result = grid.evaluate();
-  for (int i = 0; i < most_rounds && grid.fit(result); ++i)
-    result = grid.evaluate();
-  return result;
-}
-
-std::vector<double> weights(const std::vector<Member> &members)
-{
-  std::vector<double> result;
-  for (const Member &member : members)
-    result.push_back(member.log_weight);
-  const double total = result.empty() ? 0. : log_sum(result);
-  for (double &weight : result)
-    weight = std::exp(weight - total);
+  for (int i = 0; i <= most_rounds; ++i) {
+    result.clear();
+    for (const double x : a.shifts)
+      for (const double y : b.shifts) {
+        const EffectPositions effects = {{a.effect, a.best * std::exp(x)},
+                                         {b.effect, b.best * std::exp(y)}};
+        result.push_back({effects, evidence.target().predict(effects), 0.});
+      }
+    set_probabilities(density, result);
+    bool changed = false;
+    for (Axis &axis : axes)
+      changed |= axis.fit(result);
+    if (!changed)
+      break;
+  }
   return result;
 }
 
 AmplitudePosterior::AmplitudePosterior(const Evidence &evidence, const Model &model,
                                        const Eigen::VectorXd &data, const std::size_t effect)
 {
-  const std::vector<Member> all = members(evidence, model, data);
-  const std::vector<double> probabilities = discovery::weights(all);
   std::map<double, double> marginal;
-  for (std::size_t i = 0; i < all.size(); ++i)
-    marginal[all[i].effects.at(effect)] += probabilities[i];
-  sorted.assign(marginal.begin(), marginal.end());
-  for (const auto &[amplitude, probability] : sorted)
-    log_likelihood.push_back(std::log(std::max(probability, 1e-300)) -
-                             evidence.place_near(effect, amplitude).log_reference);
-}
-
-std::pair<double, double> AmplitudePosterior::cell(const std::size_t place) const
-{
-  const double here = sorted[place].first;
-  return {place == 0 ? here : 0.5 * (sorted[place - 1].first + here),
-          place + 1 == sorted.size() ? here : 0.5 * (here + sorted[place + 1].first)};
-}
-
-std::vector<AmplitudePosterior::Slice> AmplitudePosterior::slices() const
-{
+  for (const Member &member : members(evidence, model, data))
+    marginal[member.effects.at(effect)] += member.probability;
+  for (const auto &[amplitude, probability] : marginal)
+    sorted.push_back({amplitude, probability,
+                      std::log(std::max(probability, 1e-300)) -
+                          evidence.place_near(effect, amplitude).log_reference});
   constexpr int in_cell = 8;
-  std::vector<Slice> result;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const auto [low, high] = cell(i);
+    const double here = sorted[i].amplitude;
+    const double low = i == 0 ? here : 0.5 * (sorted[i - 1].amplitude + here);
+    const double high = i + 1 == sorted.size() ? here : 0.5 * (here + sorted[i + 1].amplitude);
     for (int k = 0; k < in_cell; ++k) {
       const double width = (high - low) / in_cell, start = low + k * width;
-      result.push_back({start, start + width, sorted[i].second / in_cell,
+      slices.push_back({start, start + width, sorted[i].probability / in_cell,
                         log_likelihood_at(start + 0.5 * width)});
     }
   }
-  return result;
 }
 
 double AmplitudePosterior::log_likelihood_at(const double amplitude) const
 {
-  const auto above = std::lower_bound(
-      sorted.begin(), sorted.end(), amplitude,
-      [](const std::pair<double, double> &place, double value) { return place.first < value; });
+  const auto above =
+      std::lower_bound(sorted.begin(), sorted.end(), amplitude,
+                       [](const Place &place, const double u) { return place.amplitude < u; });
   if (above == sorted.begin() || above == sorted.end())
-    return above == sorted.begin() ? log_likelihood.front() : log_likelihood.back();
-  const auto i = static_cast<std::size_t>(above - sorted.begin());
-  const double share = (amplitude - sorted[i - 1].first) / (above->first - sorted[i - 1].first);
-  return (1. - share) * log_likelihood[i - 1] + share * log_likelihood[i];
+    return above == sorted.begin() ? above->log_likelihood : sorted.back().log_likelihood;
+  const Place &below = *std::prev(above);
+  const double share = (amplitude - below.amplitude) / (above->amplitude - below.amplitude);
+  return (1. - share) * below.log_likelihood + share * above->log_likelihood;
 }
 
 double AmplitudePosterior::likelier_than(const double amplitude) const
 {
   const double here = log_likelihood_at(amplitude);
   double result = 0.;
-  for (const Slice &slice : slices())
+  for (const Slice &slice : slices)
     result += slice.log_likelihood > here ? slice.probability : 0.;
   return result;
 }
 
 std::pair<double, double> AmplitudePosterior::likeliest(const double probability) const
 {
-  std::vector<Slice> all = slices();
+  std::vector<Slice> all = slices;
   std::sort(all.begin(), all.end(),
             [](const Slice &a, const Slice &b) { return a.log_likelihood > b.log_likelihood; });
   double low = all.front().low, high = all.front().high, sum = 0.;
@@ -214,15 +190,13 @@ std::pair<double, double> AmplitudePosterior::likeliest(const double probability
 double AmplitudePosterior::quantile(const double share) const
 {
   double sum = 0.;
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const double next = sum + sorted[i].second;
-    if (next >= share) {
-      const auto [low, high] = cell(i);
-      return low + (high - low) * (share - sum) / std::max(sorted[i].second, 1e-300);
-    }
-    sum = next;
+  for (const Slice &slice : slices) {
+    if (sum + slice.probability >= share)
+      return slice.low +
+             (slice.high - slice.low) * (share - sum) / std::max(slice.probability, 1e-300);
+    sum += slice.probability;
   }
-  return sorted.back().first;
+  return sorted.back().amplitude;
 }
 
 } // namespace eunoe::discovery

@@ -56,9 +56,7 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     if (factors(i) < threshold)
       continue;
     const std::size_t truth = truths[static_cast<std::size_t>(i)], effect = usable[truth];
-    Model alone;
-    alone.effects = {effect};
-    alone.best[effect] = evidence.best_amplitude(effect, data.col(i));
+    const Model alone = evidence.single(effect, data.col(i));
     Eigen::Index first = 0;
     result.stated += std::exp(posterior.col(i).maxCoeff(&first) - all(i));
     result.right += first == static_cast<Eigen::Index>(truth) ? 1. : 0.;

@@ -7,25 +7,16 @@ namespace eunoe::discovery {
 
 namespace {
 
-bool is_part(const Model &part, const Model &whole)
-{
-  return std::includes(whole.effects.begin(), whole.effects.end(), part.effects.begin(),
-                       part.effects.end());
-}
-
-/// Log of prior and evidence that an effect could have, all its amplitudes together.
-double log_hope(const Evidence &evidence, const std::size_t effect)
+/// Log of prior and evidence that a model of one or two effects could have, for a single effect all
+/// its amplitudes together.
+double log_hope(const Evidence &evidence, const Model &model)
 {
   // Standard deviations by which a likelihood may turn out larger than expected.
   constexpr double by_chance = 1.5;
-  return log_sum(evidence.optimistic(effect, evidence.target().data(), by_chance));
-}
-
-/// The same of a model of one or two effects.
-double log_hope(const Evidence &evidence, const Model &model)
-{
-  return model.effects.size() == 1 ? log_hope(evidence, model.effects.front())
-                                   : evidence.optimistic_pair(model, evidence.target().data());
+  const Eigen::VectorXd &data = evidence.target().data();
+  return model.effects.size() == 1
+             ? log_sum(evidence.optimistic(model.effects.front(), data, by_chance))
+             : evidence.optimistic_pair(model, data);
 }
 
 } // namespace
@@ -59,9 +50,9 @@ bool has_challenger(const Evidence &evidence, const Findings &findings)
 bool could_be_detected(const Evidence &evidence, const Findings &findings)
 {
   const double needed = findings.threshold + evidence.log_nothing(evidence.target().data())(0);
-  const std::vector<std::size_t> effects = evidence.usable();
-  return std::any_of(effects.begin(), effects.end(),
-                     [&](const std::size_t k) { return log_hope(evidence, k) > needed; });
+  return std::any_of(findings.models.begin(), findings.models.end(), [&](const Model &model) {
+    return model.effects.size() == 1 && log_hope(evidence, model) > needed;
+  });
 }
 
 } // namespace eunoe::discovery

@@ -6,53 +6,7 @@
 
 namespace eunoe::discovery {
 
-std::string name_of(const Verdict verdict)
-{
-  switch (verdict) {
-  case Verdict::none:
-    return "none";
-  case Verdict::named:
-    return "named";
-  case Verdict::tie:
-    return "tie";
-  case Verdict::off_catalogue:
-    return "off catalogue";
-  case Verdict::underpowered:
-    break;
-  }
-  return "underpowered";
-}
-
-int exit_code(const Verdict verdict)
-{
-  constexpr int first = 10;
-  return verdict == Verdict::none ? 0 : first + static_cast<int>(verdict) - 1;
-}
-
-double probability_of(const std::vector<Model> &models, const std::size_t effect)
-{
-  double sum = 0.;
-  for (const Model &model : models)
-    if (std::find(model.effects.begin(), model.effects.end(), effect) != model.effects.end())
-      sum += model.probability;
-  return sum;
-}
-
 namespace {
-
-/// Probabilities by the evidence to the power of one over the temperature. Priors stay what they
-/// are: models of two effects are many.
-void temper(std::vector<Model> &models, const double temperature)
-{
-  std::vector<double> logs;
-  for (const Model &model : models)
-    logs.push_back(model.log_prior + model.log_evidence / temperature);
-  const double total = log_sum(logs);
-  for (std::size_t m = 0; m < models.size(); ++m)
-    models[m].probability = std::exp(logs[m] - total);
-  std::stable_sort(models.begin(), models.end(),
-                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
-}
 
 /// "None of the catalogue" gets what effects that look like those of the catalogue give it.
 void allow_for_relatives(const Evidence &evidence, const DecisionRule &rule,
@@ -73,7 +27,36 @@ void allow_for_relatives(const Evidence &evidence, const DecisionRule &rule,
       model.log_evidence = log_evidence;
 }
 
+/// Whether a model is one of the answer with another effect that it hardly needs, as it has not
+/// made it likelier.
+bool is_needless(const Model &model, const std::vector<Model> &answer)
+{
+  return std::any_of(answer.begin(), answer.end(),
+                     [&](const Model &likelier) { return is_part(likelier, model); });
+}
+
 } // namespace
+
+std::string name_of(const Verdict verdict)
+{
+  constexpr const char *names[] = {"none", "named", "tie", "off catalogue", "underpowered"};
+  return names[static_cast<int>(verdict)];
+}
+
+int exit_code(const Verdict verdict)
+{
+  constexpr int first = 10;
+  return verdict == Verdict::none ? 0 : first + static_cast<int>(verdict) - 1;
+}
+
+double probability_of(const std::vector<Model> &models, const std::size_t effect)
+{
+  double sum = 0.;
+  for (const Model &model : models)
+    if (std::find(model.effects.begin(), model.effects.end(), effect) != model.effects.end())
+      sum += model.probability;
+  return sum;
+}
 
 Findings weigh(const Evidence &evidence, const StudyOptions &options, const DecisionRule &rule)
 {
@@ -101,20 +84,6 @@ Verdict verdict_of(const Findings &findings)
     return Verdict::off_catalogue;
   return findings.answer.size() == 1 && !findings.none_of_these ? Verdict::named : Verdict::tie;
 }
-
-namespace {
-
-/// Whether a model is one of the answer with another effect that it hardly needs, as it has not
-/// made it likelier.
-bool is_needless(const Model &model, const std::vector<Model> &answer)
-{
-  return std::any_of(answer.begin(), answer.end(), [&](const Model &likelier) {
-    return std::includes(model.effects.begin(), model.effects.end(), likelier.effects.begin(),
-                         likelier.effects.end());
-  });
-}
-
-} // namespace
 
 void choose(const DecisionRule &rule, Findings &findings)
 {

@@ -20,8 +20,7 @@ double amplitude_of(const Factor &effect, const double position)
 /// Values at the data points of one experiment for a vector of the target's coordinates.
 Eigen::VectorXd values_of(const Target::Part &part, const Eigen::VectorXd &coordinates)
 {
-  return part.emulator.values(part.rotation.transpose() *
-                              coordinates.segment(part.first, part.emulator.size()));
+  return part.emulator.values(part.rotation.transpose() * part.of(coordinates));
 }
 
 Json name_of_point(const DataPoint &point)
@@ -33,18 +32,15 @@ Json name_of_point(const DataPoint &point)
 /// Variance of each data point of a run over that of the base model.
 Eigen::VectorXd growth_of(const Target::Part &part, const Target::Prediction &prediction)
 {
-  return part.emulator.growth(part.rotation.transpose().cwiseAbs2() *
-                              prediction.scatter.segment(part.first, part.emulator.size()));
+  return part.emulator.growth(part.rotation.transpose().cwiseAbs2() * part.of(prediction.scatter));
 }
 
 /// Variance of a measured mean about a prediction at each data point, in base deviations squared.
 Eigen::VectorXd point_variance(const Target::Part &part, const Target::Prediction &prediction)
 {
-  return (part.point_ratio.cwiseMax(growth_of(part, prediction)).array() /
-              part.measured.repeats.array() +
-          prediction.leverage.segment(part.first, part.emulator.size()).mean() +
-          part.tolerance.array().square())
-      .matrix();
+  return part.point_ratio.cwiseMax(growth_of(part, prediction)).array() /
+             part.measured.repeats.array() +
+         part.of(prediction.leverage).mean() + part.tolerance.array().square();
 }
 
 } // namespace
@@ -87,9 +83,9 @@ Json describe_candidates(const Evidence &evidence, const Findings &findings)
                 {"unit", effect.unit},
                 {"source", effect.source}};
     if (!evidence.places(k).empty()) {
-      row["log Bayes factor alone"] =
-          (evidence.log_single(k, data) - evidence.log_nothing(data))(0);
-      row["amplitude alone"] = amplitude_of(effect, evidence.best_amplitude(k, data));
+      const Model alone = evidence.single(k, data);
+      row["log Bayes factor alone"] = alone.log_evidence - evidence.log_nothing(data)(0);
+      row["amplitude alone"] = amplitude_of(effect, alone.best.at(k));
     }
     rows.push_back(row);
   }
@@ -108,9 +104,9 @@ Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
     const auto [low, high] = posterior.likeliest(findings.calibration.interval);
     Json shape = Json::array();
     constexpr double least = 1e-3;
-    for (const auto &[position, weight] : posterior.weights())
-      if (weight > least)
-        shape.push_back({amplitude_of(effect, position), weight});
+    for (const AmplitudePosterior::Place &place : posterior.places())
+      if (place.probability > least)
+        shape.push_back({amplitude_of(effect, place.amplitude), place.probability});
     const double range_low = evidence.space().lower(k), range_high = evidence.space().upper(k);
     rows.push_back({{"effect", effect.name},
                     {"unit", effect.unit},
@@ -179,7 +175,6 @@ Json describe_fingerprints(const Evidence &evidence)
   const FactorSpace &space = evidence.space();
   Json rows = Json::array(), strengths = Json::object(), names = Json::array();
   std::vector<Eigen::VectorXd> changes;
-  const Eigen::VectorXd base = evidence.nothing().prediction.mean;
   for (std::size_t k = 0; k < space.n_effects(); ++k) {
     const auto &places = evidence.places(k);
     if (places.empty())
@@ -187,7 +182,7 @@ Json describe_fingerprints(const Evidence &evidence)
     const Factor &effect = space.effect(k);
     for (const Evidence::Place &place : places)
       strengths[effect.name].push_back({amplitude_of(effect, place.amplitude),
-                                        (place.hypothesis.prediction.mean - base).norm()});
+                                        evidence.change(place.hypothesis.prediction).norm()});
     const Evidence::Place &last = places.back();
     Json change = Json::array(), error = Json::array();
     for (const Target::Part &part : evidence.target().experiments()) {
@@ -196,8 +191,7 @@ Json describe_fingerprints(const Evidence &evidence)
               .cwiseQuotient(part.emulator.base_deviation());
       for (const double value : moved) {
         change.push_back(value);
-        error.push_back(std::sqrt(
-            last.hypothesis.prediction.leverage.segment(part.first, part.emulator.size()).mean()));
+        error.push_back(std::sqrt(part.of(last.hypothesis.prediction.leverage).mean()));
       }
     }
     rows.push_back({{"effect", effect.name},
@@ -205,7 +199,7 @@ Json describe_fingerprints(const Evidence &evidence)
                     {"change", change},
                     {"error", error}});
     names.push_back(effect.name);
-    changes.push_back(last.hypothesis.prediction.mean - base);
+    changes.push_back(evidence.change(last.hypothesis.prediction));
   }
   Json cosines = Json::array();
   for (const Eigen::VectorXd &a : changes) {
@@ -219,7 +213,7 @@ Json describe_fingerprints(const Evidence &evidence)
           {"similarity", {{"effects", names}, {"cosines", cosines}}}};
 }
 
-Fitted fit_to(const Target &target, const std::map<std::size_t, double> &effects,
+Fitted fit_to(const Target &target, const EffectPositions &effects,
               const Eigen::VectorXd &nuisances)
 {
   const Target::Prediction prediction = target.predict(effects);

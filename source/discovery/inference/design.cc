@@ -110,7 +110,7 @@ void Design::run_effects(const std::function<Target()> &estimate)
   }
 }
 
-std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const Findings &findings) const
+bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
   const Target &target = evidence.target();
   const Eigen::VectorXd &data = target.data();
@@ -139,13 +139,14 @@ std::vector<Design::Wish> Design::wishes(const Evidence &evidence, const Finding
   constexpr double temperature = 2.;
   for (double &value : logs)
     value /= temperature;
-  const double total = logs.empty() ? 0. : log_sum(logs);
+  const std::vector<double> shares = shares_of(std::move(logs));
   for (std::size_t i = 0; i < list.size(); ++i)
-    list[i].weight *= std::exp(logs[i] - total);
+    list[i].weight *= shares[i];
   std::stable_sort(list.begin(), list.end(), [](const Wish &a, const Wish &b) {
     return std::pair(a.effect, a.amplitude) < std::pair(b.effect, b.amplitude);
   });
-  return list;
+  // What a table knows already does not make a study's own rounds larger.
+  return run(std::move(list), size_of_round(samples.n_asked()));
 }
 
 std::uint64_t Design::size_of_round(const std::uint64_t n_runs) const
@@ -186,12 +187,6 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
   return samples.n_asked() > before;
 }
 
-bool Design::refine(const Evidence &evidence, const Findings &findings)
-{
-  // What a table knows already does not make a study's own rounds larger.
-  return run(wishes(evidence, findings), size_of_round(samples.n_asked()));
-}
-
 bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
 {
   // The end of an interval depends on what lies beyond it; an error of a fifth of the variance
@@ -203,7 +198,7 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
   for (const Model &model : answer)
     for (const auto &[k, best] : model.best)
       for (const Evidence::Place &place : evidence.places(k)) {
-        std::map<std::size_t, double> effects = model.best;
+        EffectPositions effects = model.best;
         effects[k] = place.amplitude;
         const Target::Prediction prediction = target.predict(effects);
         list.push_back({k, place.amplitude, unknown(target, prediction)});
@@ -211,13 +206,11 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
         logs.push_back(evidence.log_optimistic(evidence.prepare(prediction), target.data()) /
                        temperature);
       }
-  if (list.empty())
-    return false;
-  const double total = log_sum(logs);
+  const std::vector<double> shares = shares_of(std::move(logs));
   double variance = 0.;
   for (std::size_t i = 0; i < list.size(); ++i) {
-    variance += std::exp(logs[i] - total) * list[i].weight * list[i].weight;
-    list[i].weight *= std::exp(logs[i] - total);
+    variance += shares[i] * list[i].weight * list[i].weight;
+    list[i].weight *= shares[i];
   }
   return variance > well_known && run(std::move(list), fewest);
 }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <map>
 
 namespace eunoe::discovery {
 
@@ -26,12 +26,12 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   mean = of_base.colwise().mean().transpose();
   reduction = Modes(points, discovery::deviations(of_base).cwiseMax(least_deviation));
   const std::vector<Group> groups = make_groups(samples, columns);
-  own = estimate_covariance(without_effects(groups));
+  estimate_covariance(groups, [](const Group &group) { return group.effect == -1; });
   // Few runs make a covariance in whose units all others scatter too much.
   constexpr int rounds = 2;
   for (int i = 0; i < rounds; ++i) {
     fit_scatter(groups);
-    own = estimate_covariance(near_base(groups));
+    estimate_covariance(groups, [this](const Group &group) { return is_near_base(group); });
   }
   // The directions in which data are weighed most are those in which the covariance happens to be
   // small: new data scatter more along them (Dodelson and Schneider 2013).
@@ -55,58 +55,38 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
 std::vector<ExperimentEmulator::Group> ExperimentEmulator::make_groups(
     const std::vector<Sample> &samples, const std::vector<Eigen::Index> &columns) const
 {
-  std::vector<const Sample *> sorted;
+  std::map<Eigen::VectorXd, std::vector<const Sample *>, decltype(&less)> sorted(&less);
   for (const Sample &sample : samples)
-    sorted.push_back(&sample);
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const Sample *a, const Sample *b) { return less(a->position, b->position); });
+    sorted[sample.position].push_back(&sample);
   std::vector<Group> groups;
-  for (std::size_t k = 0; k < sorted.size();) {
-    std::size_t end = k;
-    while (end < sorted.size() && sorted[end]->position == sorted[k]->position)
-      ++end;
+  for (const auto &[position, runs] : sorted) {
     Group group;
-    group.position = sorted[k]->position;
-    group.rows.resize(static_cast<Eigen::Index>(end - k), reduction.n_modes());
-    for (std::size_t r = k; r < end; ++r)
-      group.rows.row(static_cast<Eigen::Index>(r - k)) =
-          reduction.reduce(sorted[r]->values(columns) - mean).transpose();
+    group.position = position;
+    group.rows.resize(static_cast<Eigen::Index>(runs.size()), reduction.n_modes());
+    for (std::size_t r = 0; r < runs.size(); ++r)
+      group.rows.row(static_cast<Eigen::Index>(r)) =
+          reduction.reduce(runs[r]->values(columns) - mean).transpose();
     group.mean = group.rows.colwise().mean().transpose();
     for (std::size_t e = 0; e < n_effects; ++e)
-      if (group.position(static_cast<Eigen::Index>(e)) != 0.)
+      if (position(static_cast<Eigen::Index>(e)) != 0.)
         group.effect = group.effect == -1 ? static_cast<int>(e) : -2;
     groups.push_back(std::move(group));
-    k = end;
   }
   return groups;
 }
 
-std::vector<ExperimentEmulator::Group> ExperimentEmulator::without_effects(
-    const std::vector<Group> &groups)
-{
-  std::vector<Group> result;
-  std::copy_if(groups.begin(), groups.end(), std::back_inserter(result),
-               [](const Group &group) { return group.effect == -1; });
-  return result;
-}
-
-std::vector<ExperimentEmulator::Group> ExperimentEmulator::near_base(
-    const std::vector<Group> &groups) const
+bool ExperimentEmulator::is_near_base(const Group &group) const
 {
   constexpr double weak = 4.;   // standard deviations of a run
   constexpr double alike = 1.5; // modes, in variance
-  std::vector<Group> result;
-  std::copy_if(groups.begin(), groups.end(), std::back_inserter(result), [&](const Group &group) {
-    if (group.effect < 0)
-      return group.effect == -1;
-    const Scatter::Replicates own = whitened(group);
-    const auto k = static_cast<std::size_t>(group.effect);
-    const double noise = static_cast<double>(size()) / static_cast<double>(group.rows.rows());
-    return own.change.squaredNorm() < weak * weak + noise &&
-           chaos.of_modes(k, own.amplitude, own.change).maxCoeff() <
-               alike * chaos.common(k, own.amplitude);
-  });
-  return result;
+  if (group.effect < 0)
+    return group.effect == -1;
+  const Scatter::Replicates replicates = whitened(group);
+  const auto k = static_cast<std::size_t>(group.effect);
+  const double noise = static_cast<double>(size()) / replicates.runs;
+  return replicates.change.squaredNorm() < weak * weak + noise &&
+         chaos.of_modes(k, replicates.amplitude, replicates.change).maxCoeff() <
+             alike * chaos.common(k, replicates.amplitude);
 }
 
 double ExperimentEmulator::Group::amplitude() const
@@ -121,35 +101,35 @@ Scatter::Replicates ExperimentEmulator::whitened(const Group &group) const
           deviations.colwise().squaredNorm().transpose(), static_cast<double>(group.rows.rows())};
 }
 
-double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
+void ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups,
+                                             const std::function<bool(const Group &)> &condition)
 {
+  std::vector<const Group *> used;
   Eigen::Index n = 0;
-  double degrees = 0.;
+  dof = 0.;
   for (const Group &group : groups)
-    if (group.rows.rows() > 1) {
-      n += group.rows.rows();
-      degrees += static_cast<double>(group.rows.rows() - 1);
+    if (const Eigen::Index r = group.rows.rows(); r > 1 && condition(group)) {
+      used.push_back(&group);
+      n += r;
+      dof += static_cast<double>(r - 1);
     }
   Eigen::MatrixXd deviations(n, reduction.n_modes()), unbiased = deviations;
   Eigen::Index row = 0;
-  for (const Group &group : groups) {
-    const Eigen::Index r = group.rows.rows();
-    if (r < 2)
-      continue;
-    deviations.middleRows(row, r) = centred(group.rows);
-    if (group.effect >= 0)
+  for (const Group *const group : used) {
+    const Eigen::Index r = group->rows.rows();
+    deviations.middleRows(row, r) = centred(group->rows);
+    if (group->effect >= 0)
       deviations.middleRows(row, r) /=
-          std::sqrt(chaos.likeliest(static_cast<std::size_t>(group.effect), group.amplitude()));
+          std::sqrt(chaos.likeliest(static_cast<std::size_t>(group->effect), group->amplitude()));
     unbiased.middleRows(row, r) = deviations.middleRows(row, r) *
                                   std::sqrt(static_cast<double>(r) / static_cast<double>(r - 1));
     row += r;
   }
-  const Covariance covariance = shrunk_covariance(deviations, degrees);
+  const Covariance covariance = shrunk_covariance(deviations, dof);
   const Eigen::LLT<Eigen::MatrixXd> llt(covariance.matrix);
   whitening =
       llt.matrixL().solve(Eigen::MatrixXd::Identity(reduction.n_modes(), reduction.n_modes()));
   residuals = unbiased * whitening.transpose();
-  dof = degrees;
   // A run that the covariance was not estimated from lies farther out: as far as each row would if
   // it were left out (Sherman and Morrison).
   constexpr double least = 0.05;
@@ -157,7 +137,7 @@ double ExperimentEmulator::estimate_covariance(const std::vector<Group> &groups)
       (1. - (1. - covariance.shrinkage) * residuals.rowwise().squaredNorm().array() / dof)
           .cwiseMax(least);
   residuals = left.cwiseSqrt().cwiseInverse().asDiagonal() * residuals;
-  return 1. - left.mean();
+  own = 1. - left.mean();
 }
 
 void ExperimentEmulator::fit_scatter(const std::vector<Group> &groups)
@@ -185,7 +165,7 @@ BaseInformation ExperimentEmulator::information_of_base(const std::vector<Group>
     precision += weight * terms * terms.transpose();
     weighted += weight * terms * (whitening * group.mean).transpose();
   }
-  return {std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(size()), precision), weighted};
+  return {precision.reshaped().replicate(1, size()), weighted};
 }
 
 /// Runs with any effect tell of the base model, too, mostly of its nuisances. All emulators share
@@ -199,15 +179,11 @@ void ExperimentEmulator::share_base(BaseInformation all)
     all += parts.back();
   }
   alone = GaussianProcess({}, all).predict(0.);
-  for (std::size_t k = 0; k < n_effects; ++k) {
-    BaseInformation others = all;
-    others -= parts[k];
-    processes[k].set_base(others);
-  }
+  for (std::size_t k = 0; k < n_effects; ++k)
+    processes[k].set_base(all - parts[k]);
 }
 
-ExperimentEmulator::Prediction ExperimentEmulator::predict(
-    const std::map<std::size_t, double> &effects) const
+ExperimentEmulator::Prediction ExperimentEmulator::predict(const EffectPositions &effects) const
 {
   Prediction result{alone, Eigen::VectorXd::Ones(size()), 1.};
   for (const auto &[k, amplitude] : effects) {

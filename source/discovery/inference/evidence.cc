@@ -28,6 +28,29 @@ bool is_among(const Model &model, const std::vector<Model> &models)
                      [&](const Model &other) { return other.effects == model.effects; });
 }
 
+bool is_part(const Model &part, const Model &whole)
+{
+  return std::includes(whole.effects.begin(), whole.effects.end(), part.effects.begin(),
+                       part.effects.end());
+}
+
+void temper(std::vector<Model> &models, const double temperature)
+{
+  std::vector<double> logs;
+  for (const Model &model : models)
+    logs.push_back(model.log_prior + model.log_evidence / temperature);
+  const std::vector<double> shares = shares_of(std::move(logs));
+  for (std::size_t m = 0; m < models.size(); ++m)
+    models[m].probability = shares[m];
+  sort_by_probability(models);
+}
+
+void sort_by_probability(std::vector<Model> &models)
+{
+  std::stable_sort(models.begin(), models.end(),
+                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
+}
+
 Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
     : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
 {
@@ -55,17 +78,6 @@ double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data)
          log_likelihood(best, data);
 }
 
-void Evidence::set_strengths(std::vector<Place> &side) const
-{
-  double largest = prior.just_visible;
-  for (Place &place : side) {
-    const Target::Prediction &with = place.hypothesis.prediction;
-    const double square =
-        (with.mean - nothing().prediction.mean).squaredNorm() - with.leverage.sum();
-    place.strength = largest = std::max(largest, std::sqrt(std::max(0., square)));
-  }
-}
-
 /// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of
 /// strength are equally likely, and a little of the probability is shared by equal ratios of
 /// amplitude: the prior does not depend on how an effect is parametrised, and favours none for its
@@ -78,15 +90,17 @@ void Evidence::make_grid(const std::size_t k)
       continue;
     double first = std::min(prior.least_range, 0.5 * std::abs(limit)) * (limit < 0. ? -1. : 1.);
     while (std::abs(first) * least_ratio < std::abs(limit) &&
-           (target().predict({{k, first}}).mean - nothing().prediction.mean).norm() <
-               prior.just_visible)
+           change(target().predict({{k, first}})).norm() < prior.just_visible)
       first *= least_ratio;
     std::vector<Place> side;
+    double strongest = prior.just_visible;
     for (int i = 0; i < n_places; ++i) {
       const double u = first * std::pow(limit / first, i / (n_places - 1.));
-      side.push_back({u, 0., 0., 0., prepare(target().predict({{k, u}}))});
+      const Target::Prediction with = target().predict({{k, u}});
+      const double square = change(with).squaredNorm() - with.leverage.sum();
+      strongest = std::max(strongest, std::sqrt(std::max(0., square)));
+      side.push_back({u, 0., 0., strongest, prepare(with)});
     }
-    set_strengths(side);
     const double step = std::log(limit / first) / (n_places - 1.);
     const double whole = std::log(side.back().strength / prior.just_visible) + share_by_amplitude;
     for (std::size_t i = 0; i < side.size(); ++i) {
@@ -118,11 +132,10 @@ std::vector<Evidence::Covariance> Evidence::make_discrepancies() const
   for (const auto &places : grid)
     for (std::size_t i = n_places / 2; i < places.size(); i += n_places) {
       const Target::Prediction &with = places[i].hypothesis.prediction;
-      const Eigen::VectorXd change = with.mean - nothing().prediction.mean;
-      const double noise = with.leverage.sum();
-      const double square = change.squaredNorm();
+      const Eigen::VectorXd moved = change(with);
+      const double noise = with.leverage.sum(), square = moved.squaredNorm();
       if (square > noise)
-        along += change * change.transpose() / square * (1. - noise / square);
+        along += moved * moved.transpose() / square * (1. - noise / square);
     }
   const double trace = along.trace();
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
@@ -157,16 +170,17 @@ Eigen::ArrayXd Evidence::log_single(const std::size_t effect,
   return log_sums(log_of_places(effect, data));
 }
 
-double Evidence::best_amplitude(const std::size_t effect, const Eigen::VectorXd &data) const
+Model Evidence::single(const std::size_t effect, const Eigen::VectorXd &data) const
 {
-  return likeliest(effect, log_of_places(effect, data));
-}
-
-double Evidence::likeliest(const std::size_t effect, const Eigen::ArrayXXd &of_places) const
-{
+  const Eigen::ArrayXXd of_places = log_of_places(effect, data);
   Eigen::Index best = 0;
   of_places.col(0).maxCoeff(&best);
-  return grid[effect][static_cast<std::size_t>(best)].amplitude;
+  Model model;
+  model.effects = {effect};
+  model.log_prior = std::log(prior.one_effect / static_cast<double>(usable().size()));
+  model.log_evidence = log_sums(of_places)(0);
+  model.best[effect] = grid[effect][static_cast<std::size_t>(best)].amplitude;
+  return model;
 }
 
 Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -226,8 +240,11 @@ void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool ro
       const Place &p = grid[a][i], &q = grid[b][j];
       const Target::Prediction both =
           sum(p.hypothesis.prediction, q.hypothesis.prediction, nothing().prediction);
-      values.push_back(p.log_prior + q.log_prior +
-                       log_likelihood(roughly ? prepare_roughly(both) : prepare(both), data));
+      values.push_back(
+          p.log_prior + q.log_prior +
+          log_likelihood(prepare(both, roughly ? Eigen::MatrixXd(target().variance(both))
+                                               : target().variances(both)),
+                         data));
       weight += std::exp(p.log_prior + q.log_prior);
       if (values.back() > highest) {
         highest = values.back();
@@ -240,16 +257,12 @@ void Evidence::integrate(Model &pair, const Eigen::VectorXd &data, const bool ro
 /// Log of the prior density of an amplitude's logarithm.
 double Evidence::log_density(const std::size_t effect, const double amplitude) const
 {
-  const std::vector<Place> &places = grid[effect];
-  const std::size_t first = first_of_side(effect, amplitude);
-  const double step = std::log(places[first + 1].amplitude / places[first].amplitude);
-  return place_near(effect, amplitude).log_prior - std::log(step);
-}
-
-double Evidence::log_at(const std::map<std::size_t, double> &effects,
-                        const Eigen::VectorXd &data) const
-{
-  return log_likelihood(prepare(target().predict(effects)), data);
+  const Place *const side = side_of(effect, amplitude);
+  const double size = std::abs(amplitude), first = std::abs(side[0].amplitude);
+  if (size < first || size > std::abs(side[n_places - 1].amplitude))
+    return -std::numeric_limits<double>::infinity();
+  return place_near(effect, amplitude).log_prior -
+         std::log(std::log(side[1].amplitude / side[0].amplitude));
 }
 
 /// The grid of pairs is coarse. Newton's method finds the likeliest logarithms of both amplitudes,
@@ -264,8 +277,11 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
   const auto amplitude = [&](const std::size_t k, const double shift) {
     return std::clamp(model.best.at(k) * std::exp(shift), factors.lower(k), factors.upper(k));
   };
+  const auto log_at = [&](const double u, const double v) {
+    return log_likelihood(prepare(target().predict({{a, u}, {b, v}})), data);
+  };
   const auto f = [&](const double x, const double y) {
-    return log_at({{a, amplitude(a, at(0) + x)}, {b, amplitude(b, at(1) + y)}}, data);
+    return log_at(amplitude(a, at(0) + x), amplitude(b, at(1) + y));
   };
   Eigen::Matrix2d curvature;
   for (int i = 0; i <= iterations; ++i) {
@@ -292,34 +308,27 @@ void Evidence::polish(Model &model, const Eigen::VectorXd &data) const
       const Eigen::Vector2d shift = at + axes * Eigen::Vector2d(i, j);
       const double u = model.best.at(a) * std::exp(shift(0)),
                    v = model.best.at(b) * std::exp(shift(1));
-      if (is_possible(a, u) && is_possible(b, v))
-        logs.push_back(log_density(a, u) + log_density(b, v) + log_at({{a, u}, {b, v}}, data));
+      const double log_prior = log_density(a, u) + log_density(b, v);
+      if (std::isfinite(log_prior))
+        logs.push_back(log_prior + log_at(u, v));
     }
   model.best = {{a, amplitude(a, at(0))}, {b, amplitude(b, at(1))}};
   if (!logs.empty())
     model.log_evidence = log_sum(logs) + std::log(axes.determinant());
 }
 
-bool Evidence::is_possible(const std::size_t effect, const double amplitude) const
+const Evidence::Place *Evidence::side_of(const std::size_t effect, const double amplitude) const
 {
-  const std::size_t first = first_of_side(effect, amplitude);
-  const double size = std::abs(amplitude);
-  return size >= std::abs(grid[effect][first].amplitude) &&
-         size <= std::abs(grid[effect][first + n_places - 1].amplitude);
-}
-
-std::size_t Evidence::first_of_side(const std::size_t effect, const double amplitude) const
-{
-  return (amplitude > 0.) == (grid[effect].front().amplitude > 0.) ? 0 : n_places;
+  const std::vector<Place> &places = grid[effect];
+  return places.data() + ((amplitude > 0.) == (places.front().amplitude > 0.) ? 0 : n_places);
 }
 
 const Evidence::Place &Evidence::place_near(const std::size_t effect, const double amplitude) const
 {
-  const std::vector<Place> &places = grid[effect];
-  const std::size_t side = first_of_side(effect, amplitude);
-  const double first = places[side].amplitude;
-  const double place = std::log(amplitude / first) / std::log(places[side + 1].amplitude / first);
-  return places[side + static_cast<std::size_t>(std::clamp(std::lround(place), 0l, n_places - 1l))];
+  const Place *const side = side_of(effect, amplitude);
+  const double first = side[0].amplitude;
+  const double place = std::log(amplitude / first) / std::log(side[1].amplitude / first);
+  return side[std::clamp(std::lround(place), 0l, n_places - 1l)];
 }
 
 std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
@@ -330,15 +339,8 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   all[0].log_evidence = log_discrepancy(data)(0);
   const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<double>(effects.size());
-  for (const std::size_t k : effects) {
-    Model one;
-    one.effects = {k};
-    one.log_prior = std::log(prior.one_effect / n);
-    const Eigen::ArrayXXd of_places = log_of_places(k, data);
-    one.log_evidence = log_sums(of_places)(0);
-    one.best[k] = likeliest(k, of_places);
-    all.push_back(one);
-  }
+  for (const std::size_t k : effects)
+    all.push_back(single(k, data));
   for (std::size_t i = 0; i < effects.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       Model two;
@@ -347,7 +349,6 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
       integrate(two, data, true);
       all.push_back(two);
     }
-  std::vector<double> logs;
   double highest = all.front().log_prior + all.front().log_evidence;
   for (const Model &model : all)
     highest = std::max(highest, model.log_prior + model.log_evidence);
@@ -357,13 +358,8 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
       integrate(model, data, false);
       polish(model, data);
     }
-    logs.push_back(model.log_prior + model.log_evidence);
   }
-  const double total = log_sum(logs);
-  for (std::size_t m = 0; m < all.size(); ++m)
-    all[m].probability = std::exp(logs[m] - total);
-  std::stable_sort(all.begin(), all.end(),
-                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
+  temper(all, 1.);
   return all;
 }
 

@@ -42,31 +42,27 @@ std::string sentence(const double p_before, const double p_after, const double l
 } // namespace
 
 HeldOut::HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
-                 const FactorSpace &space, Samples &samples)
-    : options(options), rule(rule), data(data), space(space), samples(samples),
+                 Samples &samples)
+    : options(options), rule(rule), data(data), samples(samples),
       experiments(experiments_of(data.held_out))
 {
 }
 
 std::uint64_t HeldOut::n_runs() const
 {
-  return runs_to_test(most_tested, options.validate_runs, space, experiments, samples);
+  return runs_to_test(most_tested, options.validate_runs, experiments, samples);
 }
 
 HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &wanted,
                                const unsigned int runs)
 {
-  run_near(fit, wanted, runs, space, experiments, samples);
+  run_near(fit, wanted, runs, experiments, samples);
   std::vector<Model> models;
   std::copy_if(wanted.begin(), wanted.end(), std::back_inserter(models), [&](const Model &model) {
     return std::all_of(model.effects.begin(), model.effects.end(),
                        [&](const std::size_t k) { return samples.has_any(k, experiments); });
   });
-  std::vector<std::string> notes;
-  const auto measured = sort_by_experiment(data.held_out, samples, samples.simulator(), notes);
-  if (measured.empty())
-    return {};
-  Target target(measured, samples, space, options.model_tolerance);
+  Target target(sort_by_experiment(data.held_out, samples), samples, options.model_tolerance);
   std::vector<Predictive> all;
   const auto add = [&](const Model &model) {
     all.emplace_back(target, draw_posterior(fit, model, rule.predictive_draws, options.seed),
@@ -77,14 +73,12 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &wa
     add(model);
   Contest contest(std::move(all));
   const auto p = [&](const std::size_t place) { return contest.p(place, target.data()); };
-  Test test;
-  test.tested = {models, {}, {}, p(base)};
+  TestedModels tested = {models, {}, {}, p(base)};
   for (std::size_t m = 0; m < models.size(); ++m) {
-    test.tested.p.push_back(p(first + m));
-    test.tested.passes.push_back(contest.passes(first + m, others(m, models), rule.refuted));
+    tested.p.push_back(p(first + m));
+    tested.passes.push_back(contest.passes(first + m, others(m, models), rule.refuted));
   }
-  test.comparison = Comparison{std::move(target), std::move(contest)};
-  return test;
+  return {std::move(target), std::move(contest), std::move(tested)};
 }
 
 bool HeldOut::is_doubtful(const TestedModels &tested, const std::vector<Model> &answer) const
@@ -112,8 +106,8 @@ void HeldOut::add(const std::vector<Model> &wanted, const std::size_t most,
                   std::vector<Model> &models) const
 {
   const auto runs_of = [&](const std::size_t n_effects) {
-    return runs_to_test(static_cast<unsigned int>(n_effects), options.validate_runs, space,
-                        experiments, samples);
+    return runs_to_test(static_cast<unsigned int>(n_effects), options.validate_runs, experiments,
+                        samples);
   };
   const std::size_t before = models.size();
   // Those of the base model are made once for all.
@@ -145,7 +139,7 @@ Json HeldOut::describe_test(const Test &test, const Findings &by_fit,
     Json members = Json::array();
     for (std::size_t m = 0; m < tested.models.size(); ++m)
       if (is_among(tested.models[m], by_fit.answer))
-        members.push_back({{"effects", name_of(tested.models[m], space)},
+        members.push_back({{"effects", name_of(tested.models[m], samples.space())},
                            {"p", tested.p[m]},
                            {"result", sentence(tested.p_nothing, tested.p[m], rule.refuted)}});
     table["members of the tie"] = members;
@@ -163,14 +157,14 @@ Json HeldOut::describe_test(const Test &test, const Findings &by_fit,
   const auto add = [&](const std::string &effects, const double p, const std::size_t place) {
     refutable.push_back({{"effects", effects},
                          {"p", p},
-                         {"would be refuted", leader ? Json(test.comparison->contest.refuted_by(
+                         {"would be refuted", leader ? Json(test.contest.refuted_by(
                                                            place, first + *leader, rule.refuted))
                                                      : Json(nullptr)}});
   };
   add("nothing", tested.p_nothing, base);
   for (std::size_t m = 0; m < tested.models.size(); ++m)
     if (m != leader)
-      add(name_of(tested.models[m], space), tested.p[m], first + m);
+      add(name_of(tested.models[m], samples.space()), tested.p[m], first + m);
   table["could have refuted"] = refutable;
   return table;
 }
@@ -184,7 +178,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   std::vector<Model> models = first_tested(by_fit);
   if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), models))
     return {{"result", "the budget has no room to test the answer on held-out data"}};
-  Test last;
+  std::optional<Test> last;
   std::size_t n_compared = 0;
   for (unsigned int round = 0; round < most_rounds; ++round) {
     if (round > 0 && models.size() == n_compared)
@@ -192,10 +186,8 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
     n_compared = models.size();
     try {
       Test test = compare(evidence, models, options.validate_runs);
-      if (test.comparison && is_doubtful(test.tested, by_fit.answer))
+      if (is_doubtful(test.tested, by_fit.answer))
         test = compare(evidence, models, in_doubt * options.validate_runs);
-      if (!test.comparison)
-        return {{"result", "the held-out data do not vary"}};
       if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), test.tested.models))
         return {{"result", "no run of the held-out experiments with the answer's effects gave all "
                            "that was measured, so it was not tested"}};
@@ -206,25 +198,23 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
       break;
     }
     Findings left = by_fit;
-    refute(last.tested, Untested::stay, rule, judge_anew, left);
+    refute(last->tested, Untested::stay, rule, judge_anew, left);
     if (left.verdict != Verdict::off_catalogue)
       add(left.answer, most_followed, models);
   }
   const std::optional<std::size_t> leader =
-      refute(last.tested, Untested::fall, rule, judge_anew, findings);
+      refute(last->tested, Untested::fall, rule, judge_anew, findings);
 
-  const Target &held_out = last.comparison->target;
+  const Target &held_out = last->target;
   const auto fitted = [&](const Model &model) {
-    const Eigen::VectorXd nuisances =
-        best_nuisances(evidence, evidence.prepare(evidence.target().predict(model.best)));
-    return fit_to(held_out, model.best, nuisances);
+    return fit_to(held_out, model.best, nuisances_given(evidence, model.best).mean);
   };
   std::optional<Fitted> after;
   if (leader)
-    after = fitted(last.tested.models[*leader]);
+    after = fitted(last->tested.models[*leader]);
   const Fitted before = fitted({});
   Json table = describe_gap(held_out, before, after);
-  table.update(describe_test(last, by_fit, leader));
+  table.update(describe_test(*last, by_fit, leader));
   table["envelopes"] = describe_envelopes(held_out, before, after, options.level);
   return table;
 }

@@ -28,35 +28,9 @@ double log_of_product(const Eigen::Ref<const Eigen::VectorXd> &factors)
 
 } // namespace
 
-double log_sum(const std::vector<double> &logarithms)
-{
-  const double largest = *std::max_element(logarithms.begin(), logarithms.end());
-  double sum = 0.;
-  for (const double value : logarithms)
-    sum += std::exp(value - largest);
-  return largest + std::log(sum);
-}
-
-Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms)
-{
-  const Eigen::ArrayXd largest = logarithms.colwise().maxCoeff().transpose();
-  return largest +
-         (logarithms.rowwise() - largest.transpose()).exp().colwise().sum().transpose().log();
-}
-
 Likelihood::Likelihood(const Target &target)
     : aim(target), dof(degrees_of_t(target)), base(prepare(target.predict({})))
 {
-}
-
-Hypothesis Likelihood::prepare(const Target::Prediction &prediction) const
-{
-  return prepare(prediction, aim.variances(prediction));
-}
-
-Hypothesis Likelihood::prepare_roughly(const Target::Prediction &prediction) const
-{
-  return prepare(prediction, aim.variance(prediction));
 }
 
 Hypothesis Likelihood::prepare(const Target::Prediction &prediction,

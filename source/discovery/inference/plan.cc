@@ -93,13 +93,12 @@ double information(const Measurable &what, const std::vector<Model> &models,
     forecasts.emplace_back(what, one.amplitudes, one.log_weights, dof);
   double bits = 0.;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    const auto &draws = expectations[m].twins.draws();
-    for (const Predictive::Conditional &draw : draws) {
-      const Eigen::VectorXd value = what.rows * draw.twin;
+    const Eigen::MatrixXd values = what.rows * expectations[m].twins.twins();
+    for (Eigen::Index i = 0; i < values.cols(); ++i) {
       std::vector<double> logs;
       for (std::size_t k = 0; k < models.size(); ++k)
-        logs.push_back(std::log(models[k].probability) + forecasts[k].log_density(value));
-      bits += models[m].probability / static_cast<double>(draws.size()) *
+        logs.push_back(std::log(models[k].probability) + forecasts[k].log_density(values.col(i)));
+      bits += models[m].probability / static_cast<double>(values.cols()) *
               (logs[m] - log_sum(logs) - std::log(models[m].probability)) / std::log(2.);
     }
   }
@@ -154,61 +153,36 @@ Json rank_measurements(const Likelihood &likelihood, const std::vector<Model> &m
   return largest_first(std::move(rows), all);
 }
 
-/// An effect before anything is measured: amplitudes by their prior, and nuisances by theirs.
-class PriorAmplitudes
+/// An effect before anything is measured, at an amplitude: nuisances have their prior.
+PosteriorDraw prior_draw(const std::size_t effect, const double amplitude,
+                         const Eigen::VectorXd &nuisances)
 {
-public:
-  PriorAmplitudes(const Evidence &evidence, const std::size_t effect)
-      : places(evidence.places(effect)), effect(effect),
-        n_nuisances(static_cast<Eigen::Index>(evidence.space().n_nuisances()))
-  {
-  }
+  const Eigen::Index n = nuisances.size();
+  return {{{effect, amplitude}},
+          {Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Identity(n, n)},
+          nuisances};
+}
 
-  PosteriorDraws all() const
-  {
-    PosteriorDraws result;
-    for (const Evidence::Place &place : places)
-      add(place.amplitude, Eigen::VectorXd::Zero(n_nuisances), result);
-    return result;
+/// The same at amplitudes by their prior, anywhere between the places.
+PosteriorDraws draw_prior(const Evidence &evidence, const std::size_t effect,
+                          const unsigned int draws, RandomStream &random)
+{
+  const std::vector<Evidence::Place> &places = evidence.places(effect);
+  const auto n = static_cast<Eigen::Index>(evidence.space().n_nuisances());
+  PosteriorDraws result;
+  for (unsigned int i = 0; i < draws; ++i) {
+    double left = random.uniform();
+    std::size_t drawn = 0;
+    while (drawn + 1 < places.size() && (left -= std::exp(places[drawn].log_prior)) > 0.)
+      ++drawn;
+    double amplitude = places[drawn].amplitude;
+    const std::size_t next = drawn + 1;
+    if (next < places.size() && places[next].amplitude / amplitude > 1.)
+      amplitude *= std::pow(places[next].amplitude / amplitude, random.uniform());
+    result.push_back(prior_draw(effect, amplitude, random.normals(n, 1).col(0)));
   }
-  std::vector<double> log_weights() const
-  {
-    std::vector<double> weights;
-    for (const Evidence::Place &place : places)
-      weights.push_back(place.log_prior);
-    return weights;
-  }
-  /// Amplitudes anywhere between the places.
-  PosteriorDraws draw(const unsigned int number, RandomStream &random) const
-  {
-    PosteriorDraws result;
-    for (unsigned int i = 0; i < number; ++i) {
-      double left = random.uniform();
-      std::size_t drawn = 0;
-      while (drawn + 1 < places.size() && (left -= std::exp(places[drawn].log_prior)) > 0.)
-        ++drawn;
-      double amplitude = places[drawn].amplitude;
-      const std::size_t next = drawn + 1;
-      if (next < places.size() && places[next].amplitude / amplitude > 1.)
-        amplitude *= std::pow(places[next].amplitude / amplitude, random.uniform());
-      add(amplitude, random.normals(n_nuisances, 1).col(0), result);
-    }
-    return result;
-  }
-
-private:
-  void add(const double amplitude, const Eigen::VectorXd &nuisances, PosteriorDraws &draws) const
-  {
-    draws.effects.push_back({{effect, amplitude}});
-    draws.nuisances.push_back(nuisances);
-    draws.nuisance_means.push_back(Eigen::VectorXd::Zero(n_nuisances));
-    draws.nuisance_roots.push_back(Eigen::MatrixXd::Identity(n_nuisances, n_nuisances));
-  }
-
-  const std::vector<Evidence::Place> &places;
-  const std::size_t effect;
-  const Eigen::Index n_nuisances;
-};
+  return result;
+}
 
 /// Most runs of an experiment that run_near makes for one model.
 unsigned int most_runs_near(const unsigned int runs)
@@ -225,22 +199,20 @@ std::vector<DesignPoint> base_near(const unsigned int runs, const FactorSpace &s
 } // namespace
 
 std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
-                           const FactorSpace &space, const std::vector<std::string> &experiments,
-                           const Samples &samples)
+                           const std::vector<std::string> &experiments, const Samples &samples)
 {
   std::uint64_t result = experiments.size() * models * most_runs_near(runs);
-  for (const DesignPoint &point : base_near(runs, space))
+  for (const DesignPoint &point : base_near(runs, samples.space()))
     for (const std::string &experiment : experiments)
       result += samples.n_missing(point, experiment);
   return result;
 }
 
 void run_near(const Evidence &evidence, const std::vector<Model> &models, const unsigned int runs,
-              const FactorSpace &space, const std::vector<std::string> &experiments,
-              Samples &samples)
+              const std::vector<std::string> &experiments, Samples &samples)
 {
   const unsigned int few = std::max(1u, runs / 2);
-  std::vector<DesignPoint> points = base_near(runs, space);
+  std::vector<DesignPoint> points = base_near(runs, samples.space());
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
       const AmplitudePosterior posterior(evidence, model, evidence.target().data(), k);
@@ -248,7 +220,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
         const double amplitude = posterior.quantile(share);
         if (samples.has_near(k, amplitude, most_runs_near(runs), experiments))
           continue;
-        points.push_back({space.origin(), few});
+        points.push_back({samples.space().origin(), few});
         points.back().position(static_cast<Eigen::Index>(k)) = amplitude;
       }
     }
@@ -256,7 +228,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
 }
 
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
-                  const FactorSpace &space, Samples &samples)
+                  Samples &samples)
 {
   constexpr std::size_t most_models = 4;
   constexpr unsigned int draws = 100, repeats = 4;
@@ -279,7 +251,7 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
   for (Json &row : rows)
     row["again"] = true;
   if (!options.further_experiments.empty())
-    run_near(evidence, models, options.validate_runs, space, options.further_experiments, samples);
+    run_near(evidence, models, options.validate_runs, options.further_experiments, samples);
   // What else could be measured: further experiments, and more in those that were made.
   std::vector<std::string> experiments = options.further_experiments, made;
   std::set<DataPoint> known;
@@ -298,10 +270,9 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
                     experiments.end());
   experiments.insert(experiments.end(), made.begin(), made.end());
   try {
-    const auto measured = imagined(experiments, samples, samples.simulator(), repeats, known);
+    const auto measured = imagined(experiments, samples, repeats, known);
     if (!measured.empty()) {
-      for (Json row :
-           rank(Target(measured, samples, space, options.model_tolerance), options.seed + 6)) {
+      for (Json row : rank(Target(measured, samples, options.model_tolerance), options.seed + 6)) {
         row["again"] = false;
         if (row["observable"] == "all" &&
             std::find(made.begin(), made.end(), row["experiment"].get<std::string>()) != made.end())
@@ -330,16 +301,23 @@ nlohmann::ordered_json plan(const StudyOptions &options,
   const FactorSpace &space = unmeasured.space;
   const Target target = unmeasured.target();
   const Evidence evidence(target, space);
+  const Eigen::VectorXd unmoved =
+      space.origin().tail(static_cast<Eigen::Index>(space.n_nuisances()));
   RandomStream random(options.seed, 37);
   std::vector<Model> models;
   std::vector<Expectation> expectations;
   for (std::size_t k = 0; k < space.n_effects(); ++k) {
     if (evidence.places(k).empty() || !samples.has_any(k, experiments))
       continue;
-    const PriorAmplitudes prior(evidence, k);
-    expectations.push_back({{target, prior.draw(draws, random), options.seed + 7},
-                            {target, prior.all(), options.seed + 8},
-                            prior.log_weights()});
+    PosteriorDraws all;
+    std::vector<double> log_weights;
+    for (const Evidence::Place &place : evidence.places(k)) {
+      all.push_back(prior_draw(k, place.amplitude, unmoved));
+      log_weights.push_back(place.log_prior);
+    }
+    expectations.push_back({{target, draw_prior(evidence, k, draws, random), options.seed + 7},
+                            {target, all, options.seed + 8},
+                            log_weights});
     Model model;
     model.effects = {k};
     model.probability = 1. / static_cast<double>(space.n_effects());

@@ -23,26 +23,28 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
     return Eigen::ArrayXd(-highest);
   };
   Twins source(evidence.target(), seed, Twins::Scatter::as_a_distance);
-  Eigen::MatrixXd drawn(data.size(), static_cast<Eigen::Index>(posterior.effects.size()));
-  for (std::size_t i = 0; i < posterior.effects.size(); ++i) {
-    Target::Prediction truth = evidence.target().predict(posterior.effects[i]);
-    truth.mean += truth.gradient * posterior.nuisances[i];
+  Eigen::MatrixXd drawn(data.size(), static_cast<Eigen::Index>(posterior.size()));
+  for (Eigen::Index i = 0; i < drawn.cols(); ++i) {
+    const PosteriorDraw &draw = posterior[static_cast<std::size_t>(i)];
+    Target::Prediction truth = evidence.target().predict(draw.effects);
+    truth.mean += truth.gradient * draw.nuisances;
     truth.gradient.resize(truth.mean.size(), 0);
-    drawn.col(static_cast<Eigen::Index>(i)) = source.draw(truth);
+    drawn.col(i) = source.draw(truth);
   }
   const Eigen::ArrayXd of_twins = misfits(drawn);
   return Tail({of_twins.begin(), of_twins.end()}).p(misfits(data)(0));
 }
 
-Eigen::VectorXd best_nuisances(const Evidence &evidence, const Hypothesis &hypothesis)
+NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPositions &effects)
 {
   const Eigen::VectorXd &data = evidence.target().data();
+  const Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
   const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
-  const Eigen::MatrixXd scaled =
-      gradient.transpose() * evidence.inverse_variance(hypothesis, data).asDiagonal();
-  const Eigen::MatrixXd inner =
-      Eigen::MatrixXd::Identity(gradient.cols(), gradient.cols()) + scaled * gradient;
-  return inner.llt().solve(scaled * (data - hypothesis.prediction.mean));
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(gradient.cols(), gradient.cols()),
+                        scaled = gradient.transpose() *
+                                 evidence.inverse_variance(hypothesis, data).asDiagonal();
+  const Eigen::LLT<Eigen::MatrixXd> inner(unit + scaled * gradient);
+  return {inner.solve(scaled * (data - hypothesis.prediction.mean)), inner.matrixU().solve(unit)};
 }
 
 PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
@@ -56,26 +58,21 @@ PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model,
     alone.emplace(evidence, model, data, model.effects[0]);
   else if (!model.effects.empty())
     both = members(evidence, model, data);
-  const boost::random::discrete_distribution<std::size_t> pick(
-      both.empty() ? std::vector<double>{1.} : weights(both));
+  std::vector<double> probabilities;
+  for (const Member &member : both)
+    probabilities.push_back(member.probability);
+  const boost::random::discrete_distribution<std::size_t> pick(probabilities);
   PosteriorDraws result;
   for (unsigned int i = 0; i < draws; ++i) {
-    std::map<std::size_t, double> effects;
+    PosteriorDraw draw;
     if (alone)
-      effects[model.effects[0]] = alone->quantile(random.uniform());
+      draw.effects[model.effects[0]] = alone->quantile(random.uniform());
     else if (!both.empty())
-      effects = both[pick(random)].effects;
-    const Hypothesis hypothesis = evidence.prepare(evidence.target().predict(effects));
-    const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
-    const Eigen::Index n = gradient.cols();
-    const Eigen::LLT<Eigen::MatrixXd> inner(
-        Eigen::MatrixXd::Identity(n, n) +
-        gradient.transpose() * evidence.inverse_variance(hypothesis, data).asDiagonal() * gradient);
-    result.effects.push_back(effects);
-    result.nuisance_means.push_back(best_nuisances(evidence, hypothesis));
-    result.nuisance_roots.emplace_back(inner.matrixU().solve(Eigen::MatrixXd::Identity(n, n)));
-    result.nuisances.push_back(result.nuisance_means.back() +
-                               inner.matrixU().solve(random.normals(n, 1)).col(0));
+      draw.effects = both[pick(random)].effects;
+    draw.given = nuisances_given(evidence, draw.effects);
+    draw.nuisances =
+        draw.given.mean + draw.given.root * random.normals(draw.given.mean.size(), 1).col(0);
+    result.push_back(std::move(draw));
   }
   return result;
 }
@@ -85,23 +82,21 @@ Predictive::Predictive(const Target &target, const PosteriorDraws &posterior,
 {
   Twins source(target, seed), by_distance(target, seed, Twins::Scatter::as_a_distance);
   const Eigen::Index n = target.data().size();
-  const auto draws = static_cast<Eigen::Index>(posterior.effects.size());
+  const auto draws = static_cast<Eigen::Index>(posterior.size());
   Eigen::MatrixXd means(n, draws), likely(n, draws); // a column for each draw
   Eigen::MatrixXd variances = Eigen::MatrixXd::Zero(n, Target::n_noise_levels);
+  examples.resize(n, draws);
   for (Eigen::Index i = 0; i < draws; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    Target::Prediction prediction = target.predict(posterior.effects[k]);
-    Conditional one;
-    one.mean = prediction.mean + prediction.gradient * posterior.nuisance_means[k];
-    one.columns = prediction.gradient * posterior.nuisance_roots[k];
-    prediction.mean += prediction.gradient * posterior.nuisances[k];
-    one.variance = target.variance(prediction);
+    const PosteriorDraw &draw = posterior[static_cast<std::size_t>(i)];
+    Target::Prediction prediction = target.predict(draw.effects);
+    all.push_back({prediction.mean + prediction.gradient * draw.given.mean,
+                   target.variance(prediction), prediction.gradient * draw.given.root});
     variances += target.variances(prediction) / static_cast<double>(draws);
-    means.col(i) = prediction.mean;
+    prediction.mean += prediction.gradient * draw.nuisances;
     prediction.gradient.resize(n, 0);
-    one.twin = source.draw(prediction);
+    means.col(i) = prediction.mean;
+    examples.col(i) = source.draw(prediction);
     likely.col(i) = by_distance.draw(prediction);
-    all.push_back(one);
   }
   centre = means.rowwise().mean();
   const Eigen::MatrixXd spread = (means.colwise() - centre) *
@@ -115,14 +110,6 @@ Predictive::Predictive(const Target &target, const PosteriorDraws &posterior,
     levels.emplace_back(with(variances.col(l)));
   const Eigen::ArrayXd surprises = -log_density(likely);
   tail = Tail({surprises.begin(), surprises.end()});
-}
-
-Eigen::MatrixXd Predictive::twins() const
-{
-  Eigen::MatrixXd result(centre.size(), static_cast<Eigen::Index>(all.size()));
-  for (Eigen::Index i = 0; i < result.cols(); ++i)
-    result.col(i) = all[static_cast<std::size_t>(i)].twin;
-  return result;
 }
 
 Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &data) const

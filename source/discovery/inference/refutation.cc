@@ -21,9 +21,7 @@ std::vector<Model> falling_with(const std::vector<Model> &refuted, const std::ve
   for (auto model = all.begin(); model != all.end(); ++model)
     if (!model->is_discrepancy && !is_among(*model, tested) &&
         std::any_of(all.begin(), model, [&](const Model &likelier) {
-          return is_among(likelier, refuted) &&
-                 std::includes(model->effects.begin(), model->effects.end(),
-                               likelier.effects.begin(), likelier.effects.end());
+          return is_among(likelier, refuted) && is_part(likelier, *model);
         }))
       result.push_back(*model);
   return result;
@@ -68,8 +66,7 @@ void withdraw(const std::vector<Model> &refuted, const TestedModels &tested,
   const bool is_all_refuted = is_all_among(findings.answer, refuted);
   for (Model &model : models)
     model.probability = is_refuted(model) ? 0. : model.probability / left;
-  std::stable_sort(models.begin(), models.end(),
-                   [](const Model &a, const Model &b) { return a.probability > b.probability; });
+  sort_by_probability(models);
   findings.off_catalogue /= left;
   choose(rule, findings);
   findings.none_of_these |= is_all_refuted;

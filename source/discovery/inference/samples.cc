@@ -7,12 +7,17 @@ namespace eunoe::discovery {
 
 namespace {
 
-constexpr double all_digits = 1e6;
+/// What a position of one stands for.
+double unit_of(const Factor &factor)
+{
+  return factor.kind == Factor::Kind::effect ? factor.scale : factor.prior_deviation;
+}
 
-/// Amplitudes are told apart, and kept, with six digits.
+/// In units. Amplitudes are told apart, and kept, with six digits.
 double rounded(const double value, const double unit)
 {
-  return std::round(value / unit * all_digits) / all_digits * unit;
+  constexpr double all_digits = 1e6;
+  return std::round(value / unit * all_digits) / all_digits;
 }
 
 std::vector<std::string> effects_of(const FactorSpace &space, const Eigen::VectorXd &position)
@@ -26,34 +31,34 @@ std::vector<std::string> effects_of(const FactorSpace &space, const Eigen::Vecto
 
 } // namespace
 
-FactorSpace::FactorSpace(const std::vector<Factor> &factors)
+FactorSpace::FactorSpace(const std::vector<Factor> &factors) : all(factors)
 {
-  for (const Factor &factor : factors)
-    (factor.kind == Factor::Kind::effect ? effects : nuisances).push_back(factor);
+  const auto end = std::stable_partition(all.begin(), all.end(), [](const Factor &factor) {
+    return factor.kind == Factor::Kind::effect;
+  });
+  effects = static_cast<std::size_t>(end - all.begin());
 }
 
 double FactorSpace::lower(const std::size_t k) const
 {
-  const Factor &f = effects[k];
+  const Factor &f = effect(k);
   return f.sign == Factor::Sign::above ? 0. : std::min(0., (f.lower - f.null_value) / f.scale);
 }
 
 double FactorSpace::upper(const std::size_t k) const
 {
-  const Factor &f = effects[k];
+  const Factor &f = effect(k);
   return f.sign == Factor::Sign::below ? 0. : std::max(0., (f.upper - f.null_value) / f.scale);
 }
 
 Amplitudes FactorSpace::amplitudes(const Eigen::VectorXd &position) const
 {
   Amplitudes result;
-  for (Eigen::Index k = 0; k < position.size(); ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    const bool is_effect = i < n_effects();
-    const Factor &f = is_effect ? effects[i] : nuisances[i - n_effects()];
-    const double unit = is_effect ? f.scale : f.prior_deviation;
-    if (position(k) != 0.)
-      result[f.name] = f.null_value + rounded(position(k) * unit, unit);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Factor &f = all[k];
+    const double u = position(static_cast<Eigen::Index>(k)), unit = unit_of(f);
+    if (u != 0.)
+      result[f.name] = f.null_value + rounded(u * unit, unit) * unit;
   }
   return result;
 }
@@ -62,17 +67,12 @@ std::optional<Eigen::VectorXd> FactorSpace::position(const Amplitudes &amplitude
 {
   Eigen::VectorXd result = origin();
   std::size_t found = 0;
-  for (std::size_t k = 0; k < n_effects() + n_nuisances(); ++k) {
-    const bool is_effect = k < n_effects();
-    const Factor &f = is_effect ? effects[k] : nuisances[k - n_effects()];
-    const auto a = amplitudes.find(f.name);
-    if (a == amplitudes.end())
-      continue;
-    ++found;
-    const double unit = is_effect ? f.scale : f.prior_deviation;
-    result(static_cast<Eigen::Index>(k)) =
-        std::round((a->second - f.null_value) / unit * all_digits) / all_digits;
-  }
+  for (std::size_t k = 0; k < all.size(); ++k)
+    if (const auto a = amplitudes.find(all[k].name); a != amplitudes.end()) {
+      ++found;
+      result(static_cast<Eigen::Index>(k)) =
+          rounded(a->second - all[k].null_value, unit_of(all[k]));
+    }
   return found == amplitudes.size() ? std::make_optional(result) : std::nullopt;
 }
 
@@ -105,10 +105,11 @@ std::vector<DesignPoint> points_of_base(const FactorSpace &space, const unsigned
 
 Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulator &simulator,
                  const std::vector<std::string> &experiments)
-    : options(options), space(space), source(simulator), next_seed(100000 * options.seed + 1)
+    : options(options), factors(space), source(simulator), next_seed(100000 * options.seed + 1)
 {
   for (const std::string &experiment : experiments) {
     samples[experiment];
+    failures[experiment];
     for (const auto &[request, result] : simulator.known(experiment)) {
       if (!space.position(request.amplitudes))
         continue;
@@ -123,10 +124,10 @@ Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulato
 void Samples::add(const RunRequest &request, const RunResult &result)
 {
   ++counts[{request.experiment, request.amplitudes}];
-  const Eigen::VectorXd position = *space.position(request.amplitudes);
+  const Eigen::VectorXd position = *factors.position(request.amplitudes);
   if (!result || result->size() != source.data_points(request.experiment).size()) {
     ++failed;
-    failures[request.experiment].push_back(position);
+    failures.at(request.experiment).push_back({position, {}});
     return;
   }
   samples.at(request.experiment)
@@ -136,60 +137,38 @@ void Samples::add(const RunRequest &request, const RunResult &result)
 
 unsigned int Samples::n_missing(const DesignPoint &point, const std::string &experiment) const
 {
-  if (!source.concerns(experiment, effects_of(space, point.position)))
+  if (!source.concerns(experiment, effects_of(factors, point.position)))
     return 0;
-  const auto found = counts.find({experiment, space.amplitudes(point.position)});
+  const auto found = counts.find({experiment, factors.amplitudes(point.position)});
   return point.replicates - (found == counts.end() ? 0 : std::min(point.replicates, found->second));
 }
 
-bool Samples::has_any(const std::size_t effect, const std::vector<std::string> &experiments) const
+std::size_t Samples::n_near(const std::vector<Sample> &runs, const std::size_t effect,
+                            const std::optional<double> amplitude) const
 {
-  const std::vector<std::string> alone = {space.effect(effect).name};
-  return std::all_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    const std::vector<Sample> &all = samples.at(experiment);
-    return !source.concerns(experiment, alone) ||
-           std::any_of(all.begin(), all.end(), [&](const Sample &sample) {
-             return effects_of(space, sample.position) == alone;
-           });
-  });
+  constexpr double near = 0.2;
+  const std::vector<std::string> alone = {factors.effect(effect).name};
+  const auto k = static_cast<Eigen::Index>(effect);
+  return static_cast<std::size_t>(std::count_if(runs.begin(), runs.end(), [&](const Sample &run) {
+    return effects_of(factors, run.position) == alone &&
+           (!amplitude || std::abs(run.position(k) / *amplitude - 1.) < near);
+  }));
 }
 
 bool Samples::has_failed(const std::size_t effect,
                          const std::vector<std::string> &experiments) const
 {
-  const std::vector<std::string> alone = {space.effect(effect).name};
   return std::any_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    const auto found = failures.find(experiment);
-    return found != failures.end() && std::any_of(found->second.begin(), found->second.end(),
-                                                  [&](const Eigen::VectorXd &position) {
-                                                    return effects_of(space, position) == alone;
-                                                  });
+    return n_near(failures.at(experiment), effect, std::nullopt) > 0;
   });
 }
 
-bool Samples::is_near(const Eigen::VectorXd &position, const std::size_t effect,
-                      const double amplitude) const
-{
-  constexpr double near = 0.2;
-  return effects_of(space, position) == std::vector<std::string>{space.effect(effect).name} &&
-         std::abs(position(static_cast<Eigen::Index>(effect)) / amplitude - 1.) < near;
-}
-
-std::size_t Samples::n_near(const std::string &experiment, const std::size_t effect,
-                            const double amplitude) const
-{
-  const std::vector<Sample> &all = samples.at(experiment);
-  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [&](const Sample &sample) {
-    return is_near(sample.position, effect, amplitude);
-  }));
-}
-
-bool Samples::has_near(const std::size_t effect, const double amplitude, const unsigned int runs,
-                       const std::vector<std::string> &experiments) const
+bool Samples::has_near(const std::size_t effect, const std::optional<double> amplitude,
+                       const unsigned int runs, const std::vector<std::string> &experiments) const
 {
   return std::all_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    return !source.concerns(experiment, {space.effect(effect).name}) ||
-           n_near(experiment, effect, amplitude) >= runs;
+    return !source.concerns(experiment, {factors.effect(effect).name}) ||
+           n_near(samples.at(experiment), effect, amplitude) >= runs;
   });
 }
 
@@ -197,15 +176,10 @@ bool Samples::fails_near(const std::size_t effect, const double amplitude,
                          const std::vector<std::string> &experiments) const
 {
   // One may have failed by chance.
-  constexpr std::ptrdiff_t too_many = 2;
+  constexpr std::size_t too_many = 2;
   return std::any_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    const auto found = failures.find(experiment);
-    return found != failures.end() &&
-           std::count_if(found->second.begin(), found->second.end(),
-                         [&](const Eigen::VectorXd &position) {
-                           return is_near(position, effect, amplitude);
-                         }) >= too_many &&
-           n_near(experiment, effect, amplitude) == 0;
+    return n_near(failures.at(experiment), effect, amplitude) >= too_many &&
+           n_near(samples.at(experiment), effect, amplitude) == 0;
   });
 }
 
@@ -217,31 +191,17 @@ std::uint64_t Samples::remaining() const
 }
 
 void Samples::run(const std::vector<DesignPoint> &points,
-                  const std::vector<std::string> &experiments)
-{
-  run(points, experiments, [&](const DesignPoint &point, const std::string &experiment) {
-    return source.concerns(experiment, effects_of(space, point.position)) ? point.replicates : 0;
-  });
-}
-
-void Samples::complete(const std::vector<DesignPoint> &points,
-                       const std::vector<std::string> &experiments)
-{
-  run(points, experiments, [&](const DesignPoint &point, const std::string &experiment) {
-    return n_missing(point, experiment);
-  });
-}
-
-void Samples::run(const std::vector<DesignPoint> &points,
-                  const std::vector<std::string> &experiments, const Number &number)
+                  const std::vector<std::string> &experiments, const bool only_missing)
 {
   std::vector<RunRequest> requests;
   for (const DesignPoint &point : points) {
-    const Amplitudes amplitudes = space.amplitudes(point.position);
+    const Amplitudes amplitudes = factors.amplitudes(point.position);
+    const std::vector<std::string> effects = effects_of(factors, point.position);
     for (unsigned int r = 0; r < point.replicates; ++r) {
       const std::size_t before = requests.size();
       for (const std::string &experiment : experiments)
-        if (requests.size() < remaining() && r < number(point, experiment))
+        if (requests.size() < remaining() && (only_missing ? r < n_missing(point, experiment)
+                                                           : source.concerns(experiment, effects)))
           requests.push_back({experiment, amplitudes, next_seed});
       next_seed += requests.size() > before ? 1 : 0;
     }

@@ -9,8 +9,7 @@ namespace eunoe::discovery {
 namespace {
 
 /// Least standard deviation of each data point between runs that is believed: a share of its
-/// observable's typical one, so that a difference in the last digit is not significant. It is 0
-/// where neither runs nor measurements vary.
+/// observable's typical one, so that a difference in the last digit is not significant.
 Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Samples &samples)
 {
   constexpr double least_share = 0.2;
@@ -34,41 +33,15 @@ Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Sampl
     double typical = median > 0. ? median : same.back();
     if (typical <= 1e-12 * size)
       typical = measured.deviation(c) / least_share;
-    result(c) = std::max(least_share * typical, deviation(c) > 0. ? 1e-300 : 0.);
+    result(c) = std::max(least_share * typical, 1e-300);
   }
   return result;
-}
-
-MeasuredExperiment chosen(const MeasuredExperiment &all, const std::vector<Eigen::Index> &kept)
-{
-  MeasuredExperiment result;
-  result.name = all.name;
-  for (const Eigen::Index k : kept) {
-    result.points.push_back(all.points[static_cast<std::size_t>(k)]);
-    result.columns.push_back(all.columns[static_cast<std::size_t>(k)]);
-  }
-  result.value = all.value(kept);
-  result.deviation = all.deviation(kept);
-  result.repeats = all.repeats(kept);
-  result.least_deviation = all.least_deviation(kept);
-  return result;
-}
-
-/// From the scatter of one run to that of the data, in whitened modes: points that were repeated
-/// less often scatter more.
-/// @param of_points standard deviation of the data of each point over that of one run
-Eigen::MatrixXd averaging_of(const ExperimentEmulator &emulator, const Eigen::VectorXd &of_points)
-{
-  return emulator.whiten_scaled(of_points.asDiagonal() *
-                                (emulator.modes().basis().transpose() * emulator.unwhitening()));
 }
 
 } // namespace
 
 std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoint> &points,
-                                                   const Samples &samples,
-                                                   const Simulator &simulator,
-                                                   std::vector<std::string> &notes)
+                                                   const Samples &samples)
 {
   std::map<std::string, std::vector<const MeasuredPoint *>> sorted;
   for (const MeasuredPoint &point : points)
@@ -81,7 +54,7 @@ std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoi
     one.value.resize(n);
     one.deviation.resize(n);
     one.repeats.resize(n);
-    const auto &known = simulator.data_points(name);
+    const auto &known = samples.simulator().data_points(name);
     for (Eigen::Index k = 0; k < n; ++k) {
       const MeasuredPoint &row = *rows[static_cast<std::size_t>(k)];
       const auto place = std::find(known.begin(), known.end(), row.point);
@@ -95,87 +68,69 @@ std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoi
       one.repeats(k) = row.repeats;
     }
     one.least_deviation = least_deviations(one, samples);
-    std::vector<Eigen::Index> kept;
-    for (Eigen::Index k = 0; k < n; ++k)
-      if (one.least_deviation(k) > 0.)
-        kept.push_back(k);
-      else
-        notes.push_back("Left out, as it varies neither in runs nor in the measurement: " + name +
-                        ", " + one.points[static_cast<std::size_t>(k)].observable + ", index " +
-                        std::to_string(one.points[static_cast<std::size_t>(k)].index) + ".");
-    if (!kept.empty())
-      result.push_back(chosen(one, kept));
+    result.push_back(std::move(one));
   }
   return result;
 }
 
-Target::Target(std::vector<MeasuredExperiment> measured, const Samples &samples,
-               const FactorSpace &space, const double model_tolerance)
+Target::Part::Part(const MeasuredExperiment &one, const Samples &samples,
+                   const double model_tolerance, const Eigen::Index first)
+    : measured(one),
+      emulator(samples.space(), samples.of(one.name), one.columns, one.points, one.least_deviation),
+      noise(emulator.modes(), emulator.mode_covariance(),
+            {one.deviation.cwiseQuotient(emulator.base_deviation()), one.repeats}),
+      tolerance(model_tolerance *
+                emulator.base_mean().cwiseQuotient(emulator.base_deviation()).cwiseAbs()),
+      repeats(1. / one.repeats.cwiseInverse().mean()), first(first)
+{
+  const auto &groups = emulator.modes().groups();
+  Eigen::MatrixXd excess = Eigen::MatrixXd::Zero(tolerance.size(), n_noise_levels); // of each point
+  for (Eigen::Index l = 0; l < excess.cols(); ++l) {
+    const auto &level = noise.at((static_cast<double>(l) + 0.5) / n_noise_levels);
+    for (std::size_t g = 0; g < groups.size(); ++g)
+      for (const Eigen::Index c : groups[g].points)
+        excess(c, l) = level[g].mean();
+  }
+  const Eigen::VectorXd mean_excess = excess.rowwise().mean();
+  point_ratio = mean_excess.array() + 1.;
+  ratio = point_ratio.mean();
+  const auto covariance = [&](const Eigen::VectorXd &of_points) -> Eigen::MatrixXd {
+    const Eigen::MatrixXd root =
+        emulator.whiten_scaled(Eigen::MatrixXd(of_points.cwiseSqrt().asDiagonal()));
+    return root * root.transpose();
+  };
+  const Eigen::VectorXd of_means = one.repeats.cwiseInverse();
+  averaging =
+      emulator.whiten_scaled(of_means.cwiseSqrt().asDiagonal() *
+                             (emulator.modes().basis().transpose() * emulator.unwhitening()));
+  Eigen::MatrixXd correlated =
+      covariance(mean_excess.cwiseProduct(of_means) + tolerance.cwiseAbs2());
+  if (of_means.minCoeff() < of_means.maxCoeff())
+    correlated += averaging * averaging.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlated);
+  rotation = eigen.eigenvectors().transpose();
+  mean_scatter = (rotation * averaging).rowwise().squaredNorm();
+  const auto variance = [&](const Eigen::VectorXd &of_points) -> Eigen::VectorXd {
+    return (rotation * covariance(of_points) * rotation.transpose()).diagonal().cwiseMax(0.);
+  };
+  tolerated = variance(tolerance.cwiseAbs2());
+  // All levels have nearly the same axes.
+  instrument.resize(emulator.size(), n_noise_levels);
+  for (Eigen::Index l = 0; l < instrument.cols(); ++l)
+    instrument.col(l) = variance(excess.col(l).cwiseQuotient(one.repeats));
+}
+
+Target::Target(const std::vector<MeasuredExperiment> &measured, const Samples &samples,
+               const double model_tolerance)
 {
   Eigen::Index n = 0;
-  for (MeasuredExperiment &one : measured) {
-    ExperimentEmulator emulator(space, samples.of(one.name), one.columns, one.points,
-                                one.least_deviation);
-    const Eigen::VectorXd unit = emulator.base_deviation();
-    const Eigen::Index size = emulator.size();
-    InstrumentNoise noise(emulator.modes(), emulator.mode_covariance(),
-                          {one.deviation.cwiseQuotient(unit), one.repeats});
-    Eigen::MatrixXd excess = Eigen::MatrixXd::Zero(unit.size(), n_noise_levels); // of each point
-    for (std::size_t l = 0; l < n_noise_levels; ++l) {
-      const Eigen::VectorXd of_groups = noise.at((static_cast<double>(l) + 0.5) / n_noise_levels);
-      for (Eigen::Index g = 0; g < of_groups.size(); ++g)
-        for (const Eigen::Index c : emulator.modes().groups()[static_cast<std::size_t>(g)].points)
-          excess(c, static_cast<Eigen::Index>(l)) = of_groups(g);
-    }
-    const Eigen::VectorXd mean_excess = excess.rowwise().mean();
-    const auto covariance = [&](const Eigen::VectorXd &of_points) -> Eigen::MatrixXd {
-      const Eigen::MatrixXd root =
-          emulator.whiten_scaled(Eigen::MatrixXd(of_points.cwiseSqrt().asDiagonal()));
-      return root * root.transpose();
-    };
-    const Eigen::VectorXd tolerance =
-        model_tolerance * emulator.base_mean().cwiseQuotient(unit).cwiseAbs();
-    const Eigen::VectorXd of_means = one.repeats.cwiseInverse();
-    Eigen::MatrixXd averaging = averaging_of(emulator, of_means.cwiseSqrt());
-    Eigen::MatrixXd correlated =
-        covariance(mean_excess.cwiseProduct(of_means) + tolerance.cwiseAbs2());
-    if (of_means.minCoeff() < of_means.maxCoeff())
-      correlated += averaging * averaging.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(correlated);
-    const Eigen::MatrixXd rotation = eigen.eigenvectors().transpose();
-    Eigen::VectorXd mean_scatter = (rotation * averaging).rowwise().squaredNorm();
-    const auto variance = [&](const Eigen::VectorXd &of_points) -> Eigen::VectorXd {
-      return (rotation * covariance(of_points) * rotation.transpose()).diagonal().cwiseMax(0.);
-    };
-    const Eigen::VectorXd tolerated = variance(tolerance.cwiseAbs2());
-    // All levels have nearly the same axes.
-    Eigen::MatrixXd instrument(size, n_noise_levels);
-    for (Eigen::Index l = 0; l < instrument.cols(); ++l)
-      instrument.col(l) = variance(excess.col(l).cwiseQuotient(one.repeats));
-    const Eigen::MatrixXd mean_instrument = instrument.rowwise().mean();
-    Part part{std::move(one),
-              std::move(emulator),
-              std::move(noise),
-              std::move(averaging),
-              rotation,
-              tolerance,
-              tolerated,
-              std::move(instrument),
-              mean_instrument,
-              mean_excess.array() + 1.,
-              std::move(mean_scatter),
-              1.,
-              1.,
-              n};
-    part.repeats = 1. / part.measured.repeats.cwiseInverse().mean();
-    part.ratio = part.point_ratio.mean();
-    n += size;
-    parts.push_back(std::move(part));
+  for (const MeasuredExperiment &one : measured) {
+    parts.emplace_back(one, samples, model_tolerance, n);
+    n += parts.back().emulator.size();
   }
   all.resize(n);
   for (const Part &part : parts)
-    all.segment(part.first, part.emulator.size()) =
-        part.rotation * part.emulator.whiten(part.measured.value);
+    part.of(all) = part.rotation * part.emulator.whiten(part.measured.value);
 }
 
 double Target::Part::share_of_instrument(const double scatter) const
@@ -191,7 +146,7 @@ double Target::degrees_of_freedom() const
   return least;
 }
 
-Target::Prediction Target::predict(const std::map<std::size_t, double> &effects) const
+Target::Prediction Target::predict(const EffectPositions &effects) const
 {
   Prediction result;
   const auto n_parts = static_cast<Eigen::Index>(parts.size());
@@ -205,41 +160,26 @@ Target::Prediction Target::predict(const std::map<std::size_t, double> &effects)
     const GaussianProcess::Prediction &one = whitened.outcome;
     if (e == 0)
       result.gradient.resize(all.size(), one.gradient.cols());
-    result.mean.segment(part.first, part.emulator.size()) = part.rotation * one.mean;
-    result.gradient.middleRows(part.first, part.emulator.size()) = part.rotation * one.gradient;
-    result.leverage.segment(part.first, part.emulator.size()) =
-        part.rotation.cwiseAbs2() * one.leverage;
-    result.scatter.segment(part.first, part.emulator.size()) =
-        part.rotation.cwiseAbs2() * whitened.scatter;
+    part.of(result.mean) = part.rotation * one.mean;
+    part.of(result.gradient) = part.rotation * one.gradient;
+    part.of(result.leverage) = part.rotation.cwiseAbs2() * one.leverage;
+    part.of(result.scatter) = part.rotation.cwiseAbs2() * whitened.scatter;
     result.common(e) = whitened.common;
-  }
-  return result;
-}
-
-Eigen::MatrixXd Target::variances(const Prediction &prediction,
-                                  Eigen::MatrixXd Part::*instrument) const
-{
-  Eigen::MatrixXd result(all.size(), (parts.front().*instrument).cols());
-  for (std::size_t e = 0; e < parts.size(); ++e) {
-    const Part &part = parts[e];
-    const Eigen::Index size = part.emulator.size();
-    const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
-    const Eigen::VectorXd of_runs =
-        prediction.scatter.segment(part.first, size).cwiseProduct(part.mean_scatter) +
-        prediction.leverage.segment(part.first, size) + part.tolerated;
-    result.middleRows(part.first, size) = (left * (part.*instrument)).colwise() + of_runs;
   }
   return result;
 }
 
 Eigen::MatrixXd Target::variances(const Prediction &prediction) const
 {
-  return variances(prediction, &Part::instrument);
-}
-
-Eigen::VectorXd Target::variance(const Prediction &prediction) const
-{
-  return variances(prediction, &Part::mean_instrument);
+  Eigen::MatrixXd result(all.size(), n_noise_levels);
+  for (std::size_t e = 0; e < parts.size(); ++e) {
+    const Part &part = parts[e];
+    const double left = part.share_of_instrument(prediction.common(static_cast<Eigen::Index>(e)));
+    const Eigen::VectorXd of_runs = part.of(prediction.scatter).cwiseProduct(part.mean_scatter) +
+                                    part.of(prediction.leverage) + part.tolerated;
+    part.of(result) = (left * part.instrument).colwise() + of_runs;
+  }
+  return result;
 }
 
 } // namespace eunoe::discovery

@@ -11,12 +11,12 @@ Eigen::VectorXd Twins::instrument(const Target::Part &part, const double scatter
 {
   Eigen::VectorXd noise(part.measured.repeats.size());
   const auto &groups = part.emulator.modes().groups();
-  const Eigen::VectorXd excess =
-      part.noise.draw(quantile, random) * part.share_of_instrument(scatter);
+  std::vector<double> excess;
+  for (const ExcessVariance &group : part.noise.at(quantile))
+    excess.push_back(group.draw(random) * part.share_of_instrument(scatter));
   for (std::size_t g = 0; g < groups.size(); ++g)
     for (const Eigen::Index c : groups[g].points)
-      noise(c) = std::sqrt(excess(static_cast<Eigen::Index>(g)) / part.measured.repeats(c) +
-                           std::pow(part.tolerance(c), 2)) *
+      noise(c) = std::sqrt(excess[g] / part.measured.repeats(c) + std::pow(part.tolerance(c), 2)) *
                  random.normal();
   return part.emulator.whiten_scaled(noise);
 }
@@ -31,8 +31,6 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
   for (std::size_t e = 0; e < parts.size(); ++e) {
     const Target::Part &part = parts[e];
     const Eigen::MatrixXd &rows = part.emulator.deviations();
-    const Eigen::Index n = rows.cols();
-    const auto k = static_cast<Eigen::Index>(e);
     const auto repeats = std::max(1, static_cast<int>(std::lround(part.repeats)));
     const double length =
         kind == Scatter::as_a_distance ? std::sqrt(1. - part.emulator.own_share()) : 1.;
@@ -40,16 +38,17 @@ Eigen::VectorXd Twins::draw(const Target::Prediction &truth)
       const std::size_t row = random.index(static_cast<std::size_t>(rows.rows()));
       return length * rows.row(static_cast<Eigen::Index>(row)).transpose();
     };
-    Eigen::VectorXd scatter = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd scatter = Eigen::VectorXd::Zero(rows.cols());
     for (int r = 0; r < repeats; ++r)
       scatter += deviation();
-    result.segment(part.first, n) += truth.scatter.segment(part.first, n)
-                                         .cwiseSqrt()
-                                         .cwiseProduct(part.rotation * (part.averaging * scatter)) /
-                                     std::sqrt(repeats);
-    result.segment(part.first, n) +=
-        truth.leverage.segment(part.first, n).cwiseSqrt().cwiseProduct(part.rotation * deviation());
-    result.segment(part.first, n) += part.rotation * instrument(part, truth.common(k), quantile);
+    part.of(result) += part.of(truth.scatter)
+                           .cwiseSqrt()
+                           .cwiseProduct(part.rotation * (part.averaging * scatter)) /
+                       std::sqrt(repeats);
+    part.of(result) +=
+        part.of(truth.leverage).cwiseSqrt().cwiseProduct(part.rotation * deviation());
+    part.of(result) +=
+        part.rotation * instrument(part, truth.common(static_cast<Eigen::Index>(e)), quantile);
   }
   return result;
 }

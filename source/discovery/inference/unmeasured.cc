@@ -8,13 +8,12 @@
 namespace eunoe::discovery {
 
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
-                                         const Samples &samples, const Simulator &simulator,
-                                         const unsigned int repeats,
+                                         const Samples &samples, const unsigned int repeats,
                                          const std::set<DataPoint> &without)
 {
   std::vector<MeasuredPoint> points;
   for (const std::string &experiment : experiments) {
-    const auto &names = simulator.data_points(experiment);
+    const auto &names = samples.simulator().data_points(experiment);
     std::vector<Eigen::Index> columns(names.size());
     std::iota(columns.begin(), columns.end(), 0);
     const Eigen::MatrixXd base = runs_of_base(samples.of(experiment), columns);
@@ -28,8 +27,7 @@ std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experim
         points.push_back({point, base.col(c).mean(), deviation(c), repeats});
     }
   }
-  std::vector<std::string> notes;
-  return sort_by_experiment(points, samples, simulator, notes);
+  return sort_by_experiment(points, samples);
 }
 
 Unmeasured::Unmeasured(const StudyOptions &options, const std::vector<std::string> &experiments,
@@ -48,12 +46,12 @@ void Unmeasured::run()
 Target Unmeasured::target() const
 {
   constexpr unsigned int repeats = 4;
-  auto measured = imagined(experiments, samples, samples.simulator(), repeats);
+  const auto measured = imagined(experiments, samples, repeats);
   if (measured.empty())
     throw UserError(
         "No data point varies and is given by every run, so there is nothing to compare. Ask "
         "for other observables.");
-  return {std::move(measured), samples, space, 0.};
+  return {measured, samples, 0.};
 }
 
 } // namespace eunoe::discovery

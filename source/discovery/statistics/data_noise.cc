@@ -1,7 +1,9 @@
 #include <eunoe/discovery/statistics/data_noise.h>
+#include <eunoe/discovery/statistics/logarithms.h>
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace eunoe::discovery {
 
@@ -35,6 +37,20 @@ Witness witness(const Modes::Group &group, const Eigen::MatrixXd &replicate_cova
   return {ratio / n, dof < declared ? 0. : dof * effective};
 }
 
+/// Probabilities of all up to each.
+std::vector<double> cumulated(std::vector<double> probabilities)
+{
+  std::partial_sum(probabilities.begin(), probabilities.end(), probabilities.begin());
+  return probabilities;
+}
+
+/// Number of the first up to which there is so much of the probability.
+std::size_t place_of(const double share, const std::vector<double> &below)
+{
+  const auto place = std::lower_bound(below.begin(), below.end(), share);
+  return static_cast<std::size_t>(std::min(place, below.end() - 1) - below.begin());
+}
+
 } // namespace
 
 ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freedom,
@@ -48,7 +64,7 @@ ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freed
   }
   constexpr double first = 0.003, step = 1.3;
   const double last = std::max(1e8, 1e3 * ratio);
-  double sum = 0., prior = 0., highest = -1e300, before = 0.;
+  double prior = 0., before = 0.;
   std::vector<double> logs;
   for (double value = first; value < last; value *= step) {
     // Each value stands for those since the last one.
@@ -56,24 +72,17 @@ ExcessVariance::ExcessVariance(const double ratio, const double degrees_of_freed
                    0.5 * degrees_of_freedom * (std::log1p(value) + ratio / (1. + value)));
     prior += (value - before) * std::exp(-value / expected);
     values.push_back(value);
-    highest = std::max(highest, logs.back());
     before = value;
   }
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double weight = std::exp(logs[k] - highest);
-    average += weight * values[k];
-    below.push_back(sum += weight);
-  }
-  average /= sum;
-  log_of_all = highest + std::log(sum / prior);
-  for (double &share : below)
-    share /= sum;
+  const std::vector<double> shares = shares_of(logs);
+  average = std::inner_product(values.begin(), values.end(), shares.begin(), 0.);
+  below = cumulated(shares);
+  log_of_all = log_sum(logs) - std::log(prior);
 }
 
 double ExcessVariance::draw(RandomStream &random) const
 {
-  const auto place = std::lower_bound(below.begin(), below.end(), random.uniform());
-  return values[static_cast<std::size_t>(std::min(place, below.end() - 1) - below.begin())];
+  return values[place_of(random.uniform(), below)];
 }
 
 InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
@@ -84,50 +93,24 @@ InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &repl
   constexpr double usual = 0.1, lowest = 0.01, highest = 10., step = 1.35;
   std::vector<double> logs;
   for (double common = lowest; common < highest; common *= step) {
-    Level one{0., {}};
+    std::vector<ExcessVariance> groups;
     double log = std::log(common) - std::log1p(std::pow(common / usual, 2));
     for (const Modes::Group &group : modes.groups()) {
       const Witness w = witness(group, replicate_covariance, repeats);
       // An observable that hardly varies between runs says nothing about the others.
       const bool is_far = w.ratio > highest;
-      one.groups.emplace_back(w.ratio, w.degrees_of_freedom, is_far ? w.ratio : common);
-      log += is_far ? 0. : one.groups.back().log_evidence();
+      groups.emplace_back(w.ratio, w.degrees_of_freedom, is_far ? w.ratio : common);
+      log += is_far ? 0. : groups.back().log_evidence();
     }
     logs.push_back(log);
-    levels.push_back(std::move(one));
+    levels.push_back(std::move(groups));
   }
-  const double largest = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.;
-  for (std::size_t k = 0; k < levels.size(); ++k)
-    levels[k].below = sum += std::exp(logs[k] - largest);
-  for (Level &one : levels)
-    one.below /= sum;
+  below = cumulated(shares_of(std::move(logs)));
 }
 
-const InstrumentNoise::Level &InstrumentNoise::level(const double quantile) const
+const std::vector<ExcessVariance> &InstrumentNoise::at(const double quantile) const
 {
-  const auto place =
-      std::lower_bound(levels.begin(), levels.end(), quantile,
-                       [](const Level &one, const double share) { return one.below < share; });
-  return *std::min(place, levels.end() - 1);
-}
-
-Eigen::VectorXd InstrumentNoise::at(const double quantile) const
-{
-  const Level &one = level(quantile);
-  Eigen::VectorXd result(static_cast<Eigen::Index>(one.groups.size()));
-  for (std::size_t g = 0; g < one.groups.size(); ++g)
-    result(static_cast<Eigen::Index>(g)) = one.groups[g].mean();
-  return result;
-}
-
-Eigen::VectorXd InstrumentNoise::draw(const double quantile, RandomStream &random) const
-{
-  const Level &one = level(quantile);
-  Eigen::VectorXd result(static_cast<Eigen::Index>(one.groups.size()));
-  for (std::size_t g = 0; g < one.groups.size(); ++g)
-    result(static_cast<Eigen::Index>(g)) = one.groups[g].draw(random);
-  return result;
+  return levels[place_of(quantile, below)];
 }
 
 } // namespace eunoe::discovery

@@ -40,31 +40,16 @@ double fit_mixture(const Eigen::MatrixXd &logs, Eigen::MatrixXd &probabilities)
 
 } // namespace
 
-BaseInformation &BaseInformation::operator+=(const BaseInformation &other)
-{
-  for (std::size_t v = 0; v < precision.size(); ++v)
-    precision[v] += other.precision[v];
-  weighted += other.weighted;
-  return *this;
-}
-
-BaseInformation &BaseInformation::operator-=(const BaseInformation &other)
-{
-  for (std::size_t v = 0; v < precision.size(); ++v)
-    precision[v] -= other.precision[v];
-  weighted -= other.weighted;
-  return *this;
-}
-
 LinearBase BaseInformation::solve() const
 {
-  LinearBase result{weighted, {}};
-  for (std::size_t v = 0; v < precision.size(); ++v) {
-    const Eigen::LLT<Eigen::MatrixXd> llt(precision[v]);
-    const auto column = static_cast<Eigen::Index>(v);
-    result.coefficients.col(column) = llt.solve(weighted.col(column));
-    result.covariance.emplace_back(
-        llt.solve(Eigen::MatrixXd::Identity(weighted.rows(), weighted.rows())));
+  const Eigen::Index n = weighted.rows();
+  LinearBase result{weighted, precision};
+  for (Eigen::Index v = 0; v < weighted.cols(); ++v) {
+    const Eigen::MatrixXd matrix = precision.col(v).reshaped(n, n);
+    const Eigen::LLT<Eigen::MatrixXd> llt(matrix);
+    const Eigen::MatrixXd covariance = llt.solve(Eigen::MatrixXd::Identity(n, n));
+    result.coefficients.col(v) = llt.solve(weighted.col(v));
+    result.covariance.col(v) = covariance.reshaped();
   }
   return result;
 }
@@ -98,12 +83,13 @@ GaussianProcess::GaussianProcess(std::vector<Point> points, const BaseInformatio
   if (all.empty())
     return;
   for (const double variance : variances)
-    scales.push_back({variance, {}, {}, {}, {}, {}});
+    scales.push_back({variance, {}, {}, {}, {}});
   choose_kernel();
   for (Scale &scale : scales) {
     scale.weight = (1. + scale.variance * axes.eigenvalues.array()).inverse();
-    const Eigen::MatrixXd weighted = axes.terms.transpose() * scale.weight.asDiagonal();
-    scale.precision = weighted * axes.terms;
+    const Eigen::MatrixXd weighted = axes.terms.transpose() * scale.weight.asDiagonal(),
+                          precision = weighted * axes.terms;
+    scale.precision = precision.reshaped();
     scale.weighted = weighted * axes.values;
   }
   set_base(base);
@@ -156,8 +142,10 @@ Eigen::MatrixXd GaussianProcess::log_likelihoods(
 void GaussianProcess::choose_kernel()
 {
   std::vector<Eigen::MatrixXd> base_roots;
-  for (const Eigen::MatrixXd &covariance : base.covariance)
+  for (Eigen::Index v = 0; v < values.cols(); ++v) {
+    const Eigen::MatrixXd covariance = base.covariance.col(v).reshaped(terms.cols(), terms.cols());
     base_roots.emplace_back(covariance.llt().matrixL());
+  }
   double highest = -std::numeric_limits<double>::infinity();
   const auto consider = [&](const Kernel &kernel) {
     const Axes candidate = axes_of(kernel);
@@ -183,43 +171,35 @@ void GaussianProcess::choose_kernel()
 void GaussianProcess::set_base(const BaseInformation &others)
 {
   base = others.solve();
-  const Eigen::Index n_terms = terms.cols();
   for (Scale &scale : scales) {
-    scale.coefficients.resize(n_terms, values.cols());
-    scale.covariance.resize(values.cols(), n_terms * n_terms);
-    for (Eigen::Index v = 0; v < values.cols(); ++v) {
-      const Eigen::LLT<Eigen::MatrixXd> llt(others.precision[static_cast<std::size_t>(v)] +
-                                            scale.precision);
-      const Eigen::MatrixXd covariance = llt.solve(Eigen::MatrixXd::Identity(n_terms, n_terms));
-      scale.coefficients.col(v) = covariance * (others.weighted.col(v) + scale.weighted.col(v));
-      scale.covariance.row(v) = covariance.reshaped().transpose();
-    }
+    BaseInformation together = others;
+    together.precision.colwise() += scale.precision;
+    together.weighted += scale.weighted;
+    scale.base = together.solve();
   }
 }
 
 BaseInformation GaussianProcess::about_base() const
 {
   const Eigen::Index n_terms = terms.cols();
-  BaseInformation result{std::vector<Eigen::MatrixXd>(static_cast<std::size_t>(values.cols()),
-                                                      Eigen::MatrixXd::Zero(n_terms, n_terms)),
+  BaseInformation result{Eigen::MatrixXd::Zero(n_terms * n_terms, values.cols()),
                          Eigen::MatrixXd::Zero(n_terms, values.cols())};
-  for (std::size_t j = 0; j < scales.size(); ++j)
-    for (Eigen::Index v = 0; v < values.cols(); ++v) {
-      const double share = shares(v, static_cast<Eigen::Index>(j));
-      result.precision[static_cast<std::size_t>(v)] += share * scales[j].precision;
-      result.weighted.col(v) += share * scales[j].weighted.col(v);
-    }
+  for (std::size_t j = 0; j < scales.size(); ++j) {
+    const Eigen::VectorXd share = shares.col(static_cast<Eigen::Index>(j));
+    result.precision += scales[j].precision * share.transpose();
+    result.weighted += scales[j].weighted * share.asDiagonal();
+  }
   return result;
 }
 
 GaussianProcess::Prediction GaussianProcess::predict(const double amplitude) const
 {
   const Eigen::Index n_terms = terms.cols(), n_nuisances = n_terms - 1;
+  const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(n_terms, n_terms);
+  const Eigen::VectorXd diagonal = unit.reshaped();
   Prediction result{base.coefficients.row(0).transpose(),
                     base.coefficients.bottomRows(n_nuisances).transpose(),
-                    Eigen::VectorXd(values.cols())};
-  for (Eigen::Index v = 0; v < values.cols(); ++v)
-    result.leverage(v) = base.covariance[static_cast<std::size_t>(v)].trace();
+                    base.covariance.transpose() * diagonal}; // sums of variances
   if (all.empty())
     return result;
   const auto n = static_cast<Eigen::Index>(all.size());
@@ -241,11 +221,11 @@ GaussianProcess::Prediction GaussianProcess::predict(const double amplitude) con
     const Eigen::VectorXd share = shares.col(static_cast<Eigen::Index>(j));
     // What the points say of the effect for a given base model, and of the base model thereby.
     const Eigen::MatrixXd gain = scale.variance * cross * scale.weight.asDiagonal();
-    const Eigen::MatrixXd of_base = Eigen::MatrixXd::Identity(n_terms, n_terms) - gain * axes.terms;
-    const Eigen::MatrixXd mean = gain * axes.values + of_base * scale.coefficients;
+    const Eigen::MatrixXd of_base = unit - gain * axes.terms;
+    const Eigen::MatrixXd mean = gain * axes.values + of_base * scale.base.coefficients;
     const double of_effect = scale.variance * (prior - gain.cwiseProduct(cross).sum());
     const Eigen::VectorXd variance =
-        scale.covariance * (of_base.transpose() * of_base).reshaped() +
+        scale.base.covariance.transpose() * (of_base.transpose() * of_base).reshaped() +
         Eigen::VectorXd::Constant(values.cols(), std::max(0., of_effect));
     means += mean * share.asDiagonal();
     squares += share.cwiseProduct(mean.row(0).transpose().cwiseAbs2());

@@ -7,34 +7,29 @@
 namespace eunoe::discovery {
 
 Modes::Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviations)
-    : scale(deviations)
+    : scale(deviations), matrix(0, deviations.size())
 {
-  std::map<std::pair<std::string, std::string>, std::vector<Eigen::Index>> sorted;
+  std::multimap<DataPoint, Eigen::Index> sorted;
   for (std::size_t c = 0; c < points.size(); ++c)
-    sorted[{points[c].experiment, points[c].observable}].push_back(static_cast<Eigen::Index>(c));
-
-  Eigen::Index n_modes = 0;
-  for (auto &[name, members] : sorted) {
-    std::sort(members.begin(), members.end(), [&](Eigen::Index a, Eigen::Index b) {
-      return points[static_cast<std::size_t>(a)] < points[static_cast<std::size_t>(b)];
-    });
-    n_modes += std::min<Eigen::Index>(static_cast<Eigen::Index>(members.size()), most_modes);
+    sorted.emplace(points[c], static_cast<Eigen::Index>(c));
+  for (const auto &[point, column] : sorted) {
+    if (all_groups.empty() || all_groups.back().observable != point.observable)
+      all_groups.push_back({point.observable, {}, {}});
+    all_groups.back().points.push_back(column);
   }
-
-  matrix = Eigen::MatrixXd::Zero(n_modes, static_cast<Eigen::Index>(points.size()));
-  Eigen::Index row = 0;
-  for (const auto &[name, members] : sorted) {
-    Group group{name.first, name.second, members, {}};
-    const auto n = static_cast<Eigen::Index>(members.size());
-    for (Eigen::Index m = 0; m < std::min(n, most_modes); ++m, ++row) {
+  for (Group &group : all_groups) {
+    const auto n = static_cast<Eigen::Index>(group.points.size());
+    for (Eigen::Index m = 0; m < std::min(n, most_modes); ++m) {
       const double norm = std::sqrt((m == 0 ? 1. : 2.) / static_cast<double>(n));
+      const Eigen::Index row = matrix.rows();
+      group.modes.push_back(row);
+      matrix.conservativeResize(row + 1, Eigen::NoChange);
+      matrix.row(row).setZero();
       for (Eigen::Index k = 0; k < n; ++k)
-        matrix(row, members[static_cast<std::size_t>(k)]) =
+        matrix(row, group.points[static_cast<std::size_t>(k)]) =
             norm * std::cos(M_PI * static_cast<double>(m) * (static_cast<double>(k) + 0.5) /
                             static_cast<double>(n));
-      group.modes.push_back(row);
     }
-    all_groups.push_back(group);
   }
 }
 

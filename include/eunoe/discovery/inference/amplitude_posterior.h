@@ -3,19 +3,18 @@
 
 #include <eunoe/discovery/inference/evidence.h>
 
-#include <map>
 #include <utility>
 #include <vector>
 
 namespace eunoe::discovery {
 
-/// A model at amplitudes that the data allow, and the logarithm of their posterior probability up
-/// to a constant, with Jeffreys' prior.
+/// A model at amplitudes that the data allow, and their posterior probability, with Jeffreys'
+/// prior.
 struct Member
 {
-  std::map<std::size_t, double> effects;
+  EffectPositions effects;
   Target::Prediction prediction;
-  double log_weight = 0.;
+  double probability = 0.;
 };
 
 /// Posterior density of a model's amplitudes, with Jeffreys' prior. The variance is that at the
@@ -27,8 +26,7 @@ public:
   AmplitudeDensity(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
 
   /// Its logarithm up to a constant, where @p prediction is that of these amplitudes.
-  double log(const std::map<std::size_t, double> &effects,
-             const Target::Prediction &prediction) const;
+  double log(const EffectPositions &effects, const Target::Prediction &prediction) const;
 
 private:
   const Evidence &evidence;
@@ -37,15 +35,12 @@ private:
 };
 
 /// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.
+/// Their probabilities sum to one.
 /// @param model with one or two effects
 std::vector<Member> members(const Evidence &evidence, const Model &model,
                             const Eigen::VectorXd &data);
 
-/// Probabilities of members, which sum to one.
-std::vector<double> weights(const std::vector<Member> &members);
-
-/// Posterior of one effect's amplitude, whatever the other one's is: places in ascending order and
-/// the probability of each.
+/// Posterior of one effect's amplitude, whatever the other one's is.
 class AmplitudePosterior
 {
 public:
@@ -61,23 +56,25 @@ public:
   /// Probability of all amplitudes that are likelier than this one: it lies in every range that
   /// holds more.
   double likelier_than(double amplitude) const;
-  /// Amplitudes and their probabilities.
-  const std::vector<std::pair<double, double>> &weights() const { return sorted; }
+
+  struct Place
+  {
+    double amplitude, probability;
+    double log_likelihood; ///< up to a constant: of the probability over Jeffreys' prior
+  };
+  /// In ascending order.
+  const std::vector<Place> &places() const { return sorted; }
 
 private:
-  /// Each place stands for the amplitudes half-way to its neighbours.
-  std::pair<double, double> cell(std::size_t place) const;
+  double log_likelihood_at(double amplitude) const;
 
-  /// Part of a cell.
+  std::vector<Place> sorted;
+  /// Each place stands for the amplitudes half-way to its neighbours, in several parts.
   struct Slice
   {
     double low, high, probability, log_likelihood;
   };
-  std::vector<Slice> slices() const;
-  double log_likelihood_at(double amplitude) const;
-
-  std::vector<std::pair<double, double>> sorted;
-  std::vector<double> log_likelihood; ///< at each place: its probability over Jeffreys' prior
+  std::vector<Slice> slices;
 };
 
 } // namespace eunoe::discovery

@@ -41,7 +41,7 @@ struct Fitted
   Eigen::VectorXd mean; ///< in the target's coordinates
   Target::Prediction prediction;
 };
-Fitted fit_to(const Target &target, const std::map<std::size_t, double> &effects,
+Fitted fit_to(const Target &target, const EffectPositions &effects,
               const Eigen::VectorXd &nuisances);
 
 /// Measured values beside those of the models, a row for each data point.

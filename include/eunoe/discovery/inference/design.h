@@ -45,7 +45,6 @@ private:
     std::size_t effect;
     double amplitude, weight;
   };
-  std::vector<Wish> wishes(const Evidence &evidence, const Findings &findings) const;
   bool run(std::vector<Wish> wishes, std::uint64_t n_points);
   /// Design points of a round after this many runs.
   std::uint64_t size_of_round(std::uint64_t n_runs) const;

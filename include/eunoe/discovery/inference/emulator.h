@@ -6,7 +6,7 @@
 #include <eunoe/discovery/statistics/gaussian_process.h>
 #include <eunoe/discovery/statistics/modes.h>
 
-#include <map>
+#include <functional>
 #include <vector>
 
 namespace eunoe::discovery {
@@ -41,7 +41,7 @@ public:
   /// Whether there are runs of an effect.
   bool knows(std::size_t effect) const { return processes[effect].n_points() > 0; }
   /// Prediction of a set of effects at their positions.
-  Prediction predict(const std::map<std::size_t, double> &effects) const;
+  Prediction predict(const EffectPositions &effects) const;
   /// Variance of each data point of a run over that of the base model, for one of whitened modes.
   Eigen::VectorXd growth(const Eigen::VectorXd &scatter) const;
 
@@ -71,15 +71,14 @@ private:
   };
   std::vector<Group> make_groups(const std::vector<Sample> &samples,
                                  const std::vector<Eigen::Index> &columns) const;
-  static std::vector<Group> without_effects(const std::vector<Group> &groups);
-  /// Those that scatter as the base model does: without effects, or with one that changes little.
-  /// Where an effect is strong, single modes may scatter ten times as much, and deviations of all
-  /// runs together have far too heavy tails for a test of whether anything is missing.
-  std::vector<Group> near_base(const std::vector<Group> &groups) const;
+  /// Whether runs scatter as those of the base model do: without effects, or with one that changes
+  /// little. Where an effect is strong, single modes may scatter ten times as much, and deviations
+  /// of all runs together have far too heavy tails for a test of whether anything is missing.
+  bool is_near_base(const Group &group) const;
   Scatter::Replicates whitened(const Group &group) const;
-  /// @param groups from whose replicates it is estimated
-  /// @return own_share()
-  double estimate_covariance(const std::vector<Group> &groups);
+  /// From the replicates of those groups that meet a condition.
+  void estimate_covariance(const std::vector<Group> &groups,
+                           const std::function<bool(const Group &)> &condition);
   void fit_scatter(const std::vector<Group> &groups);
   BaseInformation information_of_base(const std::vector<Group> &groups) const;
   void share_base(BaseInformation all);

@@ -3,7 +3,6 @@
 
 #include <eunoe/discovery/inference/likelihood.h>
 
-#include <map>
 #include <optional>
 #include <vector>
 
@@ -28,11 +27,19 @@ struct Model
   std::vector<std::size_t> effects;
   bool is_discrepancy = false;
   double log_prior = 0., log_evidence = 0., probability = 0.;
-  std::map<std::size_t, double> best; ///< likeliest amplitudes
+  EffectPositions best; ///< likeliest amplitudes
 };
 
 /// Whether one of the models has the same effects.
 bool is_among(const Model &model, const std::vector<Model> &models);
+/// Whether a model has all effects of another one.
+bool is_part(const Model &part, const Model &whole);
+
+/// Gives models their probabilities by the evidence to the power of one over the temperature, and
+/// sorts them. Priors stay what they are: models of two effects are many.
+void temper(std::vector<Model> &models, double temperature);
+/// The likeliest come first.
+void sort_by_probability(std::vector<Model> &models);
 
 /// Marginal likelihoods of all models: amplitudes are integrated, too.
 class Evidence : public Likelihood
@@ -73,8 +80,8 @@ public:
   Eigen::ArrayXd log_single(std::size_t effect,
                             const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  /// The likeliest amplitude of an effect.
-  double best_amplitude(std::size_t effect, const Eigen::VectorXd &data) const;
+  /// The model of an effect, without its probability.
+  Model single(std::size_t effect, const Eigen::VectorXd &data) const;
 
   /// Log Bayes factors of "an effect is missing, or something else" against nothing.
   Eigen::ArrayXd log_bayes_factors(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
@@ -102,7 +109,6 @@ public:
 
 private:
   void make_grid(std::size_t effect);
-  void set_strengths(std::vector<Place> &side) const;
   using Covariance = Eigen::LLT<Eigen::MatrixXd>;
   /// Of data by a change that is not catalogued, for each size of it and level of noise.
   std::vector<Covariance> make_discrepancies() const;
@@ -110,15 +116,11 @@ private:
   /// @param roughly without the levels of the instrument's noise
   void integrate(Model &pair, const Eigen::VectorXd &data, bool roughly) const;
   void polish(Model &pair, const Eigen::VectorXd &data) const;
-  /// Number of the first place on the side of the null value on which an amplitude lies.
-  std::size_t first_of_side(std::size_t effect, double amplitude) const;
+  /// The places on the side of the null value on which an amplitude lies.
+  const Place *side_of(std::size_t effect, double amplitude) const;
   double log_density(std::size_t effect, double amplitude) const;
-  /// Whether the prior reaches an amplitude.
-  bool is_possible(std::size_t effect, double amplitude) const;
-  double log_at(const std::map<std::size_t, double> &effects, const Eigen::VectorXd &data) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  double likeliest(std::size_t effect, const Eigen::ArrayXXd &of_places) const;
 
   const FactorSpace &factors;
   const Prior prior;

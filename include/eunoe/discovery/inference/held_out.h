@@ -16,7 +16,7 @@ class HeldOut
 {
 public:
   HeldOut(const StudyOptions &options, const DecisionRule &rule, const MeasuredData &data,
-          const FactorSpace &space, Samples &samples);
+          Samples &samples);
 
   /// Largest number of runs of a test that is not in doubt.
   std::uint64_t n_runs() const;
@@ -28,16 +28,12 @@ public:
   Json test(const Evidence &evidence, Findings &findings);
 
 private:
-  /// The held-out data beside the predictions of the base model and, after it, of others.
-  struct Comparison
+  /// The held-out data beside the predictions of the base model and, after it, of others, and what
+  /// they say of the models.
+  struct Test
   {
     Target target;
     Contest contest;
-  };
-  /// What a comparison says of the models; without one, the data do not vary.
-  struct Test
-  {
-    std::optional<Comparison> comparison;
     TestedModels tested;
   };
   /// Models of the answer, and others that held-out data might speak for.
@@ -56,7 +52,6 @@ private:
   const StudyOptions &options;
   const DecisionRule &rule;
   const MeasuredData &data;
-  const FactorSpace &space;
   Samples &samples;
   const std::vector<std::string> experiments;
 };

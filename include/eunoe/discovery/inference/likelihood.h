@@ -2,8 +2,7 @@
 #define eunoe_discovery_inference_likelihood_h
 
 #include <eunoe/discovery/inference/target.h>
-
-#include <vector>
+#include <eunoe/discovery/statistics/logarithms.h>
 
 namespace eunoe::discovery {
 
@@ -28,9 +27,13 @@ class Likelihood
 public:
   explicit Likelihood(const Target &target);
 
-  Hypothesis prepare(const Target::Prediction &prediction) const;
-  /// With the mean variance instead of levels of the instrument's noise: a fifth of the work.
-  Hypothesis prepare_roughly(const Target::Prediction &prediction) const;
+  Hypothesis prepare(const Target::Prediction &prediction) const
+  {
+    return prepare(prediction, aim.variances(prediction));
+  }
+  /// @param variances coordinates x levels: with the mean variance instead of those of the
+  /// instrument's noise it is a fifth of the work
+  static Hypothesis prepare(const Target::Prediction &prediction, const Eigen::MatrixXd &variances);
   /// Log-likelihoods of data in columns; the instrument's noise is integrated.
   Eigen::ArrayXd log_likelihoods(const Hypothesis &hypothesis,
                                  const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -56,6 +59,11 @@ public:
 
   const Target &target() const { return aim; }
   const Hypothesis &nothing() const { return base; }
+  /// Of the mean, from that of the base model.
+  Eigen::VectorXd change(const Target::Prediction &with) const
+  {
+    return with.mean - base.prediction.mean;
+  }
   double degrees_of_freedom() const { return dof; } ///< of the t-distribution
 
 protected:
@@ -64,8 +72,6 @@ protected:
   Eigen::ArrayXXd log_t(const Eigen::ArrayXd &constants, const Eigen::ArrayXXd &distances) const;
 
 private:
-  /// @param variances coordinates x levels
-  static Hypothesis prepare(const Target::Prediction &prediction, const Eigen::MatrixXd &variances);
   Eigen::ArrayXXd log_of_levels(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
@@ -73,11 +79,6 @@ private:
   const double dof;
   const Hypothesis base;
 };
-
-/// log(sum of exp).
-double log_sum(const std::vector<double> &logarithms);
-/// The same of each column.
-Eigen::ArrayXd log_sums(const Eigen::ArrayXXd &logarithms);
 
 } // namespace eunoe::discovery
 

@@ -7,24 +7,28 @@
 
 namespace eunoe::discovery {
 
-/// A model with amplitudes and nuisances as the data of the fit leave them uncertain: draws from
-/// the posterior.
-struct PosteriorDraws
+/// Posterior of the nuisances for fixed effects, in prior deviations: a normal distribution by its
+/// mean and a root of its covariance.
+struct NuisancePosterior
 {
-  std::vector<std::map<std::size_t, double>> effects;
-  std::vector<Eigen::VectorXd> nuisances;
-  /// What the nuisances were drawn from, for the effects of each draw: a normal distribution by its
-  /// mean and a root of its covariance.
-  std::vector<Eigen::VectorXd> nuisance_means;
-  std::vector<Eigen::MatrixXd> nuisance_roots;
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd root;
 };
+NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPositions &effects);
+
+/// A model with amplitudes and nuisances as the data of the fit leave them uncertain: a draw from
+/// the posterior.
+struct PosteriorDraw
+{
+  EffectPositions effects;
+  NuisancePosterior given; ///< these effects
+  Eigen::VectorXd nuisances;
+};
+using PosteriorDraws = std::vector<PosteriorDraw>;
 
 /// @param model without effects: nothing is missing
 PosteriorDraws draw_posterior(const Evidence &evidence, const Model &model, unsigned int draws,
                               std::uint32_t seed);
-
-/// Best values of the nuisances for fixed effects, in prior deviations.
-Eigen::VectorXd best_nuisances(const Evidence &evidence, const Hypothesis &hypothesis);
 
 /// How well a model fits the data that it was fitted to: the probability of a smaller likelihood of
 /// the best amplitudes if the model is true. Twins of the model are fitted as the data were, so
@@ -50,20 +54,20 @@ public:
   /// Data if the effects of a draw are true, and the nuisances anything that the posterior allows.
   struct Conditional
   {
-    Eigen::VectorXd twin; ///< an example
     Eigen::VectorXd mean, variance;
     Eigen::MatrixXd columns; ///< what nuisances add to the covariance, by its root
   };
   const std::vector<Conditional> &draws() const { return all; }
 
-  /// The examples, in columns.
-  Eigen::MatrixXd twins() const;
+  /// An example of each, in columns.
+  const Eigen::MatrixXd &twins() const { return examples; }
   /// Logarithm of the probability density of data in columns, whatever the level of the
   /// instrument's noise is, but for a constant.
   Eigen::ArrayXd log_density(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
 private:
   std::vector<Conditional> all;
+  Eigen::MatrixXd examples;
   Eigen::VectorXd centre;
   Eigen::LLT<Eigen::MatrixXd> llt;
   std::vector<Eigen::LLT<Eigen::MatrixXd>> levels; ///< of the covariance, by noise

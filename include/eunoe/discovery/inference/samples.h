@@ -6,8 +6,8 @@
 #include <eunoe/discovery/study.h>
 
 #include <Eigen/Dense>
-#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,10 +20,10 @@ class FactorSpace
 public:
   explicit FactorSpace(const std::vector<Factor> &factors);
 
-  std::size_t n_effects() const { return effects.size(); }
-  std::size_t n_nuisances() const { return nuisances.size(); }
-  const Factor &effect(std::size_t k) const { return effects[k]; }
-  const Factor &nuisance(std::size_t k) const { return nuisances[k]; }
+  std::size_t n_effects() const { return effects; }
+  std::size_t n_nuisances() const { return all.size() - effects; }
+  const Factor &effect(std::size_t k) const { return all[k]; }
+  const Factor &nuisance(std::size_t k) const { return all[effects + k]; }
 
   /// Range of an effect's positions.
   double lower(std::size_t effect) const;
@@ -31,17 +31,21 @@ public:
 
   Eigen::VectorXd origin() const
   {
-    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_effects() + n_nuisances()));
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(all.size()));
   }
   Amplitudes amplitudes(const Eigen::VectorXd &position) const;
   /// Nothing if an amplitude is that of no factor of the study.
   std::optional<Eigen::VectorXd> position(const Amplitudes &amplitudes) const;
 
 private:
-  std::vector<Factor> effects, nuisances;
+  std::vector<Factor> all;
+  std::size_t effects; ///< their number
 };
 
-/// A simulation that reached its end.
+/// Positions of effects by their number; all others are at their null value.
+using EffectPositions = std::map<std::size_t, double>;
+
+/// A simulation; without values if it did not reach its end.
 struct Sample
 {
   Eigen::VectorXd position, values;
@@ -72,10 +76,15 @@ public:
           const std::vector<std::string> &experiments);
 
   /// Runs design points, as many as the budget has room for.
-  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
+  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments)
+  {
+    run(points, experiments, false);
+  }
   /// The same of the replicates that are missing in each experiment.
-  void complete(const std::vector<DesignPoint> &points,
-                const std::vector<std::string> &experiments);
+  void complete(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments)
+  {
+    run(points, experiments, true);
+  }
 
   const std::vector<Sample> &of(const std::string &experiment) const
   {
@@ -86,11 +95,14 @@ public:
   unsigned int n_missing(const DesignPoint &point, const std::string &experiment) const;
   /// Whether each experiment that an effect concerns has a run with it alone. Of what was never run
   /// an emulator would say that it changes nothing.
-  bool has_any(std::size_t effect, const std::vector<std::string> &experiments) const;
+  bool has_any(std::size_t effect, const std::vector<std::string> &experiments) const
+  {
+    return has_near(effect, std::nullopt, 1, experiments);
+  }
   /// Whether a run with an effect alone has failed in one of the experiments.
   bool has_failed(std::size_t effect, const std::vector<std::string> &experiments) const;
   /// Whether each experiment that an effect concerns has this many runs with nearly this amplitude.
-  bool has_near(std::size_t effect, double amplitude, unsigned int runs,
+  bool has_near(std::size_t effect, std::optional<double> amplitude, unsigned int runs,
                 const std::vector<std::string> &experiments) const;
 
   /// Whether runs with nearly this amplitude fail in one of the experiments, such as where its
@@ -106,23 +118,20 @@ public:
   /// Keeps runs of the budget for later.
   void set_aside(std::uint64_t runs) { reserved = runs; }
   Simulator &simulator() const { return source; }
+  const FactorSpace &space() const { return factors; }
 
 private:
-  using Number = std::function<unsigned int(const DesignPoint &, const std::string &)>;
-  /// Runs as many replicates of each design point in each experiment.
   void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
-           const Number &number);
+           bool only_missing);
   void add(const RunRequest &request, const RunResult &result);
-  /// Whether a position has nearly this amplitude and no other effect, and how many runs that
-  /// reached their end have.
-  bool is_near(const Eigen::VectorXd &position, std::size_t effect, double amplitude) const;
-  std::size_t n_near(const std::string &experiment, std::size_t effect, double amplitude) const;
+  /// Number of runs with an effect alone, and with nearly this amplitude if there is one.
+  std::size_t n_near(const std::vector<Sample> &runs, std::size_t effect,
+                     std::optional<double> amplitude) const;
 
   const StudyOptions &options;
-  const FactorSpace &space;
+  const FactorSpace &factors;
   Simulator &source;
-  std::map<std::string, std::vector<Sample>> samples;
-  std::map<std::string, std::vector<Eigen::VectorXd>> failures; ///< positions of failed runs
+  std::map<std::string, std::vector<Sample>> samples, failures;
   std::map<std::pair<std::string, Amplitudes>, unsigned int> counts;
   std::uint32_t next_seed;
   std::uint64_t asked = 0, failed = 0, known = 0, reserved = 0;

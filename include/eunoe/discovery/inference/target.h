@@ -12,7 +12,7 @@
 
 namespace eunoe::discovery {
 
-/// What was measured in one experiment, as far as it varies.
+/// What was measured in one experiment.
 struct MeasuredExperiment
 {
   std::string name;
@@ -29,20 +29,16 @@ public:
   using UserError::UserError;
 };
 
-/// Sorts measured points by experiment, and leaves out those that vary neither in the runs of the
-/// base model nor in the measurement.
-/// @param notes gets a sentence for each that is left out
+/// Sorts measured points by experiment.
 std::vector<MeasuredExperiment> sort_by_experiment(const std::vector<MeasuredPoint> &points,
-                                                   const Samples &samples,
-                                                   const Simulator &simulator,
-                                                   std::vector<std::string> &notes);
+                                                   const Samples &samples);
 
 /// The measurement of several experiments beside their emulators, in coordinates in which all
 /// noise is independent: whitened modes, turned such that the noise of the instrument is diagonal.
 class Target
 {
 public:
-  Target(std::vector<MeasuredExperiment> measured, const Samples &samples, const FactorSpace &space,
+  Target(const std::vector<MeasuredExperiment> &measured, const Samples &samples,
          double model_tolerance);
 
   /// A prediction of all experiments.
@@ -54,7 +50,7 @@ public:
     Eigen::VectorXd scatter;  ///< variance of each coordinate of a run
     Eigen::VectorXd common;   ///< variance of a run as a whole, for each experiment
   };
-  Prediction predict(const std::map<std::size_t, double> &effects) const;
+  Prediction predict(const EffectPositions &effects) const;
 
   /// The instrument's noise is known by its posterior: levels of equal probability stand for it.
   static constexpr std::size_t n_noise_levels = 5;
@@ -62,7 +58,10 @@ public:
   /// level of the instrument's noise.
   Eigen::MatrixXd variances(const Prediction &prediction) const;
   /// Its mean over the levels.
-  Eigen::VectorXd variance(const Prediction &prediction) const;
+  Eigen::VectorXd variance(const Prediction &prediction) const
+  {
+    return variances(prediction).rowwise().mean();
+  }
   /// Share of that variance which the prediction's own error makes: 0 where more runs tell nothing.
   double unknown_share(const Prediction &prediction) const
   {
@@ -81,19 +80,31 @@ public:
 
   struct Part
   {
+    /// @param first coordinate
+    Part(const MeasuredExperiment &one, const Samples &samples, double model_tolerance,
+         Eigen::Index first);
+
     MeasuredExperiment measured;
     ExperimentEmulator emulator;
     InstrumentNoise noise;
-    Eigen::MatrixXd averaging;       ///< of whitened modes, by the repeats of the points
-    Eigen::MatrixXd rotation;        ///< from whitened modes to coordinates
-    Eigen::VectorXd tolerance;       ///< error of the model at each point, in base deviations
-    Eigen::VectorXd tolerated;       ///< variance of the coordinates by it
-    Eigen::MatrixXd instrument;      ///< that of the means by it: coordinates x noise levels
-    Eigen::MatrixXd mean_instrument; ///< its mean over the levels, one column
-    Eigen::VectorXd point_ratio;     ///< variance of a repeat over that of a run, of each point
-    Eigen::VectorXd mean_scatter;    ///< variance of the coordinates of the data over a run's
-    double repeats = 1., ratio = 1.; ///< means over the data points
-    Eigen::Index first = 0;          ///< coordinate
+    Eigen::VectorXd tolerance;  ///< error of the model at each point, in base deviations
+    double repeats, ratio = 1.; ///< means over the data points
+    Eigen::Index first;         ///< coordinate
+    /// From the scatter of one run to that of the data, in whitened modes: points that were
+    /// repeated less often scatter more.
+    Eigen::MatrixXd averaging;
+    Eigen::MatrixXd rotation;     ///< from whitened modes to coordinates
+    Eigen::VectorXd tolerated;    ///< variance of the coordinates by the model's error
+    Eigen::MatrixXd instrument;   ///< that of the means by it: coordinates x noise levels
+    Eigen::VectorXd point_ratio;  ///< variance of a repeat over that of a run, of each point
+    Eigen::VectorXd mean_scatter; ///< variance of the coordinates of the data over a run's
+
+    /// The rows of this experiment among those of all coordinates.
+    template <typename Rows>
+    auto of(Rows &all) const
+    {
+      return all.middleRows(first, emulator.size());
+    }
 
     /// What the repeats scatter beyond the base model is the instrument's, or an effect's own.
     /// @param scatter variance of runs over that of the base model's
@@ -102,8 +113,6 @@ public:
   const std::vector<Part> &experiments() const { return parts; }
 
 private:
-  Eigen::MatrixXd variances(const Prediction &prediction, Eigen::MatrixXd Part::*instrument) const;
-
   std::vector<Part> parts;
   Eigen::VectorXd all;
 };

@@ -12,8 +12,7 @@ namespace eunoe::discovery {
 /// without an instrument's noise: what stands for data before there are any.
 /// @param without data points that are left out
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
-                                         const Samples &samples, const Simulator &simulator,
-                                         unsigned int repeats,
+                                         const Samples &samples, unsigned int repeats,
                                          const std::set<DataPoint> &without = {});
 
 /// What is known of experiments before anything is measured.

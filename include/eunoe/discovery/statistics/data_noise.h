@@ -48,20 +48,12 @@ public:
   InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
                   const Repeats &repeats);
 
-  /// Expected excess variance of each group if the level is at this quantile.
-  Eigen::VectorXd at(double quantile) const;
-  /// Excess variance of each group, drawn for the level at this quantile.
-  Eigen::VectorXd draw(double quantile, RandomStream &random) const;
+  /// Excess variance of each group if the level is at this quantile.
+  const std::vector<ExcessVariance> &at(double quantile) const;
 
 private:
-  struct Level
-  {
-    double below; ///< probability of all levels up to this one
-    std::vector<ExcessVariance> groups;
-  };
-  const Level &level(double quantile) const;
-
-  std::vector<Level> levels;
+  std::vector<std::vector<ExcessVariance>> levels;
+  std::vector<double> below; ///< probability of all levels up to each
 };
 
 } // namespace eunoe::discovery

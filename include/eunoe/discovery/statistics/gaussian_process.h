@@ -6,24 +6,31 @@
 
 namespace eunoe::discovery {
 
-/// Outcome of the base model as a linear function of the nuisances: coefficients (a row for the
-/// mean, one for each nuisance; a column for each value) and their covariance for each value, in
-/// units of the variance of one replicate.
+/// Outcome of the base model as a linear function of the nuisances, a column for each value:
+/// coefficients (a row for the mean, one for each nuisance) and the elements of their covariance,
+/// in units of the variance of one replicate.
 struct LinearBase
 {
-  Eigen::MatrixXd coefficients;
-  std::vector<Eigen::MatrixXd> covariance;
+  Eigen::MatrixXd coefficients, covariance;
 };
 
 /// What some runs say of the base model: the normal equations of a regression, to which those of
 /// other runs can be added.
 struct BaseInformation
 {
-  std::vector<Eigen::MatrixXd> precision; ///< for each value, terms x terms
-  Eigen::MatrixXd weighted;               ///< terms x values: precision times coefficients
+  Eigen::MatrixXd precision; ///< elements of the matrix x values
+  Eigen::MatrixXd weighted;  ///< terms x values: precision times coefficients
 
-  BaseInformation &operator+=(const BaseInformation &other);
-  BaseInformation &operator-=(const BaseInformation &other);
+  BaseInformation &operator+=(const BaseInformation &other)
+  {
+    precision += other.precision;
+    weighted += other.weighted;
+    return *this;
+  }
+  BaseInformation operator-(const BaseInformation &other) const
+  {
+    return {precision - other.precision, weighted - other.weighted};
+  }
   LinearBase solve() const;
 };
 
@@ -93,11 +100,10 @@ private:
   struct Scale
   {
     double variance;
-    Eigen::VectorXd weight;       ///< of each axis
-    Eigen::MatrixXd precision;    ///< of the base model's terms, by these points
-    Eigen::MatrixXd weighted;     ///< terms x values
-    Eigen::MatrixXd coefficients; ///< of all runs, terms x values
-    Eigen::MatrixXd covariance;   ///< of them, a row for each value
+    Eigen::VectorXd weight;    ///< of each axis
+    Eigen::VectorXd precision; ///< elements of the matrix, by these points, for every value
+    Eigen::MatrixXd weighted;  ///< terms x values
+    LinearBase base;           ///< by all runs
   };
   Axes axes_of(const Kernel &kernel) const;
   Eigen::MatrixXd log_likelihoods(const Axes &axes,

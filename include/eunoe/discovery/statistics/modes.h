@@ -16,16 +16,16 @@ namespace eunoe::discovery {
 class Modes
 {
 public:
-  /// Data points of one observable of one experiment, in the order of their indices.
+  /// Data points of one observable, in the order of their indices.
   struct Group
   {
-    std::string experiment, observable;
+    std::string observable;
     std::vector<Eigen::Index> points, modes;
   };
 
   Modes() = default;
 
-  /// @param points that are measured
+  /// @param points of an experiment that are measured
   /// @param deviations standard deviation of each between replicates, > 0
   Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviations);
 
