@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import atexit
+import contextlib
 import itertools
 import subprocess
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar
 
@@ -64,14 +66,18 @@ class SharedProcesses:
         self.numbers = itertools.count()
         atexit.register(self.close)
 
-    def __call__(self, *words: Path | str, cwd: Path) -> subprocess.CompletedProcess:
+    @contextlib.contextmanager
+    def one(self) -> Iterator[ManyRuns]:
         try:
             process = self.idle.pop()
         except IndexError:
             process = ManyRuns(self.program, self.folder / str(next(self.numbers)))
-        done = process(*words, cwd=cwd)
+        yield process
         self.idle.append(process)
-        return done
+
+    def __call__(self, *words: Path | str, cwd: Path) -> subprocess.CompletedProcess:
+        with self.one() as process:
+            return process(*words, cwd=cwd)
 
     def close(self) -> None:
         for process in self.idle:
