@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import atexit
+import contextlib
+import itertools
 import subprocess
 import threading
+from collections.abc import Iterator
 from pathlib import Path
+from typing import ClassVar
 
-from eunoe.launch import SHARED, mpirun
-
-HANG = 120
+from attempts import HANGING
+from eunoe.endurance.kill_and_restart import Case
+from eunoe.launch import SHARED, Failure, mpirun
 
 
 class ManyRuns:
@@ -30,7 +35,7 @@ class ManyRuns:
         if self.process is None:
             self.process = subprocess.Popen(self.command, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                             text=True)
-        alarm = threading.Timer(HANG, self.process.kill)
+        alarm = threading.Timer(HANGING, self.process.kill)
         alarm.start()
         self.process.stdin.write("\t".join(arguments) + "\n")
         self.process.stdin.flush()
@@ -50,3 +55,50 @@ class ManyRuns:
             self.process.stdin.close()
             self.process.wait()
             self.process = None
+
+
+class SharedProcesses:
+    """As many of these processes as there are runs at the same time, with the names of their files in a folder."""
+
+    def __init__(self, program: str, folder: Path) -> None:
+        self.program, self.folder = program, folder
+        self.idle: list[ManyRuns] = []
+        self.numbers = itertools.count()
+        atexit.register(self.close)
+
+    @contextlib.contextmanager
+    def one(self) -> Iterator[ManyRuns]:
+        try:
+            process = self.idle.pop()
+        except IndexError:
+            process = ManyRuns(self.program, self.folder / str(next(self.numbers)))
+        yield process
+        self.idle.append(process)
+
+    def __call__(self, *words: Path | str, cwd: Path) -> subprocess.CompletedProcess:
+        with self.one() as process:
+            return process(*words, cwd=cwd)
+
+    def close(self) -> None:
+        for process in self.idle:
+            process.close()
+
+
+class QuickCase(Case):
+    """A case whose runs on one rank need no process of their own, unless they are to be stopped."""
+
+    processes_at_hand: ClassVar[SharedProcesses]
+
+    def answer(self, ranks: int, *settings: str) -> subprocess.CompletedProcess:
+        words = self.command(ranks, *settings)
+        if ranks > 1:
+            return subprocess.run(words, text=True, check=False, capture_output=True)
+        return self.processes_at_hand(*words[1:], cwd=self.folder)
+
+    def run(self, ranks: int, *settings: str) -> None:
+        if ranks > 1:
+            super().run(ranks, *settings)
+            return
+        done = self.answer(ranks, *settings)
+        if done.returncode != 0:
+            raise Failure(f"The run ended with exit code {done.returncode}:\n{done.stdout}{done.stderr}")

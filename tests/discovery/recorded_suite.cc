@@ -2,12 +2,12 @@
 // JSON per study.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
-// are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
-// and no study); ideal (how often an observer who knows all fingerprints detects single effects and
-// names them and two effects rightly, or another one for an effect that his catalogue lacks, and no
-// study); level (how often data without any effect seem to have one, for the runs of one study
-// each, see observe_level); weights and tail (see observe_weights, observe_tail); table=FILE.
+// Options: only=KIND; budget=NUMBER; simulated (studies whose data are recorded simulations,
+// instead of truths at any amplitude); describe (what the table holds, and no study); ideal (how
+// often an observer who knows all fingerprints detects single effects and names them and two
+// effects rightly, or another one for an effect that his catalogue lacks, and no study); level (how
+// often data without any effect seem to have one, for the runs of one study each, see
+// observe_level); weights and tail (see observe_weights, observe_tail); table=FILE.
 
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
@@ -15,8 +15,6 @@
 
 #include "ideal_observer.h"
 #include "recorded_cases.h"
-
-#include <mpi.h>
 
 namespace {
 
@@ -65,7 +63,6 @@ void observe_pairs(const RecordedTable &table, const StudyKind &kind, const Suit
   }
   std::printf("two of strength %g: both named in %u of %u, leading in %u, among the models in %u\n",
               kind.strength, named, options.n_seeds, first, covered);
-  std::fflush(stdout);
 }
 
 /// How often the ideal observer names something outright whose catalogue lacks the effect, by all
@@ -91,7 +88,6 @@ void observe_deleted(const RecordedTable &table, const StudyKind &kind, const Su
   }
   std::printf("deleted effect of strength %g: another one named outright in %u of %u\n",
               kind.strength, named, options.n_seeds);
-  std::fflush(stdout);
 }
 
 /// How often the ideal observer detects and names the right effect, on the data of the studies with
@@ -120,8 +116,8 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
     for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
       const DrawnCase drawn(table, kind, options.first_seed + k);
       const IdealObserver observer = observer_of(drawn);
-      const std::vector<std::string> names = observer.names(credible);
-      const std::string truth = drawn.one.strengths.begin()->first;
+      const std::vector<IdealObserver::Names> names = observer.single_effects(credible);
+      const IdealObserver::Names truth = {drawn.one.strengths.begin()->first};
       right += names.front() == truth;
       covered += std::count(names.begin(), names.end(), truth) > 0;
       size += names.size();
@@ -135,7 +131,6 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
     for (const double level : levels)
       std::printf(", detected at level %g in %u", level, detected[level]);
     std::printf("\n");
-    std::fflush(stdout);
   }
 }
 
@@ -204,7 +199,6 @@ void observe_level(const RecordedTable &table, const StudyOptions &options,
   for (const auto &[level, number] : below)
     std::printf(" p <= %g in %u of %u;", level, number, n_data);
   std::printf("\n");
-  std::fflush(stdout);
 }
 
 /// Variance of data by the scatter of runs along the weights by which a study estimates an
@@ -243,7 +237,6 @@ void observe_weights(const RecordedTable &table, const StudyOptions &options,
   }
   std::printf("seed %u, %s: %.3f of the simulator, %.3f of twins\n", seed, name.c_str(),
               of_simulator / assumed, of_twins / assumed);
-  std::fflush(stdout);
 }
 
 /// Small probabilities by the few draws that a study makes, beside those by many.
@@ -273,7 +266,6 @@ void observe_tail(const RecordedTable &table, const StudyOptions &options, const
     std::printf("%g: %.2g, %.2g, %.2g\n", p, found[n_tails / 10], found[n_tails / 2],
                 found[9 * n_tails / 10]);
   }
-  std::fflush(stdout);
 }
 
 void study_simulations(const RecordedTable &table, const StudyOptions &options,
@@ -323,14 +315,5 @@ void run(const SuiteOptions &options)
 
 int main(int argc, char **argv)
 {
-  MPI_Init(&argc, &argv);
-  int code = 0;
-  try {
-    run(SuiteOptions(argc, argv));
-  } catch (const std::exception &error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    code = 1;
-  }
-  MPI_Finalize();
-  return code;
+  return run_suite(argc, argv, run);
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <mpi.h>
 #include <set>
 
 namespace test {
@@ -37,7 +39,6 @@ struct SuiteCase
   std::map<std::string, double> strengths; ///< of the effects; negative: below the null value
   Amplitudes truth;                        ///< with the nuisances
   std::vector<std::string> excluded;       ///< deleted from the catalogue
-  double clearness = 0., separation = 0.;  ///< of the truth (Resolution)
 };
 
 /// What the command line of a suite asks for.
@@ -60,10 +61,6 @@ struct SuiteOptions
         study.budget = std::stoul(option.substr(7));
       else if (option.rfind("only=", 0) == 0)
         only = option.substr(5);
-      else if (option.rfind("null-runs=", 0) == 0)
-        study.null_runs = static_cast<unsigned int>(std::stoul(option.substr(10)));
-      else if (option.rfind("nuisance-runs=", 0) == 0)
-        study.nuisance_runs = static_cast<unsigned int>(std::stoul(option.substr(14)));
       else
         others.push_back(option);
     }
@@ -108,15 +105,6 @@ inline SuiteCase draw_case(const KnownSimulator &simulator, const StudyKind &kin
   return one;
 }
 
-/// How far a drawn truth is from the base model and from competing effects.
-inline void find_resolution(const KnownSimulator &simulator, const std::vector<std::string> &fit,
-                            unsigned int repeats, SuiteCase &one)
-{
-  const Resolution resolution(simulator, fit, repeats);
-  one.clearness = resolution.clearness(one.truth);
-  one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
-}
-
 /// A study's answer and the truth: a line that contrib/eunoe/discovery/score.py reads.
 inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 {
@@ -145,8 +133,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"amplitudes", amplitudes}}},
       {"answer",
        {{"verdict", c["verdict"]},
-        {"clearness of the truth", one.clearness},
-        {"separation of the truth", one.separation},
+        {"detected", c["detected"]},
         {"p of nothing missing", c["p of nothing missing"]},
         {"confidence off catalogue", c["confidence off catalogue"]},
         {"candidates", candidates},
@@ -159,7 +146,6 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"gaps", {{"fit", c["gaps"]["fit"]}, {"held-out", held_out}}},
         {"runs", c["runs"]}}}};
   std::printf("%s\n", line.dump().c_str());
-  std::fflush(stdout);
 }
 
 /// The study of a case; its seed is that of the case, so that no two studies share a run.
@@ -171,6 +157,22 @@ inline Discovery study_of(const SuiteCase &one, KnownSimulator &simulator, const
   const std::vector<Factor> factors =
       one.excluded.empty() ? simulator.factors() : simulator.factors_without(one.excluded.front());
   return discover(options, data, factors, simulator, log);
+}
+
+/// What main() of a suite does. Each line of its output is there as soon as it is printed.
+inline int run_suite(int argc, char **argv, void (*run)(const SuiteOptions &))
+{
+  MPI_Init(&argc, &argv);
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+  int code = 0;
+  try {
+    run(SuiteOptions(argc, argv));
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    code = 1;
+  }
+  MPI_Finalize();
+  return code;
 }
 
 } // namespace test

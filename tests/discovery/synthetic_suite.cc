@@ -2,15 +2,10 @@
 // JSON per study. It takes minutes to hours and is not part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER;
-// no-nuisances, no-bend, even-chaos, no-swing (simpler simulators); steep (little of an effect
-// does most of it, as with cohesion and rolling resistance in a heap: truths lie far before the
-// amplitudes that are screened).
+// Options: only=KIND; budget=NUMBER.
 
 #include "suite.h"
 #include "synthetic.h"
-
-#include <mpi.h>
 
 namespace {
 
@@ -18,31 +13,10 @@ using namespace test;
 
 const std::vector<std::string> fit = {"spreading", "heap"}, held_out = {"thick layers"};
 
-Nature changed(const std::vector<std::string> &options)
-{
-  Nature nature;
-  for (const std::string &option : options) {
-    if (option == "no-nuisances")
-      nature.n_nuisances = 0;
-    else if (option == "no-bend")
-      nature.bend = 0.;
-    else if (option == "even-chaos")
-      nature.changed_chaos = nature.skewness = 0.;
-    else if (option == "no-swing")
-      nature.swing = 0.;
-    else if (option == "steep") {
-      nature.power = 0.45;
-      nature.bend = 0.;
-      nature.strength_of_scale *= 5.;
-    } else
-      throw std::runtime_error("unknown option " + option);
-  }
-  return nature;
-}
-
-void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOptions options)
+void one_study(const StudyKind &kind, std::uint32_t seed, StudyOptions options)
 {
   RandomStream random(seed, 99);
+  Nature nature;
   nature.seed = seed;
   nature.strength_of_scale *= 0.6 + 0.8 * random.uniform();
   nature.seed_correlation = 0.6 * random.uniform();
@@ -57,25 +31,24 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
   }
   SuiteCase one = draw_case(simulator, kind, fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  find_resolution(simulator, fit, repeats, one);
   const MeasuredData data =
       simulator.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
   options.further_experiments = {"shear"};
   print_outcome(one, study_of(one, simulator, data, options));
 }
 
+void run(const SuiteOptions &options)
+{
+  if (!options.others.empty())
+    throw std::runtime_error("unknown option " + options.others.front());
+  for (const StudyKind &kind : standard_kinds())
+    for (std::uint32_t k = 0; options.wants(kind) && k < options.n_seeds; ++k)
+      one_study(kind, options.first_seed + k, options.study);
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-  MPI_Init(&argc, &argv);
-  {
-    const SuiteOptions options(argc, argv);
-    const Nature nature = changed(options.others);
-    for (const StudyKind &kind : standard_kinds())
-      for (std::uint32_t k = 0; options.wants(kind) && k < options.n_seeds; ++k)
-        one_study(kind, options.first_seed + k, nature, options.study);
-  }
-  MPI_Finalize();
-  return 0;
+  return run_suite(argc, argv, run);
 }

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
@@ -19,7 +20,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 from eunoe.discovery import foreign_heaps
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
-from eunoe.discovery.outcomes import outcome_of, read, read_lines, score, wilson
+from eunoe.discovery.outcomes import Outcome, outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
 from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
@@ -41,7 +42,15 @@ class InFolder(unittest.TestCase):
         self.folder = Path(folder.name)
 
 
+def said(study: Study) -> str:
+    return " ".join(verdict_text(study)).replace("\u00a0", " ")
+
+
 class PageOfAStudy(InFolder):
+    def study(self, verdict: str) -> Study:
+        make_study(self.folder / verdict, verdict)
+        return Study(self.folder / verdict)
+
     def test_every_verdict_has_a_page(self) -> None:
         for verdict, title in TITLES.items():
             folder = self.folder / verdict.replace(" ", "_")
@@ -60,110 +69,99 @@ class PageOfAStudy(InFolder):
                     "off catalogue": "resembles cohesion (cosine 0.7)", "none": "Of 2 effects, 2 would",
                     "underpowered": "says little"}
         for verdict, words in expected.items():
-            folder = self.folder / verdict
-            make_study(folder, verdict)
-            self.assertIn(words, " ".join(verdict_text(Study(folder))))
+            self.assertIn(words, said(self.study(verdict)))
 
     def test_nothing_in_the_fit_beside_held_out_data_that_differ(self) -> None:
-        make_study(self.folder / "none", "none")
-        study = Study(self.folder / "none")
+        study = self.study("none")
         self.assertEqual(title_of(study), "Nothing is missing")
         study.content["gaps"]["held-out"] = {"p before": 1e-6, "result": "the base model does not describe the held-out data"}
         self.assertIn("held-out data differ", title_of(study))
-        words = " ".join(verdict_text(study))
+        words = said(study)
         self.assertIn("the held-out data do not (p = 1e-06)", words)
         self.assertNotIn("The measured data agree", words)
 
     def test_a_tie_whose_first_model_fits_badly_says_so(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
-        self.assertNotIn("none of them", " ".join(verdict_text(study)))
+        study = self.study("tie")
+        self.assertNotIn("none of them", said(study))
         study.content["p of the fit"] = 0.03
-        self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
+        self.assertIn("describes the data badly (p = 0.03)", said(study))
 
     def test_one_effect_or_none_of_the_catalogue(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         self.assertEqual(title_of(study), "Several effects explain the data alike")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
                                 {"effects": "none of the catalogue", "probability": 0.1}]
         self.assertEqual(title_of(study), "One effect, or something that the catalogue lacks")
-        words = " ".join(verdict_text(study))
+        words = said(study)
         self.assertIn("would tell whether it is this effect", words)
         self.assertNotIn("bits that are open", words)
         self.assertNotIn("would look like it", words)
 
     def test_a_name_that_an_effect_off_the_catalogue_could_have(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
                                 {"effects": "none of the catalogue", "probability": 0.1}]
         study.content["amplitudes"] = [{"effect": "cohesion", "unit": "J/m2", "amplitude": 1.1e-4,
                                         "lower": 0.9e-4, "upper": 1.3e-4}]
         study.content["calibration"] = {"lookalikes": {"strength": 8., "recognised": 0.7,
                                                      "taken for": {"cohesion": 0.3}}}
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("If it is cohesion (size of it): 0.00011 J/m2 (95 % interval", words)
         self.assertIn("left out of it in turn, 30 % are taken for this one", words)
         study.content["calibration"]["lookalikes"]["taken for"]["cohesion"] = 0.001
-        self.assertNotIn("would look like it", " ".join(verdict_text(study)))
+        self.assertNotIn("would look like it", said(study))
 
     def test_effects_that_were_not_tried(self) -> None:
         for verdict, title, sentence in (
                 ("tie", "One effect, or something that was not tried", "cannot say which of these it is"),
                 ("off catalogue", TITLES["off catalogue"], "no effect of the catalogue that was simulated, nor"),
                 ("underpowered", "Something is missing, and most effects were not tried", "no effect that was simulated")):
-            make_study(self.folder / verdict, verdict)
-            study = Study(self.folder / verdict)
+            study = self.study(verdict)
             study.content |= {"detected": True, "untried": ["wall_friction", "air_drag"]}
             if verdict == "tie":
                 study.content["tie"] = [{"effects": "cohesion", "probability": 0.99},
                                         {"effects": "none of the catalogue", "probability": 0.01}]
             self.assertEqual(title_of(study), title)
-            words = " ".join(verdict_text(study))
+            words = said(study)
             self.assertIn(sentence, words)
             self.assertIn("There is no simulation with wall friction, air drag, so what is missing may be that", words)
             self.assertNotIn("Nothing was found", words)
 
     def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
-        self.assertNotIn("in common", " ".join(verdict_text(study)))
+        study = self.study("tie")
+        self.assertNotIn("in common", said(study))
         for name in ("cohesion", "rolling_resistance"):
             study.effects[name]["family"] = "contacts that hold"
         self.assertIn("All of them have one thing in common, contacts that hold: an effect of this kind is missing "
-                      "with a probability of 100", " ".join(verdict_text(study)))
+                      "with a probability of 100", said(study))
         study.content["tie"] += [{"effects": "none of the catalogue", "probability": 0.1}]
-        self.assertIn("cohesion, rolling resistance have one thing in common", " ".join(verdict_text(study)))
+        self.assertIn("cohesion, rolling resistance have one thing in common", said(study))
         study.content["tie"][2]["probability"] = 1.5
-        self.assertNotIn("in common", " ".join(verdict_text(study)))
+        self.assertNotIn("in common", said(study))
 
     def test_a_member_of_a_tie_has_the_probability_of_models_with_more_effects(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.4},
                                 {"effects": "rolling_resistance", "probability": 0.2}]
         study.content["models"] = [*study.content["tie"],
                                    {"effects": "cohesion + wall_friction", "probability": 0.3},
                                    {"effects": "none of the catalogue", "probability": 0.1}]
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("cohesion (70 %), rolling resistance (20 %)", words)
         for name in ("cohesion", "rolling_resistance"):
             study.effects[name]["family"] = "contacts that hold"
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("with a probability of 90 %", words)
 
     def test_small_probabilities_are_told(self) -> None:
-        make_study(self.folder / "study", "named")
-        study = Study(self.folder / "study")
-        self.assertIn("probability 0.012.", " ".join(verdict_text(study)))
+        study = self.study("named")
+        self.assertIn("probability 0.012.", said(study))
         study.content["p of nothing missing"] = 3e-9
-        self.assertIn("probability 3e-09.", " ".join(verdict_text(study)))
+        self.assertIn("probability 3e-09.", said(study))
         self.assertIn("refute with a probability of: nothing 90", held_out_text(study))
 
     def test_what_held_out_data_say_of_a_tie(self) -> None:
-        make_study(self.folder / "study", "tie")
-        study = Study(self.folder / "study")
+        study = self.study("tie")
         table = study.content["gaps"]["held-out"]
         members = [{"effects": "cohesion", "p": 0.4, "result": "the gap shrinks"},
                    {"effects": "rolling_resistance", "p": 0.06, "result": "the gap shrinks"}]
@@ -178,16 +176,14 @@ class PageOfAStudy(InFolder):
                       held_out_text(study))
 
     def test_without_held_out_data(self) -> None:
-        make_study(self.folder / "study", "none")
-        study = Study(self.folder / "study")
+        study = self.study("none")
         study.content["gaps"]["held-out"] = {"result": "no held-out data"}
         self.assertIn("No data were held out", held_out_text(study))
         figure = envelope_figure(study, True)
         self.assertEqual([t.get_text() for t in figure.axes[0].texts], ["No data were held out."])
 
     def test_a_gap_that_grows_is_explained(self) -> None:
-        make_study(self.folder / "study", "off catalogue")
-        study = Study(self.folder / "study")
+        study = self.study("off catalogue")
         self.assertEqual(gap_text(study), "")
         study.content["gaps"]["fit"]["gap after"] = 3.5
         study.content["gaps"]["held-out"]["gap after"] = 3.2
@@ -197,8 +193,7 @@ class PageOfAStudy(InFolder):
         self.assertIn("data of the fit, with the closest model", labels)
 
     def test_fingerprints_are_read(self) -> None:
-        make_study(self.folder / "study", "named")
-        cells, prints = Study(self.folder / "study").fingerprints()
+        cells, prints = self.study("named").fingerprints()
         self.assertEqual(len(cells), 4)
         for fingerprint in prints:
             self.assertEqual(list(fingerprint.change), list(5. * CHANGES[fingerprint.effect]))
@@ -296,6 +291,18 @@ class ForeignHeaps(unittest.TestCase):
             self.assertRegex(entries, rf"(?m)^\| `{name.rsplit('/', 1)[-1]}` \|")
 
 
+def line_of(strength: float, answer: dict, kind: str = "single", truth: Sequence[str] = ("a",)) -> dict:
+    """A case of a suite, and its answer, which has nothing else to say."""
+    return {"case": {"name": "1", "kind": kind, "seed": 1, "study_seed": 1, "strengths": dict.fromkeys(truth, strength),
+                     "excluded": list(truth) if kind == "deleted" else [], "amplitudes": dict.fromkeys(truth, 1.)},
+            "answer": {"tie": [], "gaps": {}, "candidates": [{"effect": "a", "confidence": 0.9}], "amplitudes": [],
+                       "runs": {"asked for": 100}, **answer}}
+
+
+def rates_of(outcomes: Iterable[Outcome]) -> dict[str, tuple[int, int]]:
+    return {r.name: (r.hits, r.number) for r in score(list(outcomes)).rates}
+
+
 class Scores(InFolder):
     def add(self, name: str, kind: str, verdict: str, truth: dict[str, float]) -> None:
         folder = self.folder / name
@@ -316,7 +323,7 @@ class Scores(InFolder):
             self.assertEqual(score_script.main([str(self.folder)]), 0)
         outcomes = [outcome_of(line) for line in (read(self.folder / name, "study") for name in "abcdef") if line]
         self.assertEqual(read_lines(self.folder / "answers_study.jsonl"), outcomes)
-        rates = {r.name: (r.hits, r.number) for r in score(outcomes).rates}
+        rates = rates_of(outcomes)
         self.assertEqual(rates["named rightly at strength 4"], (1, 3))
         self.assertEqual(rates["named wrongly at strength 4"], (1, 3))
         self.assertEqual(rates["tied with the truth at strength 4"], (1, 3))
@@ -336,21 +343,17 @@ class Scores(InFolder):
             self.assertIn(row, page)
 
     def test_families(self) -> None:
-        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
-                "excluded": [], "amplitudes": {"a": 1.}}
-        answer = {"verdict": "tie", "gaps": {}, "candidates": [{"effect": "c", "confidence": 0.4}],
+        answer = {"verdict": "tie", "candidates": [{"effect": "c", "confidence": 0.4}],
                   "tie": [{"effects": "c", "probability": 0.4}, {"effects": "a", "probability": 0.3},
                           {"effects": "b", "probability": 0.3}],
-                  "amplitudes": [], "runs": {"asked for": 100},
                   "catalogue": [{"name": "a", "family": "f"}, {"name": "b", "family": "f"},
                                 {"name": "c", "family": ""}]}
 
         def right() -> tuple[int, int]:
-            rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
-            return rates["family right, named or leading, strength 4 and more"]
+            return rates_of([outcome_of(line_of(4.7, answer))])["family right, named or leading, strength 4 and more"]
         self.assertEqual(right(), (1, 1))
         answer["gaps"] = {"held-out": {"members of the tie": [{"effects": "b", "p": 1e-3}, {"effects": "c", "p": 0.2}]}}
-        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        rates = rates_of([outcome_of(line_of(4.7, answer))])
         self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
         self.assertEqual(rates["name of a wrong family refuted by held-out data"], (0, 1))
         answer["tie"][0]["probability"] = 0.7
@@ -363,36 +366,23 @@ class Scores(InFolder):
                                            {"effects": "a + c", "p": 1e-4}, {"effects": "d", "p": 0.3}],
                     "could have refuted": [{"effects": "nothing", "p": 1e-9}, {"effects": "b", "p": 1e-3},
                                            {"effects": "e", "p": 1e-5}]}
-        answer = {"verdict": "tie", "tie": [{"effects": "a"}, {"effects": "d"}], "gaps": {"held-out": held_out},
-                  "candidates": [{"effect": "a", "confidence": 0.6}], "amplitudes": [],
-                  "runs": {"asked for": 100}}
-        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
-                "excluded": [], "amplitudes": {"a": 1.}}
-        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        answer = {"verdict": "tie", "tie": [{"effects": "a"}, {"effects": "d"}], "gaps": {"held-out": held_out}}
+        rates = rates_of([outcome_of(line_of(4.7, answer))])
         # Models with the true effect are not wrong names.
         self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
         self.assertEqual(rates["any wrong model refuted by held-out data"], (2, 3))
         self.assertEqual(rates["detection at strength 2.8 to 5.7"], (1, 1))
 
     def test_lines_of_answers(self) -> None:
-        lines = []
-        for number, (kind, verdict, truth, named) in enumerate(
-                [("two", "named", ["a", "b"], ["a"]), ("two", "named", ["a", "b"], ["a", "c"]),
-                 ("two", "off catalogue", ["a", "b"], []), ("deleted", "named", ["a"], ["b"]),
-                 ("single", "off catalogue", ["a"], [])]):
-            lines.append(json.dumps({
-                "case": {"name": str(number), "kind": kind, "seed": number, "study_seed": number,
-                         "strengths": {effect: 4. for effect in truth},
-                         "excluded": truth if kind == "deleted" else [],
-                         "amplitudes": {effect: 1. for effect in truth}},
-                "answer": {"verdict": verdict, "tie": [], "gaps": {"held-out": {}},
-                           "candidates": [{"effect": "a", "confidence": 0.9}],
-                           "amplitudes": [{"effect": effect, "amplitude": 1., "lower": 0.5,
-                                           "upper": 1.5} for effect in named],
-                           "runs": {"asked for": 100}}}))
         path = self.folder / "answers.jsonl"
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        rates = {r.name: (r.hits, r.number) for r in score(read_lines(path)).rates}
+        with path.open("w", encoding="utf-8") as file:
+            for kind, verdict, truth, named in (("two", "named", "ab", "a"), ("two", "named", "ab", "ac"),
+                                                ("two", "off catalogue", "ab", ""), ("deleted", "named", "a", "b"),
+                                                ("single", "off catalogue", "a", "")):
+                amplitudes = [{"effect": effect, "amplitude": 1., "lower": 0.5, "upper": 1.5} for effect in named]
+                line = line_of(4., {"verdict": verdict, "amplitudes": amplitudes}, kind, truth)
+                file.write(json.dumps(line) + "\n")
+        rates = rates_of(read_lines(path))
         # A right name of several is incomplete, not wrong; a name that is not part of the truth is
         # wrong.
         self.assertEqual(rates["confident and wrong"], (2, 5))
@@ -411,18 +401,14 @@ class Scores(InFolder):
     def test_the_learning_curve(self) -> None:
         curve = [{"runs": 250, "verdict": "none", "first": "a"}, {"runs": 380, "verdict": "tie", "first": "b"},
                  {"runs": 700, "verdict": "named", "first": "a + b"}]
-        line = {"case": {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.},
-                         "excluded": [], "amplitudes": {"a": 1.}},
-                "answer": {"verdict": "named", "tie": [], "gaps": {}, "amplitudes": [],
-                           "candidates": [{"effect": "a", "confidence": 0.9}], "runs": {"asked for": 700}, "learning curve": curve}}
-        path = self.folder / "answers.jsonl"
-        path.write_text(json.dumps(line) + "\n", encoding="utf-8")
-        self.assertEqual(score(read_lines(path)).learning,
+
+        def learning() -> list[tuple[int, int, int, int]]:
+            return score([outcome_of(line_of(4., {"verdict": "named", "learning curve": curve}))]).learning
+        self.assertEqual(learning(),
                          [(300, 1, 0, 1), (400, 1, 0, 1), (600, 1, 0, 1), (900, 1, 1, 0), (1300, 1, 1, 0),
                           (2000, 1, 1, 0)])
         curve[2]["verdict"] = "off catalogue"
-        path.write_text(json.dumps(line) + "\n", encoding="utf-8")
-        self.assertEqual(score(read_lines(path)).learning[-1], (2000, 1, 0, 0))
+        self.assertEqual(learning()[-1], (2000, 1, 0, 0))
 
     def test_a_truth_that_was_changed_is_not_scored(self) -> None:
         self.add("a", "single", "named", {"cohesion": 1e-4})

@@ -1,7 +1,7 @@
 """--check says of every case and study that comes with the program that it is in order, and of a
 layer of full length that is fifty times as wide as the paper's. None hangs.
 
-Usage: check_cases.py path/to/eunoe-particles path/to/eunoe-discovery
+Usage: check_cases.py path/to/many-runs path/to/eunoe-discovery folder
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from pathlib import Path
 
 from attempts import PATIENCE
 from eunoe.launch import overrides
+from many_runs import ManyRuns, SharedProcesses
 
 ROOT = Path(__file__).resolve().parents[2]
 # Far above what a check takes on a busy machine.
 HANG = 120 * PATIENCE
 HUNG = -signal.SIGKILL
-# Processor time (s) of a check, whatever else the machine does. It takes about one; making the mesh of a wide
+# Processor time (s) of a check, whatever else the machine does. It takes one at most; making the mesh of a wide
 # case would take more than ten.
 MOST_WORK = 5. * PATIENCE
 # Cases that read a bed that a script makes, and studies that read data measured on a twin.
@@ -38,10 +39,26 @@ def is_input(file: Path) -> bool:
     return not {"parts", "effects"} & set(file.parts) and "\nsubsection twin" not in file.read_text()
 
 
-def answer(*command: str) -> tuple[int, str, str, float]:
-    """Exit code, output, errors, and the processor time (s) of a program and its children."""
-    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
+def work_of(program: ManyRuns) -> float:
+    """Processor time (s) that its process has had."""
+    if program.process is None:
+        return 0.
+    fields = Path(f"/proc/{program.process.pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def answer_on_case(particles: SharedProcesses, *words: str) -> tuple[int, str, str, float]:
+    """Exit code, output, errors, and the processor time (s) of the check."""
+    with particles.one() as program:
+        before = work_of(program)
         # Files that a case names are relative to the folder where the program starts.
+        done = program(*words, cwd=ROOT)
+        return done.returncode, done.stdout, done.stderr, work_of(program) - before
+
+
+def answer(*command: str) -> tuple[int, str, str, float]:
+    """The same of a program that is started for it, with its children."""
+    with tempfile.TemporaryFile("w+") as output, tempfile.TemporaryFile("w+") as errors:
         process = subprocess.Popen(command, cwd=ROOT, stdout=output, stderr=errors)
         alarm = threading.Timer(HANG, process.kill)
         alarm.start()
@@ -53,10 +70,11 @@ def answer(*command: str) -> tuple[int, str, str, float]:
         return process.returncode, output.read(), errors.read(), usage.ru_utime + usage.ru_stime
 
 
-def complaint(programs: dict[bool, str], file: Path, *settings: str) -> str:
+def complaint(particles: SharedProcesses, discovery: str, file: Path, *settings: str) -> str:
     is_study = "\nsubsection discovery" in file.read_text()
     place = f"{file.relative_to(ROOT)} {' '.join(settings)}"
-    code, output, errors, work = answer(programs[is_study], str(file), "--check", *overrides(settings))
+    words = (str(file), "--check", *overrides(settings))
+    code, output, errors, work = answer(discovery, *words) if is_study else answer_on_case(particles, *words)
     if code == HUNG:
         return f"{place}: it hangs"
     if work > MOST_WORK:
@@ -73,13 +91,13 @@ def complaint(programs: dict[bool, str], file: Path, *settings: str) -> str:
     return f"{place}: exit code {code}\n{output}{errors}"
 
 
-def main(particles: str, discovery: str) -> int:
-    programs = {False: particles, True: discovery}
+def main(many_runs: str, discovery: str, folder: str) -> int:
+    particles = SharedProcesses(many_runs, Path(folder))
     files = [file for file in sorted((ROOT / "prm").rglob("*.prm")) if is_input(file)]
     wide = (ROOT / "prm/spreading/PS1_L4.prm", "powder spreading/length factor = 1",
             "powder spreading/depth = 0.1")
     with ThreadPoolExecutor(2) as pool:
-        answers = [pool.submit(complaint, programs, *case)
+        answers = [pool.submit(complaint, particles, discovery, *case)
                    for case in [wide, *((file,) for file in files)]]
         wrong = [text for text in (answer.result() for answer in answers) if text]
     print("\n".join(wrong) if wrong else f"{len(answers)} cases are in order")

@@ -2,7 +2,7 @@
 intact one, with the same bits as an uninterrupted run, and says so; intact ones are kept. If none
 is intact, it says so and changes nothing.
 
-Usage: crash.py path/to/eunoe-particles folder
+Usage: crash.py path/to/eunoe-particles path/to/many-runs folder
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import os
 import re
 import shutil
 import signal
-import subprocess
 import sys
 import time
 from pathlib import Path
 from typing import Callable
 
 from attempts import HANGING, Attempts
-from eunoe.endurance.kill_and_restart import Case, compare
+from eunoe.endurance.kill_and_restart import compare
 from eunoe.launch import Failure
+from many_runs import QuickCase, SharedProcesses
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
 LAST = "simulation control/iteration end = 3000"
@@ -99,8 +99,8 @@ HOPELESS = {
 }
 
 
-def crashed(stopped: Case, folder: Path, change: Change) -> Case:
-    case = Case(stopped.program, CASE, folder, [])
+def crashed(stopped: QuickCase, folder: Path, change: Change) -> QuickCase:
+    case = QuickCase(stopped.program, CASE, folder, [])
     shutil.copytree(stopped.results, case.results)
     change(case.results)
     return case
@@ -110,12 +110,11 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def goes_on(reference: Case, stopped: Case, folder: Path, change: Change, ranks: int, step: int) -> None:
+def goes_on(reference: QuickCase, stopped: QuickCase, folder: Path, change: Change, ranks: int, step: int) -> None:
     case = crashed(stopped, folder, change)
     # Until the first new checkpoint is complete, the intact old ones must stay.
     before = contents(case.results)
-    short = subprocess.run(case.command(ranks, *AUTO, WITHOUT, "simulation control/iteration end = 2110"),
-                           text=True, check=False, capture_output=True)
+    short = case.answer(ranks, *AUTO, WITHOUT, "simulation control/iteration end = 2110")
     if short.returncode != 0:
         raise Failure(f"exit code {short.returncode}\n{short.stdout}{short.stderr}")
     if f"Continuing from {case.results / f'restart_{step:012}.checkpoint'}: step {step}," not in short.stdout:
@@ -130,19 +129,19 @@ def goes_on(reference: Case, stopped: Case, folder: Path, change: Change, ranks:
     compare(reference, case, "continued")
 
 
-def stays_as_it_is(stopped: Case, folder: Path, change: Change, ranks: int) -> None:
+def stays_as_it_is(stopped: QuickCase, folder: Path, change: Change, ranks: int) -> None:
     case = crashed(stopped, folder, change)
     before = contents(case.results)
-    run = subprocess.run(case.command(ranks, *AUTO, LAST), text=True, check=False, capture_output=True)
+    run = case.answer(ranks, *AUTO, LAST)
     if run.returncode != 2 or run.stderr.count("that is whole, and nothing in it was touched.") != 1:
         raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
     if contents(case.results) != before:
         raise Failure("files were changed")
 
 
-def spoilt_table(stopped: Case, folder: Path, change: Change, sentence: str) -> None:
+def spoilt_table(stopped: QuickCase, folder: Path, change: Change, sentence: str) -> None:
     case = crashed(stopped, folder, change)
-    run = subprocess.run(case.command(1, *AUTO, LAST), text=True, check=False, capture_output=True)
+    run = case.answer(1, *AUTO, LAST)
     sentence = f"{case.results / 'energies.csv'} cannot be continued: {sentence}"
     if run.returncode != 2 or run.stderr.count(sentence) != 1 or "Put it back as it was" not in run.stderr:
         raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
@@ -150,7 +149,7 @@ def spoilt_table(stopped: Case, folder: Path, change: Change, sentence: str) -> 
         raise Failure("a good checkpoint is gone")
 
 
-def begun_anew(stopped: Case, folder: Path) -> None:
+def begun_anew(stopped: QuickCase, folder: Path) -> None:
     """A run that began anew and was killed before its first checkpoint is not continued from those of the run
     before it, which stay until it has one of its own."""
     case = crashed(stopped, folder, lambda results: None)
@@ -169,7 +168,7 @@ def begun_anew(stopped: Case, folder: Path) -> None:
     process.communicate()
 
     def answer(code: int, sentence: str, *settings: str) -> None:
-        run = subprocess.run(case.command(1, *quiet, *settings), text=True, check=False, capture_output=True)
+        run = case.answer(1, *quiet, *settings)
         if run.returncode != code or sentence not in run.stdout + run.stderr:
             raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
 
@@ -186,10 +185,11 @@ def begun_anew(stopped: Case, folder: Path) -> None:
         raise Failure("the checkpoints of the run before are still there")
 
 
-def main(program: str, folder: Path) -> int:
-    reference = Case(program, CASE, folder / "reference", [LAST])
+def main(program: str, many_runs: str, folder: Path) -> int:
+    QuickCase.processes_at_hand = SharedProcesses(many_runs, folder / "printed")
+    reference = QuickCase(program, CASE, folder / "reference", [LAST])
     reference.run(1)
-    stopped = Case(program, CASE, folder / "stopped", [])
+    stopped = QuickCase(program, CASE, folder / "stopped", [])
     stopped.run(1, *EVERY, "restart/number of checkpoints = 3", "simulation control/iteration end = 2200")
     # As it was before the checkpoint of its end.
     (stopped.results / "restart_000000002200.checkpoint").unlink()
@@ -220,4 +220,4 @@ def main(program: str, folder: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), sys.argv[2], Path(sys.argv[3]).resolve()))

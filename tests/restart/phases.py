@@ -2,11 +2,12 @@
 same bits on any number of ranks, changes nothing that it need not, says what differs, and refuses what
 cannot be.
 
-Usage: phases.py path/to/eunoe-particles folder
+Usage: phases.py path/to/eunoe-particles path/to/many-runs folder
 """
 
 from __future__ import annotations
 
+import copy
 import json
 import shutil
 import subprocess
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from attempts import Attempts
 from eunoe.launch import SHARED, Failure, mpirun, overrides
+from many_runs import SharedProcesses
 
 HERE = Path(__file__).resolve().parent
 END = "simulation control/iteration end = "
@@ -32,8 +34,9 @@ OPEN = (END + "12000", CONTINUE, "solid objects/solid surfaces/number of solids 
 
 
 class Program:
-    def __init__(self, path: str, folder: Path) -> None:
+    def __init__(self, path: str, many_runs: str, folder: Path) -> None:
         self.path, self.folder = str(Path(path).resolve()), folder
+        self.on_one_rank = SharedProcesses(many_runs, folder / "printed")
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         text = (HERE / "stirred.prm").read_text(encoding="utf-8")
@@ -48,8 +51,9 @@ class Program:
         (folder / "one_type.prm").write_text(text[:begin] + text[end:], encoding="utf-8")
 
     def run(self, case: str, *settings: str, ranks: int = 1, code: int = 0) -> str:
-        done = subprocess.run([*mpirun(ranks, *SHARED), self.path, case, "--dump", "dump", *overrides(settings)],
-                              cwd=self.folder, text=True, capture_output=True, check=False)
+        words = [case, "--dump", "dump", *overrides(settings)]
+        done = self.on_one_rank(*words, cwd=self.folder) if ranks == 1 else subprocess.run(
+            [*mpirun(ranks, *SHARED), self.path, *words], cwd=self.folder, text=True, capture_output=True, check=False)
         if done.returncode != code:
             raise Failure(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
         return done.stdout + done.stderr
@@ -175,8 +179,7 @@ def found_nearby(program: Program) -> None:
     place = program.folder / "nearby"
     shutil.copytree(program.folder / "load", place / "load")
     shutil.copy(program.folder / "case.prm", place)
-    alone = Program.__new__(Program)
-    alone.path, alone.folder = program.path, place
+    alone = copy.copy(program)
     # From the folder in which the program is started, too.
     (place / "here").mkdir()
     shutil.copy(program.folder / "case.prm", place / "here")
@@ -385,7 +388,7 @@ def jumps(program: Program) -> None:
 
 
 def main() -> int:
-    program = Program(sys.argv[1], Path(sys.argv[2]))
+    program = Program(*sys.argv[1:3], Path(sys.argv[3]))
     program.run("case.prm", *LOAD, OUTPUT + "load", ranks=2)
     attempts = Attempts()
     for attempt in (other_walls, nothing_else, other_steps, other_laws, same_folder, old_results, own_path, found_nearby, leaving, other_insertion,

@@ -1,7 +1,7 @@
 """A run gives the same bits on any number of ranks, with any load balancing, and however often it
 is stopped and continued.
 
-Usage: restart.py path/to/eunoe-particles folder
+Usage: restart.py path/to/eunoe-particles path/to/many-runs folder
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from pathlib import Path
 from attempts import Attempts
 from eunoe.endurance.kill_and_restart import Case, compare, kill_and_restart
 from eunoe.launch import Failure
+from many_runs import QuickCase, SharedProcesses
 
 CASE = str(Path(__file__).with_name("stirred.prm"))
 EVERY = ("restart/checkpoint = true", "restart/frequency = 1700")
@@ -58,15 +59,15 @@ COLLISIONS = ("post-processing/particle wall collision statistics/"
               "enable particle wall collision statistics = true",)
 
 
-def same(reference: Case, folder: Path, ranks: int, *settings: str) -> None:
-    other = Case(reference.program, CASE, folder, reference.settings)
+def same(reference: QuickCase, folder: Path, ranks: int, *settings: str) -> None:
+    other = QuickCase(reference.program, CASE, folder, reference.settings)
     other.run(ranks, *settings)
     compare(reference, other, f"On {ranks} ranks", not set(OTHER_MESH) & set(settings))
 
 
-def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after: int) -> None:
+def stopped(reference: QuickCase, folder: Path, number: int, ranks: int, ranks_after: int) -> None:
     """A run stopped by a signal continues on another number of ranks."""
-    other = Case(reference.program, CASE, folder, [])
+    other = QuickCase(reference.program, CASE, folder, [])
     longer = ["simulation control/iteration end = 10000000", *EVERY]
     process = other.start(ranks, *longer)
     while other.last_step() == 0 and process.poll() is None:
@@ -78,14 +79,14 @@ def stopped(reference: Case, folder: Path, number: int, ranks: int, ranks_after:
     step = other.last_step()
     last = f"simulation control/iteration end = {step + 3000}"
     other.run(ranks_after, *EVERY, "restart/restart = true", last)
-    alone = Case(reference.program, CASE, folder.with_name(folder.name + "_alone"), [])
+    alone = QuickCase(reference.program, CASE, folder.with_name(folder.name + "_alone"), [])
     alone.run(1, last)
     compare(alone, other, f"After signal {number} at step {step}")
 
 
-def write_failure(reference: Case, folder: Path) -> None:
+def write_failure(reference: QuickCase, folder: Path) -> None:
     """A checkpoint that cannot be written stops the run, and the previous one stays intact."""
-    other = Case(reference.program, CASE, folder, [])
+    other = QuickCase(reference.program, CASE, folder, [])
     obstacle = other.results / "restart_000000005100.checkpoint.new"
     (obstacle / "full").mkdir(parents=True)
     run = subprocess.run(other.command(2, *EVERY), text=True, check=False, capture_output=True)
@@ -101,33 +102,33 @@ def write_failure(reference: Case, folder: Path) -> None:
 def sleeping(program: str, folder: Path) -> None:
     """The same bits with particles that sleep and wake."""
     settings = list(SLEEPY)  # at full length, as few sleep before
-    reference = Case(program, CASE, folder / "reference", settings)
+    reference = QuickCase(program, CASE, folder / "reference", settings)
     reference.run(1)
     share = json.loads((reference.results / "summary.json").read_text())["share_asleep"]
     if not 0.1 < share < 0.9:
         raise Failure(f"A share of {share} slept, so little is tried.")
-    for ranks, more in ((2, FREQUENT), (4, OTHER_MESH), (3, DYNAMIC)):
-        other = Case(program, CASE, folder / str(ranks), settings)
+    for ranks, more in ((2, FREQUENT), (4, OTHER_MESH)):
+        other = QuickCase(program, CASE, folder / str(ranks), settings)
         other.run(ranks, *more)
         compare(reference, other, f"With sleep, on {ranks} ranks", more is not OTHER_MESH)
     # Forces on solids include those of sleepers; evaluating them must not change the sleepers.
-    quiet = Case(program, CASE, folder / "no_forces", settings)
+    quiet = QuickCase(program, CASE, folder / "no_forces", settings)
     quiet.run(1, "post-processing/solid forces/calculation = false")
     if quiet.dump.read_bytes() != reference.dump.read_bytes():
         raise Failure("With sleep, the state depends on whether forces on solids are written.")
-    other = Case(program, CASE, folder / "restarted", settings)
+    other = QuickCase(program, CASE, folder / "restarted", settings)
     other.run(2, *EVERY, "simulation control/iteration end = 11111")
-    other.run(4, *EVERY, "restart/restart = true")
+    other.run(3, *EVERY, *DYNAMIC, "restart/restart = true")
     compare(reference, other, "With sleep, restarted")
 
 
 def continued(program: str, prm: str, folder: Path, settings: tuple[str, ...], stop: int, ranks: int,
-              what: str) -> Case:
+              what: str) -> QuickCase:
     """A run that is stopped on two ranks and continued gives the same bits as one without a stop,
     which is returned."""
-    reference = Case(program, prm, folder / "reference", list(settings))
+    reference = QuickCase(program, prm, folder / "reference", list(settings))
     reference.run(1)
-    other = Case(program, prm, folder / "restarted", list(settings))
+    other = QuickCase(program, prm, folder / "restarted", list(settings))
     other.run(2, *EVERY, *FREQUENT, f"simulation control/iteration end = {stop}")
     other.run(ranks, *EVERY, "restart/restart = true")
     compare(reference, other, f"{what}, restarted")
@@ -157,7 +158,6 @@ def curved(program: str, folder: Path) -> None:
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 60000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
-    alone.run(1)
     restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
                                    random.Random(3))
     if restarts == 0:
@@ -166,8 +166,9 @@ def killed(program: str, folder: Path) -> None:
         raise Failure("No kill cost a step as far as the log tells, so nothing was tried.")
 
 
-def main(program: str, folder: Path) -> int:
-    reference = Case(str(Path(program).resolve()), CASE, folder / "reference", [])
+def main(program: str, many_runs: str, folder: Path) -> int:
+    QuickCase.processes_at_hand = SharedProcesses(many_runs, folder / "printed")
+    reference = QuickCase(str(Path(program).resolve()), CASE, folder / "reference", [])
     reference.run(1)
     attempts = Attempts()
     attempts.make("checkpoints", same, reference, folder / "checkpoints", 1, *EVERY)
@@ -176,7 +177,7 @@ def main(program: str, folder: Path) -> int:
     attempts.make("2 ranks, dynamic", same, reference, folder / "2d", 2, *DYNAMIC)
     attempts.make("4 ranks, other mesh", same, reference, folder / "4", 4, *OTHER_MESH)
     # At full length this run would take as long as all the others together.
-    brief = Case(reference.program, CASE, folder / "brief", ["simulation control/iteration end = 5000"])
+    brief = QuickCase(reference.program, CASE, folder / "brief", ["simulation control/iteration end = 5000"])
     brief.run(1)
     attempts.make("8 ranks, dynamic", same, brief, folder / "8", 8, *DYNAMIC, *EVERY)
     attempts.make("SIGTERM", stopped, reference, folder / "term", signal.SIGTERM, 1, 2)
@@ -191,4 +192,4 @@ def main(program: str, folder: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], Path(sys.argv[2])))
+    sys.exit(main(*sys.argv[1:3], Path(sys.argv[3]).resolve()))

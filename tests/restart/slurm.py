@@ -18,7 +18,9 @@ from eunoe.launch import Failure
 from eunoe.repository import ROOT
 
 CASE = ROOT / "prm" / "examples" / "falling_particles.prm"
-SHORT = ("--set", "restart/frequency = 100", "--set", "simulation control/output frequency = 0")
+QUIET = ("--set", "simulation control/output frequency = 0")
+# Of a run that is stopped at its first checkpoint. It takes longer to write than hundreds of steps.
+OFTEN = ("--set", "restart/frequency = 100")
 # The launcher stops a run when the file `stop` is there; the queue notes what comes back into it. On clusters that
 # kill all ranks when the first ends with another code than 0, that of a run that was stopped is lost. The case is checked
 # by all ranks, as it is run.
@@ -47,7 +49,7 @@ def job(program: str, folder: Path, number: int, *options: str, **variables: str
         file.chmod(0o755)
     environment = {**os.environ, "PATH": f"{folder / 'bin'}:{os.environ['PATH']}", "EUNOE_PROGRAM": program,
                    "SLURM_JOB_ID": str(number), **variables}
-    done = subprocess.run(["bash", str(ROOT / "contrib" / "slurm" / "spreading.sbatch"), str(CASE), *SHORT, *options],
+    done = subprocess.run(["bash", str(ROOT / "contrib" / "slurm" / "spreading.sbatch"), str(CASE), *QUIET, *options],
                           cwd=folder, env=environment, text=True, capture_output=True, check=False)
     if done.returncode != 0:
         raise Failure(f"exit code {done.returncode}:\n{done.stdout}{done.stderr}")
@@ -60,7 +62,7 @@ def main() -> int:
     folder.mkdir(parents=True)
     results = folder / "output" / "falling_particles-7"
     (folder / "stop").touch()
-    job(program, folder, 7)
+    job(program, folder, 7, *OFTEN)
     if (results / "summary.json").exists() or (folder / "requeued").read_text(encoding="utf-8") != "requeue 7\n":
         raise Failure("a job that was stopped is not in the queue again")
     kept = folder / "kept"

@@ -5,7 +5,7 @@ continues with the same bits when there is space.
 A file that is a link to /dev/full cannot be written, and neither can one that reaches the limit for
 the size of files; both need no special rights.
 
-Usage: full_disk.py path/to/eunoe-particles folder
+Usage: full_disk.py path/to/eunoe-particles path/to/many-runs folder
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ import time
 from pathlib import Path
 
 from attempts import HANGING, Attempts
-from eunoe.endurance.kill_and_restart import Case, compare, kill_all
+from eunoe.endurance.kill_and_restart import compare, kill_all
 from eunoe.launch import Failure
+from many_runs import QuickCase, SharedProcesses
 
 TESTS = Path(__file__).resolve().parents[1]
 STIRRED = str(TESTS / "restart" / "stirred.prm")
@@ -42,7 +43,7 @@ FIRST_LINES = {"energies.csv": (STIRRED,), "force_0.csv": (STIRRED,), "apparatus
                "heap.csv": (str(TESTS / "heap" / "tiny.prm"), "heap/number of particles = 60")}
 
 
-def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None:
+def fails(case: QuickCase, what: str, codes: tuple[int, ...], *settings: str) -> None:
     """Runs on two ranks, which must say once that there is no space for @p what."""
     try:
         run = subprocess.run(case.command(2, *settings), text=True, check=False, capture_output=True,
@@ -56,8 +57,8 @@ def fails(case: Case, what: str, codes: tuple[int, ...], *settings: str) -> None
         raise Failure(f"not one '{sentence}' in\n{run.stderr}")
 
 
-def file_is_full(reference: Case, folder: Path, link: str, step: int) -> None:
-    case = Case(reference.program, STIRRED, folder, SETTINGS)
+def file_is_full(reference: QuickCase, folder: Path, link: str, step: int) -> None:
+    case = QuickCase(reference.program, STIRRED, folder, SETTINGS)
     case.results.mkdir()
     (case.results / link).symlink_to("/dev/full")
     fails(case, link.removesuffix(".new"), (1,), *EVERY)
@@ -70,7 +71,7 @@ def file_is_full(reference: Case, folder: Path, link: str, step: int) -> None:
 
 
 def first_line_fails(program: str, folder: Path, link: str, prm: str, *settings: str) -> None:
-    case = Case(program, prm, folder, list(settings))
+    case = QuickCase(program, prm, folder, list(settings))
     case.results.mkdir()
     (case.results / link).symlink_to("/dev/full")
     fails(case, link.removesuffix(".new"), (1, 2))
@@ -78,7 +79,7 @@ def first_line_fails(program: str, folder: Path, link: str, prm: str, *settings:
 
 def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
     """From some step on no table can grow, as files have reached the limit of their size."""
-    case = Case(program, STIRRED, folder, [*settings, "simulation control/output frequency = 0"])
+    case = QuickCase(program, STIRRED, folder, [*settings, "simulation control/output frequency = 0"])
     table = case.results / "energies.csv"
     process = case.start(2, "restart/checkpoint = true", "restart/frequency = 3000",
                          "simulation control/iteration end = 10000000")
@@ -101,13 +102,14 @@ def disk_fills(program: str, folder: Path, settings: list[str]) -> None:
     step = case.last_step()
     last = f"simulation control/iteration end = {step + 500}"
     case.run(2, last, "restart/restart = true")
-    alone = Case(program, STIRRED, folder.with_name(folder.name + "_alone"), case.settings)
+    alone = QuickCase(program, STIRRED, folder.with_name(folder.name + "_alone"), case.settings)
     alone.run(1, last)
     compare(alone, case, f"continued from step {step}")
 
 
-def main(program: str, folder: Path) -> int:
-    reference = Case(program, STIRRED, folder / "reference", SETTINGS)
+def main(program: str, many_runs: str, folder: Path) -> int:
+    QuickCase.processes_at_hand = SharedProcesses(many_runs, folder / "printed")
+    reference = QuickCase(program, STIRRED, folder / "reference", SETTINGS)
     reference.run(1)
     every_step = "post-processing/energies/output frequency = 1"
     work = [(f"{link}", file_is_full, reference, folder / link, link, step)
@@ -121,4 +123,4 @@ def main(program: str, folder: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(str(Path(sys.argv[1]).resolve()), Path(sys.argv[2])))
+    sys.exit(main(str(Path(sys.argv[1]).resolve()), sys.argv[2], Path(sys.argv[3]).resolve()))
