@@ -139,7 +139,9 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
     if (now != 0.) {
       p.velocity[row] = {0., 0., 0., p.mass(row)};
       p.spin[row] = {0., 0., 0., p.moment_of_inertia(row)};
-    } else
+    } else if (stirring.forces_follow)
+      p.start_forces(row);
+    else
       // A particle that wakes was in balance; forces that were added during its sleep do not count.
       p.force[row] = p.torque[row] = Quad();
   }

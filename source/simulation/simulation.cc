@@ -220,7 +220,7 @@ void Simulation::advance()
     search();
   }
   if (look_is_due || (sleeper.is_enabled() && searches))
-    update_sleep(false);
+    update_sleep(false, true);
 
   if (const ContactHistoryParameters &history = parameters.contact_history;
       history.forgets_at(clock.step()))
@@ -268,10 +268,12 @@ void Simulation::note_search()
   domain.note_search();
 }
 
-void Simulation::update_sleep(const bool wake_all)
+void Simulation::update_sleep(const bool wake_all, const bool forces_follow)
 {
   const Timers::Scope scope(progress.timers, Section::sleep);
-  system.update_sleep(sleeper.get(), sleeper.look(clock, solids.list(), system.loads(), wake_all));
+  Stirring stirring = sleeper.look(clock, solids.list(), system.loads(), wake_all);
+  stirring.forces_follow = forces_follow;
+  system.update_sleep(sleeper.get(), stirring);
 }
 
 void Simulation::compute_forces()
@@ -306,7 +308,7 @@ void Simulation::insert_and_remove(Delivery delivery, const std::vector<std::siz
   }
   note_search();
   if (sleeper.is_enabled())
-    update_sleep(false);
+    update_sleep(false, false);
   system.start_forces_on_new(first_new, solids.list(), clock.time());
 }
 

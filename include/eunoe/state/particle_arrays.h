@@ -36,6 +36,7 @@ struct ParticleArrays
   std::vector<Quad> spin;     ///< angular velocity and moment of inertia
   std::vector<Quad> force;    ///< force; w unused
   std::vector<Quad> torque;   ///< torque; w unused
+  Vec3 gravity;               ///< acceleration by which every particle has its weight (m/s2)
   std::vector<ParticleId> id;
   std::vector<std::int32_t> type; ///< particle type, which is its material
   /// Step that the particle is expected to make at most for a while (m), see NearPairs; the same on
@@ -94,6 +95,14 @@ struct ParticleArrays
 
   void wake_all();
 
+  /// Begins the sums of a particle's forces and torques: it has its weight, to which loads and
+  /// contacts are added. The weight is added to zero, so that no zero has a sign.
+  void start_forces(const std::size_t row)
+  {
+    const double m = mass(row);
+    force[row] = {0. + m * gravity.x, 0. + m * gravity.y, 0. + m * gravity.z, 0.};
+    torque[row] = Quad();
+  }
   /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
   /// Only on those that feel any.

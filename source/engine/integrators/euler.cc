@@ -23,7 +23,7 @@ public:
       const double moved2 = norm_square(p.position[k].vec() - p.reference[k]);
       largest = std::max(largest, moved2);
       poison += 0. * moved2;
-      p.force[k] = p.torque[k] = Quad();
+      p.start_forces(k);
     });
     p.clear_forces_on_pressed();
     return {largest + poison};

@@ -49,6 +49,7 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
   // A maximum ignores NaN; this sum does not.
   double largest = 0., poison = 0., most_paces2 = 0., sum_step2 = 0.;
   const simd::Four time = three(dt);
+  const simd::Four gravity = {p.gravity.x, p.gravity.y, p.gravity.z, 0.};
   p.for_each_awake([&](const std::size_t k) {
     simd::Four &force = simd::four(p.force[k]), &torque = simd::four(p.torque[k]);
     const simd::Two factors =
@@ -60,7 +61,9 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
     simd::four(p.velocity[k]) = v;
     simd::four(p.spin[k]) = w;
     simd::four(p.position[k]) = x;
-    force = torque = simd::Four{};
+    // As ParticleArrays::start_forces does.
+    force = simd::Four{} + three(v[3]) * gravity;
+    torque = simd::Four{};
     const double moved2 = norm_square(Vec3{x[0] - from.x, x[1] - from.y, x[2] - from.z});
     largest = moved2 > largest ? moved2 : largest;
     poison += 0. * moved2;
