@@ -15,7 +15,7 @@ constexpr unsigned int n_rings = 2;
 void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
 {
   p.awake_rows.clear();
-  p.sleepers_moved2 = 0.;
+  p.sleepers_moved2 = TwoLargest();
   if (std::find(flags.begin(), flags.end(), 0) == flags.end()) {
     p.awake.clear();
     return;
@@ -25,8 +25,7 @@ void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
     if (p.awake[row] != 0)
       p.awake_rows.push_back(static_cast<std::int32_t>(row));
     else
-      p.sleepers_moved2 =
-          std::max(p.sleepers_moved2, norm_square(p.position[row].vec() - p.reference[row]));
+      p.sleepers_moved2.note(norm_square(p.position[row].vec() - p.reference[row]));
 }
 
 } // namespace
