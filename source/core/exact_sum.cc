@@ -141,7 +141,7 @@ double ExactSum::value() const
   return negative ? -value : value;
 }
 
-void ExactSum::reduce(const std::initializer_list<ExactSum *> sums, MPI_Comm comm)
+void ExactSum::reduce(const std::vector<ExactSum *> &sums, MPI_Comm comm)
 {
   constexpr std::size_t n = n_digits + 1;
   std::vector<std::int64_t> buffer;

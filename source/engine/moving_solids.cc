@@ -62,11 +62,14 @@ std::vector<SolidLoad> &MovingSolids::new_loads()
 std::vector<SolidLoad> MovingSolids::global_loads(MPI_Comm comm) const
 {
   std::vector<SolidLoad> sums = loads;
+  // In one message, as each costs a latency.
+  std::vector<ExactSum *> components;
+  components.reserve(6 * sums.size());
   for (SolidLoad &load : sums)
-    for (unsigned int d = 0; d < 3; ++d) {
-      load.force[d].reduce(comm);
-      load.torque[d].reduce(comm);
-    }
+    for (auto *const part : {&load.force, &load.torque})
+      for (ExactSum &component : *part)
+        components.push_back(&component);
+  ExactSum::reduce(components, comm);
   return sums;
 }
 

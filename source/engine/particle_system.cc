@@ -22,6 +22,7 @@ ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const d
       rows(model.history_size()), extra_defaults(physics.fields.initial_values())
 {
   pairs.clear(model.history_size());
+  particles.gravity = physics.gravity;
 }
 
 void ParticleSystem::add_forces(const std::vector<Solid> &solids, const double time,
@@ -85,6 +86,8 @@ void ParticleSystem::leave_out_sleepers()
 
 void ParticleSystem::add_loads(const std::vector<std::size_t> &list, const double time)
 {
+  if (physics.loads.empty())
+    return;
   // In portions: there may be as many as there are particles.
   constexpr std::size_t portion = 4096;
   ParticleArrays some;
@@ -123,8 +126,10 @@ void ParticleSystem::start_forces_on_new(const ParticleId first_new,
   for (std::size_t row = 0; row < p.n_owned; ++row)
     if (p.id[row] >= first_new) {
       p.force[row] = p.torque[row] = Quad();
-      if (p.is_awake(row))
+      if (p.is_awake(row)) {
+        p.start_forces(row);
         awake.push_back(row);
+      }
     }
   add_loads(awake, time);
 

@@ -33,19 +33,55 @@ void ContactDetectionParameters::check(const ParameterCheck &check) const
                 "Give a value above 1, for example 1.1.");
 }
 
+SearchCriterion::SearchCriterion(const ContactDetectionParameters &parameters, const double skin,
+                                 MPI_Comm comm)
+    : parameters(parameters), skin(skin),
+      allowed(std::min(1., parameters.displacement_share) * skin), comm(comm)
+{
+  constexpr int n_numbers = 5;
+  static_assert(sizeof(Largest) == n_numbers * sizeof(double), "a Largest is numbers only");
+  MPI_Type_contiguous(n_numbers, MPI_DOUBLE, &type);
+  MPI_Type_commit(&type);
+  constexpr int commutes = 1;
+  MPI_Op_create(combine, commutes, &operation);
+}
+
+SearchCriterion::~SearchCriterion()
+{
+  MPI_Op_free(&operation);
+  MPI_Type_free(&type);
+}
+
+void SearchCriterion::combine(void *one, void *both, int *n, MPI_Datatype *)
+{
+  const auto *const from = static_cast<const Largest *>(one);
+  auto *const to = static_cast<Largest *>(both);
+  for (int k = 0; k < *n; ++k) {
+    to[k].displacements.note(from[k].displacements.first);
+    to[k].displacements.note(from[k].displacements.second);
+    to[k].paces = std::max(to[k].paces, from[k].paces);
+    to[k].typical_step = std::max(to[k].typical_step, from[k].typical_step);
+    to[k].near_share = std::max(to[k].near_share, from[k].near_share);
+  }
+}
+
 void SearchCriterion::ask(const unsigned long long step, const Travel &travel,
                           const double near_share)
 {
-  largest = {Travel::unknown, Travel::unknown, Travel::unknown, near_share};
+  constexpr double unknown = Travel::unknown;
+  largest = {{unknown, unknown}, unknown, unknown, near_share};
   const bool is_constant = parameters.method == "constant";
   if (is_constant && step % parameters.frequency != 0)
     return;
-  // Whether MPI_MAX keeps a NaN depends on the MPI library.
-  if (!is_constant && !std::isnan(travel.moved2))
-    largest = {std::sqrt(travel.moved2), std::sqrt(travel.paces2), std::sqrt(travel.mean_step2),
+  // A maximum does not keep a NaN.
+  if (!is_constant && !std::isnan(travel.moved2)) {
+    const TwoLargest moved2 = travel.farthest2();
+    largest = {{std::sqrt(moved2.first), std::sqrt(moved2.second)},
+               std::sqrt(travel.paces2),
+               std::sqrt(travel.mean_step2),
                near_share};
-  MPI_Iallreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(largest.size()), MPI_DOUBLE,
-                 MPI_MAX, comm, &answer);
+  }
+  MPI_Iallreduce(MPI_IN_PLACE, &largest, 1, type, operation, comm, &answer);
 }
 
 bool SearchCriterion::is_due(const MovingSolids &solids)
@@ -55,7 +91,10 @@ bool SearchCriterion::is_due(const MovingSolids &solids)
   if (answer == MPI_REQUEST_NULL)
     return solids.moved_since_search() > 0.5 * allowed;
   MPI_Wait(&answer, MPI_STATUS_IGNORE);
-  return !(largest[0] + std::max(largest[0], solids.moved_since_search()) <= allowed);
+  // Nobody has come closer to anybody than the two farthest particles may have to each other, or
+  // the farthest and a solid.
+  const auto &[farthest, second] = largest.displacements;
+  return !(farthest + std::max(second, solids.moved_since_search()) <= allowed);
 }
 
 } // namespace eunoe

@@ -15,7 +15,7 @@ constexpr unsigned int n_rings = 2;
 void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
 {
   p.awake_rows.clear();
-  p.sleepers_moved2 = 0.;
+  p.sleepers_moved2 = TwoLargest();
   if (std::find(flags.begin(), flags.end(), 0) == flags.end()) {
     p.awake.clear();
     return;
@@ -25,8 +25,7 @@ void set_awake(ParticleArrays &p, std::vector<std::uint8_t> &&flags)
     if (p.awake[row] != 0)
       p.awake_rows.push_back(static_cast<std::int32_t>(row));
     else
-      p.sleepers_moved2 =
-          std::max(p.sleepers_moved2, norm_square(p.position[row].vec() - p.reference[row]));
+      p.sleepers_moved2.note(norm_square(p.position[row].vec() - p.reference[row]));
 }
 
 } // namespace
@@ -139,7 +138,9 @@ void SparseContacts::update(ParticleArrays &p, const PairList &pairs, const Soli
     if (now != 0.) {
       p.velocity[row] = {0., 0., 0., p.mass(row)};
       p.spin[row] = {0., 0., 0., p.moment_of_inertia(row)};
-    } else
+    } else if (stirring.forces_follow)
+      p.start_forces(row);
+    else
       // A particle that wakes was in balance; forces that were added during its sleep do not count.
       p.force[row] = p.torque[row] = Quad();
   }

@@ -84,7 +84,8 @@ ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserte
   ContactModel pairs = parameters.contact_model(largest), walls = parameters.wall_model(largest);
   pairs.widen(walls.history_size());
   walls.widen(pairs.history_size());
-  return {std::move(pairs), std::move(walls), make_loads(parameters), fields, sleeper.get().flag()};
+  return {std::move(pairs), std::move(walls),     make_loads(parameters),
+          fields,           sleeper.get().flag(), parameters.physics.gravity};
 }
 
 } // namespace eunoe

@@ -116,7 +116,7 @@ void Simulation::begin_phase(const Checkpoint &checkpoint)
     get_log().line(loss);
   note_search();
   if (sleeper.is_enabled())
-    update_sleep(true);
+    update_sleep(true, false);
   constexpr ParticleId all = 0;
   system.start_forces_on_new(all, solids.list(), clock.time());
 }

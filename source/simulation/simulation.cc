@@ -24,11 +24,8 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
       integrator(parameters.integration.make()),
       criterion(parameters.detection, skin_of(parameters, inserter, domain), comm),
       balancer(parameters.load_balancing),
-      // Without a search two bodies must not come closer by more than the skin, so each may move by
-      // half of it.
       guard(parameters.faults, domain, system.contact_model().get_materials(),
-            parameters.contacts.normal_laws(), 0.5 * skin_of(parameters, inserter, domain),
-            clock.time_step()),
+            parameters.contacts.normal_laws(), criterion.longest_way(), clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
       outputs(parameters.control, progress.timers, comm)
 {
@@ -201,9 +198,8 @@ void Simulation::advance()
     const Timers::Scope scope(progress.timers, Section::integration);
     travel = integrator->begin_step(system.particles, clock.time_step());
   }
-  // Sleepers keep the displacement from before their sleep. NaN stays NaN.
-  if (travel.moved2 < system.particles.sleepers_moved2)
-    travel.moved2 = system.particles.sleepers_moved2;
+  // Sleepers keep the displacement from before their sleep.
+  travel.include(system.particles.sleepers_moved2);
   criterion.ask(clock.step(), travel, system.near_share());
   const bool look_is_due = sleeper.is_look_due(clock, solids.list());
   if (!look_is_due) {
@@ -220,7 +216,7 @@ void Simulation::advance()
     search();
   }
   if (look_is_due || (sleeper.is_enabled() && searches))
-    update_sleep(false);
+    update_sleep(false, true);
 
   if (const ContactHistoryParameters &history = parameters.contact_history;
       history.forgets_at(clock.step()))
@@ -268,10 +264,12 @@ void Simulation::note_search()
   domain.note_search();
 }
 
-void Simulation::update_sleep(const bool wake_all)
+void Simulation::update_sleep(const bool wake_all, const bool forces_follow)
 {
   const Timers::Scope scope(progress.timers, Section::sleep);
-  system.update_sleep(sleeper.get(), sleeper.look(clock, solids.list(), system.loads(), wake_all));
+  Stirring stirring = sleeper.look(clock, solids.list(), system.loads(), wake_all);
+  stirring.forces_follow = forces_follow;
+  system.update_sleep(sleeper.get(), stirring);
 }
 
 void Simulation::compute_forces()
@@ -306,7 +304,7 @@ void Simulation::insert_and_remove(Delivery delivery, const std::vector<std::siz
   }
   note_search();
   if (sleeper.is_enabled())
-    update_sleep(false);
+    update_sleep(false, false);
   system.start_forces_on_new(first_new, solids.list(), clock.time());
 }
 

@@ -51,7 +51,7 @@ void ParticleArrays::wake_all()
   awake.clear();
   awake_rows.clear();
   pressed_rows.clear();
-  sleepers_moved2 = 0.;
+  sleepers_moved2 = TwoLargest();
 }
 
 void ParticleArrays::clear_forces_on_sleepers()

@@ -57,7 +57,7 @@ public:
     p.for_each_awake([&](const std::size_t k) {
       p.velocity[k].add(dt / p.mass(k) * p.force[k].vec());
       p.position[k].add(share * dt * p.velocity[k].vec());
-      p.force[k] = p.torque[k] = Quad();
+      p.start_forces(k);
     });
     return {0.};
   }

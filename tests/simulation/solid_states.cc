@@ -42,6 +42,21 @@ EUNOE_MPI_TEST()
   solids.new_loads()[1].force[2] += rank + 1.;
   check_close("loads of all ranks", solids.global_loads(MPI_COMM_WORLD)[1].force[2].value(),
               0.5 * n_ranks * (n_ranks + 1.), 0.);
+  // Another number for each component of each solid.
+  std::vector<SolidLoad> &loads = solids.new_loads();
+  for (std::size_t s = 0; s < loads.size(); ++s) {
+    const double ten = s == 0 ? 1. : 10.;
+    loads[s].add(ten * Vec3{1., 2., 3.}, ten * Vec3{4., 5., 6.});
+  }
+  const std::vector<SolidLoad> sums = solids.global_loads(MPI_COMM_WORLD);
+  bool in_place = sums.size() == 2;
+  for (std::size_t s = 0; s < sums.size(); ++s)
+    for (unsigned int d = 0; d < 3; ++d) {
+      const double ten = s == 0 ? n_ranks : 10. * n_ranks;
+      in_place = in_place && sums[s].force[d].value() == ten * (1. + d) &&
+                 sums[s].torque[d].value() == ten * (4. + d);
+    }
+  check("each component is summed in its place", in_place);
   solids.new_loads();
   check_close("summed from zero", solids.global_loads(MPI_COMM_WORLD)[1].force[2].value(), 0., 0.);
 }

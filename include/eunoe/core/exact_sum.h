@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <initializer_list>
 #include <mpi.h>
 #include <vector>
 
@@ -36,7 +35,7 @@ public:
   /// Adds up the sums of all ranks; collective.
   void reduce(MPI_Comm comm) { reduce({this}, comm); }
   /// The same for several at once.
-  static void reduce(std::initializer_list<ExactSum *> sums, MPI_Comm comm);
+  static void reduce(const std::vector<ExactSum *> &sums, MPI_Comm comm);
 
 private:
   /// The largest double has its highest bit at place 2097; two digits more hold carries.

@@ -18,7 +18,8 @@ class Integrator
 public:
   virtual ~Integrator() = default;
 
-  /// Brings positions to the end of the step and sets forces and torques to zero.
+  /// Brings positions to the end of the step and starts the forces of the particles that are awake
+  /// anew, see `ParticleArrays::start_forces`.
   /// @param dt (s)
   /// @return how far the particles that are awake have gone
   virtual Travel begin_step(ParticleArrays &particles, double dt) = 0;

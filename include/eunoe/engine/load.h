@@ -11,7 +11,7 @@ namespace eunoe {
 
 struct PhysicalProperties;
 
-/// A force on every particle that is not a contact: gravity, drag, charge, ...
+/// A force on every particle that is neither its weight nor a contact: drag, ...
 class Load
 {
 public:

@@ -35,6 +35,7 @@ struct ParticlePhysics
   std::vector<std::unique_ptr<Load>> loads;
   ParticleFields fields;
   std::optional<FieldHandle> asleep; ///< field that is not 0 for sleepers; none: nobody sleeps
+  Vec3 gravity;                      ///< (m/s2)
 };
 
 /// All particles of a run and their contacts: the store of record, the arrays of the hot loop, the
@@ -121,7 +122,8 @@ public:
   /// Lets every contact begin anew.
   void forget_contacts(bool between_particles, bool with_solids);
 
-  /// Adds the forces of the loads and of all contacts and advances their memory by @p dt (s).
+  /// Adds the forces of the loads and of all contacts to the weights and advances the memory of the
+  /// contacts by @p dt (s).
   /// @param on_solids if not null: forces on the solids, one per solid
   void add_forces(const std::vector<Solid> &solids, double time, double dt,
                   std::vector<SolidLoad> *on_solids);

@@ -6,7 +6,6 @@
 #include <eunoe/state/particle_arrays.h>
 
 #include <algorithm>
-#include <array>
 
 namespace eunoe {
 
@@ -35,14 +34,18 @@ class SearchCriterion
 {
 public:
   /// @param skin separation up to which pairs are listed (m)
-  SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm)
-      : parameters(parameters), allowed(std::min(1., parameters.displacement_share) * skin),
-        comm(comm)
-  {
-  }
+  SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm);
+  ~SearchCriterion();
+  SearchCriterion(const SearchCriterion &) = delete;
+  SearchCriterion &operator=(const SearchCriterion &) = delete;
 
   /// Largest sum of the displacements of two bodies before the next search (m).
   double allowed_displacement() const { return allowed; }
+
+  /// How far a particle may have gone from its reference without a search (m): two bodies must not
+  /// come closer by more than the skin. Between the searches of "constant" nobody looks at the
+  /// second farthest, so each may move by half of it.
+  double longest_way() const { return parameters.method == "constant" ? 0.5 * skin : skin; }
 
   /// Asks how far particles have gone on any rank; collective.
   /// @param travel on this rank
@@ -51,24 +54,36 @@ public:
 
   /// Of a particle from its reference, on any rank, once all have answered (m); infinite if it is
   /// not known.
-  double largest_displacement() const { return largest[0]; }
+  double largest_displacement() const { return largest.displacements.first; }
   /// In this step, likewise: of a particle over its pace, and the typical step (m), which is the
   /// root of the largest mean square of a rank.
-  double largest_paces() const { return largest[1]; }
-  double typical_step() const { return largest[2]; }
+  double largest_paces() const { return largest.paces; }
+  double typical_step() const { return largest.typical_step; }
   /// The largest of all ranks' shares; this rank's where nothing was asked.
-  double largest_near_share() const { return largest[3]; }
+  double largest_near_share() const { return largest.near_share; }
 
   /// Whether a search is due, once all ranks have answered; collective.
   /// @param solids which have moved, too
   bool is_due(const MovingSolids &solids);
 
 private:
+  /// On any rank.
+  struct Largest
+  {
+    TwoLargest displacements;   ///< of two particles from their references (m)
+    double paces, typical_step; ///< in this step (paces, m)
+    double near_share;
+  };
+  /// Brings what two parts of the ranks have found together, as MPI asks for it. The second
+  /// farthest of all may be on any rank, also beside the farthest, so no maximum finds it.
+  static void combine(void *one, void *both, int *n, MPI_Datatype *);
+
   const ContactDetectionParameters &parameters;
-  const double allowed;
+  const double skin, allowed;
   MPI_Comm comm;
-  /// From the references (m), in this step (paces, m), and the share, on any rank.
-  std::array<double, 4> largest = {};
+  MPI_Datatype type; ///< a Largest as one piece, which MPI does not divide
+  MPI_Op operation;
+  Largest largest = {};
   MPI_Request answer = MPI_REQUEST_NULL;
 };
 

@@ -60,12 +60,13 @@ private:
   const double gravity, time_step;
 };
 
-/// Disturbances from outside the particles since the last check of the sleepers.
+/// When the sleepers are checked, and disturbances from outside the particles since the last check.
 struct Stirring
 {
   unsigned long long step = 0;
   std::vector<bool> solid_moves; ///< one per solid
   bool everything = false;       ///< a load has changed, or a phase begins
+  bool forces_follow = false;    ///< in this step; otherwise it is between two steps
 };
 
 /// Puts particles to sleep and wakes them (adaptive sparse contacts).

@@ -118,7 +118,8 @@ private:
   std::vector<std::size_t> inspect();
   [[noreturn]] void stop_for(const InspectionResult &result);
   /// Determines the particles that sleep from now on.
-  void update_sleep(bool wake_all);
+  /// @param forces_follow in this step; otherwise it is between two steps
+  void update_sleep(bool wake_all, bool forces_follow);
   void compute_forces();
   /// What happens between two steps, at the present time.
   void do_what_is_due();

@@ -5,6 +5,7 @@
 #include <eunoe/state/particle_field.h>
 #include <eunoe/state/remaining.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -14,6 +15,21 @@ namespace eunoe {
 /// Identity of a particle, unique over the whole run and never used again.
 using ParticleId = std::uint32_t;
 
+/// The largest two of some numbers that are not negative. They do not depend on the order in which
+/// these come.
+struct TwoLargest
+{
+  double first = 0., second = 0.;
+
+  /// Takes in one more, without a branch. What is not a number changes nothing.
+  void note(const double value)
+  {
+    const double lesser = first < value ? first : value;
+    second = lesser > second ? lesser : second;
+    first = value > first ? value : first;
+  }
+};
+
 /// How far particles have gone: squares. Steps are infinite if they are not known.
 struct Travel
 {
@@ -22,6 +38,20 @@ struct Travel
   double moved2; ///< at most from the reference positions (m2), NaN if a place is not a number
   double paces2 = unknown;     ///< at most in this step, over the particle's pace
   double mean_step2 = unknown; ///< of those that are awake, in this step (m2)
+  double second2 = unknown;    ///< of the second farthest, as moved2; infinite if it is not known
+
+  /// From the reference positions; the second as far as the first if it is not known (m2).
+  TwoLargest farthest2() const { return {moved2, std::min(moved2, second2)}; }
+
+  /// Takes in the displacements of further particles (m2). NaN stays NaN.
+  void include(const TwoLargest &others)
+  {
+    TwoLargest all = farthest2();
+    all.note(others.first);
+    all.note(others.second);
+    moved2 = all.first;
+    second2 = all.second;
+  }
 };
 
 /// The hot state of the particles that a rank computes with: those that it owns, then copies of
@@ -36,6 +66,7 @@ struct ParticleArrays
   std::vector<Quad> spin;     ///< angular velocity and moment of inertia
   std::vector<Quad> force;    ///< force; w unused
   std::vector<Quad> torque;   ///< torque; w unused
+  Vec3 gravity;               ///< acceleration by which every particle has its weight (m/s2)
   std::vector<ParticleId> id;
   std::vector<std::int32_t> type; ///< particle type, which is its material
   /// Step that the particle is expected to make at most for a while (m), see NearPairs; the same on
@@ -47,8 +78,8 @@ struct ParticleArrays
   std::vector<std::uint8_t> awake;        ///< a flag each, ghosts too; empty while all are awake
   std::vector<std::int32_t> awake_rows;   ///< of owned particles, ascending; empty while all are
   std::vector<std::int32_t> pressed_rows; ///< of owned sleepers that feel forces
-  /// Square of the largest distance of an owned sleeper from its reference position (m2).
-  double sleepers_moved2 = 0.;
+  /// Squares of the largest two distances of owned sleepers from their reference positions (m2).
+  TwoLargest sleepers_moved2;
   bool is_awake(std::size_t row) const { return awake.empty() || awake[row] != 0; }
   std::size_t n_awake() const { return awake.empty() ? n_owned : awake_rows.size(); }
   ///@}
@@ -94,6 +125,14 @@ struct ParticleArrays
 
   void wake_all();
 
+  /// Begins the sums of a particle's forces and torques: it has its weight, to which loads and
+  /// contacts are added. The weight is added to zero, so that no zero has a sign.
+  void start_forces(const std::size_t row)
+  {
+    const double m = mass(row);
+    force[row] = {0. + m * gravity.x, 0. + m * gravity.y, 0. + m * gravity.z, 0.};
+    torque[row] = Quad();
+  }
   /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
   /// Only on those that feel any.

@@ -12,7 +12,8 @@ public:
   Travel begin_step(ParticleArrays &p, double dt) override
   {
     // A maximum ignores NaN; this sum does not.
-    double largest = 0., poison = 0.;
+    TwoLargest farthest2;
+    double poison = 0.;
     p.for_each_awake([&](const std::size_t k) {
       if (!symplectic)
         p.position[k].add(dt * p.velocity[k].vec());
@@ -21,12 +22,12 @@ public:
       if (symplectic)
         p.position[k].add(dt * p.velocity[k].vec());
       const double moved2 = norm_square(p.position[k].vec() - p.reference[k]);
-      largest = std::max(largest, moved2);
+      farthest2.note(moved2);
       poison += 0. * moved2;
-      p.force[k] = p.torque[k] = Quad();
+      p.start_forces(k);
     });
     p.clear_forces_on_pressed();
-    return {largest + poison};
+    return {farthest2.first + poison, Travel::unknown, Travel::unknown, farthest2.second};
   }
 
   void complete(ParticleArrays &, double) override {}

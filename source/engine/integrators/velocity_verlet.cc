@@ -47,8 +47,10 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
 {
   const double half_dt = 0.5 * dt;
   // A maximum ignores NaN; this sum does not.
-  double largest = 0., poison = 0., most_paces2 = 0., sum_step2 = 0.;
+  TwoLargest farthest2;
+  double poison = 0., most_paces2 = 0., sum_step2 = 0.;
   const simd::Four time = three(dt);
+  const simd::Four gravity = {p.gravity.x, p.gravity.y, p.gravity.z, 0.};
   p.for_each_awake([&](const std::size_t k) {
     simd::Four &force = simd::four(p.force[k]), &torque = simd::four(p.torque[k]);
     const simd::Two factors =
@@ -60,9 +62,11 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
     simd::four(p.velocity[k]) = v;
     simd::four(p.spin[k]) = w;
     simd::four(p.position[k]) = x;
-    force = torque = simd::Four{};
+    // As ParticleArrays::start_forces does.
+    force = simd::Four{} + three(v[3]) * gravity;
+    torque = simd::Four{};
     const double moved2 = norm_square(Vec3{x[0] - from.x, x[1] - from.y, x[2] - from.z});
-    largest = moved2 > largest ? moved2 : largest;
+    farthest2.note(moved2);
     poison += 0. * moved2;
     const double step2 = norm_square(Vec3{way[0], way[1], way[2]}), pace = p.pace[k],
                  paces2 = step2 / (pace * pace);
@@ -71,7 +75,7 @@ EUNOE_ALWAYS_INLINE Travel kick_and_drift(ParticleArrays &p, const double dt)
   });
   p.clear_forces_on_pressed();
   const double n_awake = static_cast<double>(std::max<std::size_t>(p.n_awake(), 1));
-  return {largest + poison, most_paces2, sum_step2 / n_awake};
+  return {farthest2.first + poison, most_paces2, sum_step2 / n_awake, farthest2.second};
 }
 
 EUNOE_MULTIVERSION Travel first_step(ParticleArrays &p, const double dt)
