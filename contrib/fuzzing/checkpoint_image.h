@@ -34,16 +34,19 @@ inline std::string checkpoint_image(const std::string &data, const std::string &
       sections.resize(static_cast<std::size_t>(bytes), '\0');
   }
   std::string file = format_name + format_version + "\n";
-  const auto append = [&file](std::uint64_t number) {
+  const auto append = [&file](const auto number) {
     char bytes[sizeof number];
     std::memcpy(bytes, &number, sizeof number);
     file.append(bytes, sizeof number);
   };
-  append(head.size());
+  append(std::uint64_t(head.size()));
   file += head + sections;
-  Checksum checksum;
-  checksum.add(file.data(), file.size());
-  append(checksum.value);
+  ChunkChecksums checksums(file.size(), chunk_length);
+  checksums.add(0, file.data(), file.size());
+  append(checksums.n_bytes);
+  for (const std::uint32_t of_chunk : checksums.values)
+    append(of_chunk);
+  append(checksums.of_all());
   return file;
 }
 

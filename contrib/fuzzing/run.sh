@@ -33,7 +33,7 @@ take_apart() {
   length=$(od -An -t u8 -j 19 -N 8 "$1" | tr -d ' ')
   head -c $((27 + length)) "$1" | tail -c +28 | sed 's/"input":"[^"]*"/"input":"="/'
   printf '\0'
-  tail -c +$((28 + length)) "$1" | head -c -8
+  tail -c +$((28 + length)) "$1" | head -c -20 # a checkpoint of one chunk
 }
 
 # Runs a case until there is a checkpoint, and prints the checkpoint's path.

@@ -9,138 +9,10 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <map>
-#include <numeric>
 
 namespace eunoe {
 
 using namespace checkpoint_format;
-
-/// The file, with the places of the sections.
-struct Checkpoint::File
-{
-  struct Section
-  {
-    std::uint64_t begin, n_rows, n_values; ///< begin: place of the lengths (bytes)
-  };
-
-  File(const std::string &path, MPI_Comm comm)
-      : path(path), comm(comm), stream(std::fopen(path.c_str(), "rb")),
-        open_error(stream == nullptr ? errno : 0)
-  {
-  }
-  ~File()
-  {
-    if (stream != nullptr)
-      std::fclose(stream);
-  }
-
-  [[noreturn]] void refuse(const std::string &what) const
-  {
-    throw DamagedCheckpoint("The checkpoint " + path + " " + what);
-  }
-
-  void read(void *data, std::uint64_t n)
-  {
-    if (n > 0 && std::fread(data, 1, n, stream) != n)
-      refuse("cannot be read: " + std::string(std::strerror(errno)) + ".");
-  }
-
-  void read_at(std::uint64_t begin, void *data, std::uint64_t n)
-  {
-    std::fseek(stream, static_cast<long>(begin), SEEK_SET);
-    read(data, n);
-  }
-
-  void require_open()
-  {
-    if (stream == nullptr) {
-      const std::string text = "cannot be read: " + std::string(std::strerror(open_error)) + ".";
-      if (open_error == ENOENT && is_first_rank(comm))
-        refuse(text);
-      if (open_error == ENOENT)
-        throw UserError("The checkpoint " + path +
-                        " is not seen by every node. Put it into a folder that all share.");
-      throw UserError("The checkpoint " + path + " " + text + " Mend its permissions.");
-    }
-    std::error_code failure;
-    size = std::filesystem::file_size(path, failure);
-    if (failure || size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
-      refuse("is cut short: it has " + std::to_string(size) + " bytes.");
-  }
-
-  /// @param is_whole whether the checksum fits
-  /// @return the head
-  std::string head(const bool is_whole)
-  {
-    std::string title(format_name.size(), ' ');
-    std::fseek(stream, 0, SEEK_SET);
-    read(title.data(), title.size());
-    if (title != format_name)
-      refuse("is no checkpoint of Eunoe.");
-    std::string version;
-    for (int c = std::fgetc(stream); c != '\n' && version.size() < 20; c = std::fgetc(stream))
-      version += c >= ' ' && c <= '~' ? static_cast<char>(c) : '?';
-    if (version != format_version) {
-      const std::string text = "The checkpoint " + path + " has version " + version +
-                               " of the format, and this program reads version " + format_version;
-      if (is_whole)
-        throw UserError(text + ". Use the program that wrote it, or start anew.");
-      throw DamagedCheckpoint(text + ", or it is damaged.");
-    }
-    if (!is_whole)
-      refuse("is cut short or damaged: its checksum does not fit.");
-    std::uint64_t length;
-    read(&length, sizeof length);
-    if (length > size - title.size() - version.size() - 1 - 2 * sizeof(std::uint64_t))
-      refuse("is damaged: its head does not fit into it.");
-    std::string text(length, ' ');
-    read(text.data(), length);
-    return text;
-  }
-
-  /// Notes the places of the sections, which begin at @p begin and must fill the file.
-  void find_sections(const nlohmann::ordered_json &list, std::uint64_t begin)
-  {
-    for (const auto &section : list) {
-      const std::uint64_t n_rows = count_in(section.at("rows"));
-      const std::uint64_t n_values = count_in(section.at("values"));
-      const std::uint64_t left = size - sizeof(std::uint64_t) - begin;
-      if (n_rows > left / sizeof(std::uint32_t) ||
-          n_values > (left - n_rows * sizeof(std::uint32_t)) / sizeof(double))
-        refuse("is damaged: its sections do not fit into it.");
-      sections[section.at("name")] = {begin, n_rows, n_values};
-      begin += n_rows * sizeof(std::uint32_t) + n_values * sizeof(double);
-    }
-    if (begin + sizeof(std::uint64_t) != size)
-      refuse("is damaged: its sections do not fill it.");
-  }
-
-  /// The checksum of this rank's share of the file.
-  Checksum checksum_of_share()
-  {
-    const std::uint64_t n = size - sizeof(std::uint64_t);
-    const int rank = rank_in(comm), n_ranks = size_of(comm);
-    std::uint64_t left = first_of(n, rank + 1, n_ranks) - first_of(n, rank, n_ranks);
-    std::fseek(stream, static_cast<long>(first_of(n, rank, n_ranks)), SEEK_SET);
-    Checksum checksum;
-    std::vector<char> part(1u << 20);
-    while (left > 0) {
-      const std::uint64_t here = std::min<std::uint64_t>(left, part.size());
-      read(part.data(), here);
-      checksum.add(part.data(), here);
-      left -= here;
-    }
-    return checksum;
-  }
-
-  const std::string path;
-  MPI_Comm comm;
-  std::FILE *stream;
-  const int open_error;
-  std::uint64_t size = 0;
-  std::map<std::string, Section> sections;
-};
 
 namespace {
 
@@ -170,11 +42,20 @@ struct Defect
     }
   }
 
-  /// Throws on every rank what the first rank that has a defect says; collective.
-  void agree(MPI_Comm comm) const
+  /// The first rank that has a defect, the number of ranks if none has; collective.
+  int first_rank(MPI_Comm comm) const
   {
     int first = text.empty() ? size_of(comm) : rank_in(comm);
     MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPI_INT, MPI_MIN, comm);
+    return first;
+  }
+
+  bool is_anywhere(MPI_Comm comm) const { return first_rank(comm) < size_of(comm); }
+
+  /// Throws on every rank what the first rank that has a defect says; collective.
+  void agree(MPI_Comm comm) const
+  {
+    const int first = first_rank(comm);
     if (first == size_of(comm))
       return;
     const std::string sentence = broadcast(text, comm, first);
@@ -188,35 +69,322 @@ struct Defect
 
 } // namespace
 
+/// The file, and what this rank has read of it.
+struct Checkpoint::File
+{
+  struct Section
+  {
+    std::string name;
+    std::uint64_t begin, n_rows, n_values; ///< begin: place of the lengths (bytes)
+    Rows share;                            ///< of this rank
+  };
+
+  File(const std::string &path, MPI_Comm comm)
+      : path(path), comm(comm), stream(std::fopen(path.c_str(), "rb")),
+        open_error(stream == nullptr ? errno : 0)
+  {
+  }
+  ~File()
+  {
+    if (stream != nullptr)
+      std::fclose(stream);
+  }
+
+  [[noreturn]] void refuse(const std::string &what) const
+  {
+    throw DamagedCheckpoint("The checkpoint " + path + " " + what);
+  }
+
+  void read(void *data, std::uint64_t n)
+  {
+    if (n > 0 && std::fread(data, 1, n, stream) != n)
+      refuse("cannot be read: " +
+             std::string(std::feof(stream) != 0 ? "it ends too early" : std::strerror(errno)) +
+             ".");
+  }
+
+  void seek(std::uint64_t begin) { std::fseek(stream, static_cast<long>(begin), SEEK_SET); }
+
+  /// Reads bytes and adds them to the checksums while they are in the cache.
+  void read_at(std::uint64_t begin, void *const data, const std::uint64_t n,
+               ChunkChecksums &checksums)
+  {
+    seek(begin);
+    char *to = static_cast<char *>(data);
+    for (std::uint64_t left = n; left > 0;) {
+      const std::uint64_t here = std::min(left, buffer_size);
+      read(to, here);
+      checksums.add(begin, to, here);
+      begin += here;
+      to += here;
+      left -= here;
+    }
+  }
+
+  void require_open()
+  {
+    if (stream == nullptr) {
+      const std::string text = "cannot be read: " + std::string(std::strerror(open_error)) + ".";
+      if (open_error == ENOENT && is_first_rank(comm))
+        refuse(text);
+      if (open_error == ENOENT)
+        throw UserError("The checkpoint " + path +
+                        " is not seen by every node. Put it into a folder that all share.");
+      throw UserError("The checkpoint " + path + " " + text + " Mend its permissions.");
+    }
+    std::error_code failure;
+    size = std::filesystem::file_size(path, failure);
+    if (failure || size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
+      refuse("is cut short: it has " + std::to_string(size) + " bytes.");
+  }
+
+  std::string read_version()
+  {
+    std::string title(format_name.size(), ' ');
+    seek(0);
+    read(title.data(), title.size());
+    if (title != format_name)
+      refuse("is no checkpoint of Eunoe.");
+    std::string text;
+    for (int c = std::fgetc(stream); c != '\n' && text.size() < 20; c = std::fgetc(stream))
+      text += c >= ' ' && c <= '~' ? static_cast<char>(c) : '?';
+    return text;
+  }
+
+  bool has_chunks() const { return version == format_version; }
+  bool is_readable() const { return has_chunks() || version == version_without_chunks; }
+
+  /// Tells the contents from the checksums behind them.
+  void set_version(const std::string &text)
+  {
+    version = text;
+    n_bytes = size - sizeof(std::uint64_t);
+    if (has_chunks()) {
+      constexpr std::uint64_t with_checksum = chunk_length + sizeof(std::uint32_t);
+      n_bytes -= sizeof n_bytes;
+      n_bytes -= (n_bytes + with_checksum - 1) / with_checksum * sizeof(std::uint32_t);
+    }
+  }
+
+  /// Those of no bytes yet. A file of another version is one chunk.
+  ChunkChecksums no_checksums() const
+  {
+    return ChunkChecksums(n_bytes, has_chunks() ? chunk_length : n_bytes);
+  }
+
+  /// Where the text of the head begins, behind its length.
+  std::uint64_t begin_of_head() const
+  {
+    return format_name.size() + version.size() + 1 + sizeof(std::uint64_t);
+  }
+
+  std::string read_head(ChunkChecksums &checksums)
+  {
+    // Longer than any, and what one rank can hold if the length is damaged.
+    constexpr std::uint64_t longest = std::uint64_t(1) << 30;
+    const std::uint64_t begin = begin_of_head();
+    std::uint64_t length = n_bytes;
+    if (begin <= n_bytes) {
+      std::string title(begin, ' ');
+      read_at(0, title.data(), begin, checksums);
+      std::memcpy(&length, title.data() + begin - sizeof length, sizeof length);
+    }
+    if (begin > n_bytes || length > n_bytes - begin || length > longest)
+      refuse("is damaged: its head does not fit into it.");
+    std::string text(length, ' ');
+    read_at(begin, text.data(), length, checksums);
+    return text;
+  }
+
+  /// Notes the places of the sections, which begin at @p begin and must fill the file.
+  void find_sections(const nlohmann::ordered_json &list, std::uint64_t begin)
+  {
+    for (const auto &section : list) {
+      const std::uint64_t n_rows = count_in(section.at("rows"));
+      const std::uint64_t n_values = count_in(section.at("values"));
+      const std::uint64_t left = n_bytes - begin;
+      if (n_rows > left / sizeof(std::uint32_t) ||
+          n_values > (left - n_rows * sizeof(std::uint32_t)) / sizeof(double))
+        refuse("is damaged: its sections do not fit into it.");
+      sections.push_back({section.at("name").get<std::string>(), begin, n_rows, n_values, Rows()});
+      begin += n_rows * sizeof(std::uint32_t) + n_values * sizeof(double);
+    }
+    if (begin != n_bytes)
+      refuse("is damaged: its sections do not fill it.");
+  }
+
+  /// Reads this rank's rows of a section, of about as many as the other ranks have; collective.
+  void read_share(Section &section, ChunkChecksums &checksums, Defect &defect)
+  {
+    const int n_ranks = size_of(comm), rank = rank_in(comm);
+    const std::uint64_t first = first_of(section.n_rows, rank, n_ranks);
+    Rows &mine = section.share;
+    std::uint64_t n_values = 0;
+    defect.attempt(path, [&] {
+      std::vector<std::uint32_t> lengths(first_of(section.n_rows, rank + 1, n_ranks) - first);
+      read_at(section.begin + first * sizeof(std::uint32_t), lengths.data(),
+              lengths.size() * sizeof(std::uint32_t), checksums);
+      // Not std::partial_sum, which adds in the type of the lengths.
+      mine.starts.assign(lengths.size() + 1, 0);
+      for (std::size_t k = 0; k < lengths.size(); ++k)
+        mine.starts[k + 1] = mine.starts[k] + lengths[k];
+      n_values = mine.starts.back();
+    });
+    std::uint64_t before = 0, all = 0;
+    MPI_Exscan(&n_values, &before, 1, MPI_UINT64_T, MPI_SUM, comm);
+    MPI_Allreduce(&n_values, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
+    if (rank == 0)
+      before = 0;
+    defect.attempt(path, [&] {
+      // Sums of damaged lengths may run over.
+      if (all != section.n_values || n_values > all || before > all - n_values)
+        refuse("is damaged: its rows do not fill their sections.");
+      mine.values.resize(n_values);
+      read_at(section.begin + section.n_rows * sizeof(std::uint32_t) + before * sizeof(double),
+              mine.values.data(), n_values * sizeof(double), checksums);
+    });
+  }
+
+  /// Reads the head and this rank's rows of all sections, so that all ranks together read each byte
+  /// once. What is read is not known to be right yet and says no more than where to read;
+  /// collective.
+  void read_contents(nlohmann::ordered_json &head, ChunkChecksums &checksums, Defect &defect)
+  {
+    std::string text;
+    if (is_first_rank(comm))
+      defect.attempt(path, [&] {
+        text = read_head(checksums);
+        head = nlohmann::ordered_json::parse(text);
+      });
+    if (defect.is_anywhere(comm))
+      return;
+    text = broadcast(text, comm);
+    defect.attempt(path, [&] {
+      if (!is_first_rank(comm))
+        head = nlohmann::ordered_json::parse(text);
+      find_sections(head.at("sections"), begin_of_head() + text.size());
+    });
+    if (defect.is_anywhere(comm))
+      return;
+    for (Section &section : sections)
+      read_share(section, checksums, defect);
+  }
+
+  /// Reads this rank's part of all bytes, whatever they are, for the checksums alone.
+  void read_any_bytes(ChunkChecksums &checksums)
+  {
+    const int n_ranks = size_of(comm), rank = rank_in(comm);
+    const std::uint64_t end = first_of(n_bytes, rank + 1, n_ranks);
+    std::vector<char> part(buffer_size);
+    for (std::uint64_t begin = first_of(n_bytes, rank, n_ranks); begin < end;) {
+      const std::uint64_t here = std::min(end - begin, buffer_size);
+      read_at(begin, part.data(), here, checksums);
+      begin += here;
+    }
+  }
+
+  /// Refuses a file that is not as it was written, and one of a version that cannot be read; on the
+  /// first rank.
+  /// @param found checksums of what all ranks have read
+  void verify(const ChunkChecksums &found)
+  {
+    ChunkChecksums written = found;
+    std::uint64_t of_all = 0;
+    seek(n_bytes);
+    if (has_chunks()) {
+      const std::uint64_t n = size - n_bytes - 2 * sizeof(std::uint64_t);
+      read(&written.n_bytes, sizeof written.n_bytes);
+      written.values.resize(n / sizeof(std::uint32_t));
+      read(written.values.data(), n);
+    }
+    read(&of_all, sizeof of_all);
+    // Whether the checksums of the chunks are right.
+    const bool is_known = has_chunks() && written.n_bytes == n_bytes &&
+                          written.values.size() == found.values.size() &&
+                          written.of_all() == of_all;
+    const bool is_whole = has_chunks() ? is_known && written.values == found.values
+                                       : found.of_contents().value == of_all;
+    if (!is_readable()) {
+      const std::string text = "The checkpoint " + path + " has version " + version +
+                               " of the format, and this program reads versions " +
+                               version_without_chunks + " and " + format_version;
+      if (is_whole)
+        throw UserError(text + ". Use the program that wrote it, or start anew.");
+      throw DamagedCheckpoint(text + ", or it is damaged.");
+    }
+    if (is_whole)
+      return;
+    if (!has_chunks())
+      refuse("is cut short or damaged: its checksum does not fit.");
+    if (is_known)
+      refuse_chunks(found, written);
+    refuse("is cut short, or damaged at its end: the checksums from byte " +
+           std::to_string(n_bytes) + " on do not fit.");
+  }
+
+  /// Names the chunks that have other checksums than they had.
+  [[noreturn]] void refuse_chunks(const ChunkChecksums &found, const ChunkChecksums &written) const
+  {
+    const std::size_t n = found.values.size();
+    const auto differs = [&](const std::size_t chunk) {
+      return found.values[chunk] != written.values[chunk];
+    };
+    std::size_t first = 0, last = n - 1;
+    while (first < last && !differs(first))
+      ++first;
+    while (last > first && !differs(last))
+      --last;
+    std::size_t end = first + 1;
+    while (end < n && differs(end))
+      ++end;
+    std::string text = "is damaged: its bytes " + std::to_string(found.begin_of(first)) + " to " +
+                       std::to_string(found.end_of(end - 1) - 1) + " are not as they were written";
+    if (end <= last)
+      text += ", nor are further ones up to byte " + std::to_string(found.end_of(last) - 1);
+    refuse(text + ".");
+  }
+
+  static constexpr std::uint64_t buffer_size = 1u << 20;
+  const std::string path;
+  MPI_Comm comm;
+  std::FILE *stream;
+  const int open_error;
+  std::uint64_t size = 0;
+  std::string version;
+  std::uint64_t n_bytes = 0; ///< before the checksums
+  std::vector<Section> sections;
+};
+
 Checkpoint::Checkpoint(const std::string &path, MPI_Comm comm)
     : path(path), comm(comm), file(std::make_unique<File>(path, comm))
 {
   Defect defect;
   defect.attempt(path, [&] { file->require_open(); });
   defect.agree(comm);
+  // Another node may not know the newest size yet.
+  MPI_Bcast(&file->size, 1, MPI_UINT64_T, 0, comm);
 
-  Checksum share;
-  defect.attempt(path, [&] { share = file->checksum_of_share(); });
-  defect.agree(comm);
-  std::vector<Checksum> whole = {share};
-  join_pieces(whole, comm);
-
-  std::string text;
+  std::string version;
   if (is_first_rank(comm))
-    defect.attempt(path, [&] {
-      std::uint64_t sum;
-      file->read_at(file->size - sizeof sum, &sum, sizeof sum);
-      text = file->head(sum == whole[0].value);
-    });
+    defect.attempt(path, [&] { version = file->read_version(); });
   defect.agree(comm);
-  text = broadcast(text, comm);
-  defect.attempt(path, [&] {
-    head = nlohmann::ordered_json::parse(text);
-    const std::uint64_t begin =
-        format_name.size() + format_version.size() + 1 + sizeof(std::uint64_t) + text.size();
-    file->find_sections(head.at("sections"), begin);
-  });
+  file->set_version(broadcast(version, comm));
+
+  ChunkChecksums found = file->no_checksums();
+  Defect of_contents;
+  if (file->is_readable())
+    file->read_contents(head, found, of_contents);
+  // If it makes no sense, the checksums of all its bytes say whether it is damaged, and where.
+  if (!file->is_readable() || of_contents.is_anywhere(comm)) {
+    found = file->no_checksums();
+    defect.attempt(path, [&] { file->read_any_bytes(found); });
+    defect.agree(comm);
+  }
+  found.join(comm);
+  if (is_first_rank(comm))
+    defect.attempt(path, [&] { file->verify(found); });
   defect.agree(comm);
+  of_contents.agree(comm);
 }
 
 Checkpoint::~Checkpoint() = default;
@@ -236,38 +404,12 @@ void Checkpoint::require(const bool ok, const std::string &what) const
     throw damaged(what);
 }
 
-Rows Checkpoint::rows(const std::string &name) const
+const Rows &Checkpoint::rows(const std::string &name) const
 {
-  const int n_ranks = size_of(comm), rank = rank_in(comm);
-  const auto found = file->sections.find(name);
-  if (found == file->sections.end())
-    throw UserError("The checkpoint " + path + " has no section '" + name + "'.");
-  const File::Section &section = found->second;
-  const std::uint64_t first = first_of(section.n_rows, rank, n_ranks);
-
-  std::vector<std::uint32_t> lengths(first_of(section.n_rows, rank + 1, n_ranks) - first);
-  on_every_rank(comm, [&] {
-    file->read_at(section.begin + first * sizeof(std::uint32_t), lengths.data(),
-                  lengths.size() * sizeof(std::uint32_t));
-  });
-  Rows mine;
-  // Not std::partial_sum, which adds in the type of the lengths.
-  mine.starts.assign(lengths.size() + 1, 0);
-  for (std::size_t k = 0; k < lengths.size(); ++k)
-    mine.starts[k + 1] = mine.starts[k] + lengths[k];
-  const std::uint64_t n_values = mine.starts.back();
-  std::uint64_t before = 0, all = 0;
-  MPI_Exscan(&n_values, &before, 1, MPI_UINT64_T, MPI_SUM, comm);
-  MPI_Allreduce(&n_values, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
-  on_every_rank(comm, [&] {
-    if (all != section.n_values)
-      file->refuse("is damaged: the rows of '" + name + "' do not fill their section.");
-    mine.values.resize(n_values);
-    const std::uint64_t begin = section.begin + section.n_rows * sizeof(std::uint32_t);
-    file->read_at(begin + (rank == 0 ? 0 : before) * sizeof(double), mine.values.data(),
-                  n_values * sizeof(double));
-  });
-  return mine;
+  for (const File::Section &section : file->sections)
+    if (section.name == name)
+      return section.share;
+  throw UserError("The checkpoint " + path + " has no section '" + name + "'.");
 }
 
 } // namespace eunoe

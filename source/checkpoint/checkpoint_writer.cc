@@ -28,15 +28,17 @@ struct Share
 class PartedFile
 {
 public:
-  PartedFile(const std::string &path, MPI_Comm comm) : comm(comm), file(path, comm) {}
+  /// @param n_bytes of all parts together
+  PartedFile(const std::string &path, const std::uint64_t n_bytes, MPI_Comm comm)
+      : comm(comm), file(path, comm), checksums(n_bytes, chunk_length)
+  {
+  }
 
   /// Writes this rank's piece of the next part; collective.
   void write(const void *piece, const std::uint64_t n)
   {
     const Share share(n, comm);
-    file.write(size + share.before, piece, n);
-    pieces.emplace_back();
-    pieces.back().add(piece, n);
+    write_at(size + share.before, piece, n);
     size += share.all;
   }
 
@@ -46,11 +48,9 @@ public:
     constexpr std::size_t at_once = 1 << 17;
     const Share share(rows.n_values() * sizeof(double), comm);
     std::uint64_t begin = size + share.before;
-    pieces.emplace_back();
     std::vector<double> buffer;
     const auto flush = [&] {
-      file.write(begin, buffer.data(), buffer.size() * sizeof(double));
-      pieces.back().add(buffer.data(), buffer.size() * sizeof(double));
+      write_at(begin, buffer.data(), buffer.size() * sizeof(double));
       begin += buffer.size() * sizeof(double);
       buffer.clear();
     };
@@ -63,26 +63,34 @@ public:
     size += share.all;
   }
 
-  /// Adds the checksum and waits for the disk; collective.
+  /// Adds the checksums of the chunks, and that of all, and waits for the disk; collective.
   /// @return size of the file (bytes)
   std::uint64_t complete()
   {
-    join_pieces(pieces, comm);
+    checksums.join(comm);
+    const std::uint64_t n_of_chunks = checksums.values.size() * sizeof(std::uint32_t);
+    const std::uint64_t begin = size + sizeof checksums.n_bytes, end = begin + n_of_chunks;
     if (rank_in(comm) == 0) {
-      Checksum whole;
-      for (const Checksum &part : pieces)
-        whole.append(part);
-      file.write(size, &whole.value, sizeof whole.value);
+      const std::uint64_t of_all = checksums.of_all();
+      file.write(size, &checksums.n_bytes, sizeof checksums.n_bytes);
+      file.write(begin, checksums.values.data(), n_of_chunks);
+      file.write(end, &of_all, sizeof of_all);
     }
     file.complete();
-    return size + sizeof(std::uint64_t);
+    return end + sizeof(std::uint64_t);
   }
 
 private:
+  void write_at(const std::uint64_t begin, const void *data, const std::uint64_t n)
+  {
+    file.write(begin, data, n);
+    checksums.add(begin, data, n);
+  }
+
   MPI_Comm comm;
   SharedFile file;
   std::uint64_t size = 0;
-  std::vector<Checksum> pieces; ///< of this rank, one of each part
+  ChunkChecksums checksums; ///< what this rank has added
 };
 
 } // namespace
@@ -95,11 +103,13 @@ void CheckpointWriter::add_rows(const std::string &name, const std::vector<std::
 
 std::uint64_t CheckpointWriter::write(const std::string &path)
 {
-  for (const auto &[name, rows] : sections)
-    head["sections"].push_back({{"name", name},
-                                {"rows", Share(rows.size(), comm).all},
-                                {"values", Share(rows.n_values(), comm).all}});
-  PartedFile file(path, comm);
+  std::uint64_t n_bytes = 0;
+  for (const auto &[name, rows] : sections) {
+    const std::uint64_t n_rows = Share(rows.size(), comm).all;
+    const std::uint64_t n_values = Share(rows.n_values(), comm).all;
+    head["sections"].push_back({{"name", name}, {"rows", n_rows}, {"values", n_values}});
+    n_bytes += n_rows * sizeof(std::uint32_t) + n_values * sizeof(double);
+  }
   std::string title;
   if (rank_in(comm) == 0) {
     const std::string text = head.dump();
@@ -108,6 +118,8 @@ std::uint64_t CheckpointWriter::write(const std::string &path)
     title.append(reinterpret_cast<const char *>(&length), sizeof length);
     title += text;
   }
+  n_bytes += Share(title.size(), comm).all;
+  PartedFile file(path, n_bytes, comm);
   file.write(title.data(), title.size());
   for (const auto &[name, rows] : sections) {
     std::vector<std::uint32_t> lengths(rows.size());

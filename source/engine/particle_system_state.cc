@@ -133,10 +133,10 @@ void ParticleSystem::check_guests(const Checkpoint &checkpoint,
           true);
 }
 
-Rows ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &layout,
-                             const bool begins_phase) const
+const Rows &ParticleSystem::rows_of(const Checkpoint &checkpoint, const SavedLayout &layout,
+                                    const bool begins_phase) const
 {
-  Rows share = checkpoint.rows("particles");
+  const Rows &share = checkpoint.rows("particles");
   const std::size_t n_fixed = n_places + layout.n_extra();
   const double n_types =
       begins_phase ? std::numeric_limits<int>::max() : model.get_materials().n_types();
@@ -165,7 +165,7 @@ std::vector<std::string> ParticleSystem::load(const Checkpoint &checkpoint,
     ledger.load(checkpoint.head.at("ledger"), comm);
   int rank;
   MPI_Comm_rank(comm, &rank);
-  const Rows share = rows_of(checkpoint, layout, begins_phase);
+  const Rows &share = rows_of(checkpoint, layout, begins_phase);
   const std::size_t n_fixed = n_places + layout.n_extra();
   std::vector<NewParticle> list;
   std::vector<Origin> kept;

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 from eunoe.launch import overrides
-from forged import FORGERIES, assembled, forged
+from forged import FORGERIES, assembled, forged, of_version_6, without_checksums
 from many_runs import ManyRuns
 
 HERE = Path(__file__).resolve().parent
@@ -84,6 +84,8 @@ def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
         if codes == (2,) and contents(place) != before:
             fail(f"{name}: what is refused has changed the folder")
 
+    contents_of, older = without_checksums(data), of_version_6(data)
+    place = f"is damaged: its bytes 0 to {len(contents_of) - 1} are not as they were written."
     # Some forgeries are found only after the results were opened, which gives exit code 1.
     strictly = "restart/restart = auto"
     work = [(("another time step", data,
@@ -93,13 +95,15 @@ def spoil_checkpoints(programs: list[ManyRuns], folder: Path) -> None:
               "floating walls/number of floating walls = 1", "floating walls/wall 0/end time = 1"),
              (2,)),
             *(((name, broken, sentence), (2,)) for name, broken, sentence in (
-                ("cut short", data[:-9], "its checksum does not fit"),
+                ("cut short", data[:-9], "is cut short, or damaged at its end: the checksums from byte "),
                 ("nearly empty", data[:20], "is cut short: it has 20 bytes"),
                 ("empty", b"", "is cut short: it has 0 bytes"),
-                ("one bit", data[:-40] + bytes([data[-40] ^ 1]) + data[-39:],
-                 "its checksum does not fit"),
-                ("a bit of the head", data[:60] + bytes([data[60] ^ 4]) + data[61:],
-                 "its checksum does not fit"),
+                ("one bit", data[:-40] + bytes([data[-40] ^ 1]) + data[-39:], place),
+                ("a bit of the head", data[:60] + bytes([data[60] ^ 4]) + data[61:], place),
+                ("a bit of the checksums", data[:-10] + bytes([data[-10] ^ 1]) + data[-9:],
+                 f"is cut short, or damaged at its end: the checksums from byte {len(contents_of)} on do not fit."),
+                ("a bit of the version before", older[:-40] + bytes([older[-40] ^ 1]) + older[-39:],
+                 "is cut short or damaged: its checksum does not fit."),
                 ("no head", assembled(b"[]", b""), "is damaged: its head is not understood."),
                 ("no file", None, "cannot be read: No such file"))),
             *(((name, forged(data, change), sentence), (1, 2)) for name, change, sentence in FORGERIES)]

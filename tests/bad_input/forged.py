@@ -1,4 +1,4 @@
-"""Checkpoints with wrong contents and a valid checksum."""
+"""Checkpoints with wrong contents and valid checksums, and of the version before."""
 
 from __future__ import annotations
 
@@ -7,16 +7,31 @@ import struct
 import zlib
 from typing import Callable
 
-TITLE = b"Eunoe checkpoint 6\n"
+TITLE = b"Eunoe checkpoint 7\n"
+CHUNK = 1 << 22
 
 
 def assembled(head: bytes, sections: bytes) -> bytes:
     data = TITLE + struct.pack("<Q", len(head)) + head + sections
+    of_chunks = [zlib.crc32(data[begin:begin + CHUNK]) for begin in range(0, len(data), CHUNK)]
+    data += struct.pack(f"<Q{len(of_chunks)}I", len(data), *of_chunks)
+    return data + struct.pack("<Q", zlib.crc32(data))
+
+
+def without_checksums(data: bytes) -> bytes:
+    n_chunks = -(-(len(data) - 16) // (CHUNK + 4))
+    return data[:-16 - 4 * n_chunks]
+
+
+def of_version_6(data: bytes) -> bytes:
+    """The same checkpoint as programs wrote it before chunks had checksums."""
+    data = without_checksums(data).replace(TITLE, b"Eunoe checkpoint 6\n", 1)
     return data + struct.pack("<Q", zlib.crc32(data))
 
 
 def forged(data: bytes, change: Callable[[dict, list], None]) -> bytes:
     """@param change what is done to the head and to the rows of the first section"""
+    data = without_checksums(data)
     begin = len(TITLE) + 8
     end = begin + struct.unpack_from("<Q", data, len(TITLE))[0]
     head = json.loads(data[begin:end])
@@ -26,7 +41,7 @@ def forged(data: bytes, change: Callable[[dict, list], None]) -> bytes:
     for length in lengths:
         rows.append(list(struct.unpack_from(f"<{length}d", data, at)))
         at += 8 * length
-    rest = data[at:-8]
+    rest = data[at:]
     change(head, rows)
     sections = struct.pack(f"<{len(rows)}I", *(len(row) for row in rows))
     sections += b"".join(struct.pack(f"<{len(row)}d", *row) for row in rows) + rest

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Callable
 
 from attempts import HANGING, Attempts
+from bad_input.forged import of_version_6
 from eunoe.endurance.kill_and_restart import compare
 from eunoe.launch import Failure
 from many_runs import QuickCase, SharedProcesses
@@ -89,6 +90,7 @@ DAMAGES = {
     "zeros at the end": zero_tail(NEWEST, 512), "one bit of the title": flip(NEWEST, 3),
     "one bit of the version": flip(NEWEST, 17), "one bit of the head": flip(NEWEST, 300),
     "one bit of the particles": flip(NEWEST, -3000), "one bit of the checksum": flip(NEWEST, -1),
+    "one bit of the checksums of chunks": flip(NEWEST, -10),
 }
 HOPELESS = {
     "both cut short": both(cut(NEWEST, 0.5), cut(OLDER, -1)),
@@ -126,6 +128,18 @@ def goes_on(reference: QuickCase, stopped: QuickCase, folder: Path, change: Chan
     if contents(case.results).get(OLDER) != before[OLDER]:
         raise Failure("a good checkpoint is gone")
     case.run(ranks, *AUTO, LAST)
+    compare(reference, case, "continued")
+
+
+def older_format(reference: QuickCase, stopped: QuickCase, folder: Path, ranks: int) -> None:
+    """A run continues with the same bits from checkpoints of the version before."""
+    def change(results: Path) -> None:
+        for name in (NEWEST, OLDER):
+            (results / name).write_bytes(of_version_6((results / name).read_bytes()))
+    case = crashed(stopped, folder, change)
+    run = case.answer(ranks, *AUTO, LAST)
+    if run.returncode != 0 or f"Continuing from {case.results / NEWEST}: step 2100," not in run.stdout:
+        raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
     compare(reference, case, "continued")
 
 
@@ -214,6 +228,8 @@ def main(program: str, many_runs: str, folder: Path) -> int:
               lambda results: write(table, b"x" + (results / table).read_bytes())(results),
               "no row ends after its first ")]
     work.append(("begun anew", begun_anew, stopped, folder / "anew"))
+    work += [(f"version 6, {ranks} ranks", older_format, reference, stopped, folder / f"version_6_{ranks}", ranks)
+             for ranks in (1, 2)]
     attempts = Attempts()
     attempts.make_at_once(work)
     return attempts.exit_code()

@@ -12,9 +12,11 @@
 namespace eunoe {
 
 // A checkpoint is one file: a line that names the format, the length of the head, the head (JSON:
-// all that is small), then sections of rows of doubles, and at the end a checksum of everything
-// (CRC-32). Numbers are little-endian. Rows are ordered by a key, so the file is the same on any
-// number of ranks. Every rank writes and reads its own part of it.
+// all that is small), then sections of rows of doubles. Behind these contents stand their length, a
+// checksum (CRC-32) of each chunk of them of 4 MiB, and one of everything. Numbers are
+// little-endian; checksums of chunks have 4 bytes, that of everything and lengths 8. Rows are
+// ordered by a key, so the file is the same on any number of ranks. Every rank writes and reads its
+// own part of it.
 
 /// Collects the state of a run and writes it at once.
 class CheckpointWriter
@@ -57,17 +59,17 @@ class DamagedCheckpoint : public UserError
 class Checkpoint
 {
 public:
-  /// Reads the head and verifies the whole file; collective. Throws a DamagedCheckpoint on every
-  /// rank, or a UserError for a file that may be whole but cannot be read, as one of another
-  /// version.
+  /// Reads the whole file once, each rank the head and its share of the rows, and verifies it;
+  /// collective. Throws a DamagedCheckpoint on every rank, or a UserError for a file that may be
+  /// whole but cannot be read, as one of another version.
   Checkpoint(const std::string &path, MPI_Comm comm);
   ~Checkpoint();
 
   const std::string path;
   nlohmann::ordered_json head;
 
-  /// This rank's share of a section, in the order of the keys; collective.
-  Rows rows(const std::string &name) const;
+  /// This rank's share of a section, in the order of the keys.
+  const Rows &rows(const std::string &name) const;
 
   /// Throws a UserError on every rank unless @p ok on all; collective.
   /// @param what is wrong with the checkpoint otherwise, after "is damaged: "

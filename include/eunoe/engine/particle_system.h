@@ -183,7 +183,8 @@ private:
   /// What a checkpoint holds of this rank's particles.
   Rows rows_to_save() const;
   /// This rank's share of a checkpoint's particles, if they fit into this run; collective.
-  Rows rows_of(const Checkpoint &checkpoint, const SavedLayout &layout, bool begins_phase) const;
+  const Rows &rows_of(const Checkpoint &checkpoint, const SavedLayout &layout,
+                      bool begins_phase) const;
   /// Cost of every particle in a step by what it can touch, about 1 in a settled bed.
   std::vector<double> work() const;
   bool is_within_reach(std::size_t pair) const;

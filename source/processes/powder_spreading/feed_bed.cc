@@ -228,7 +228,7 @@ void FeedBed::load(Simulation &simulation, const Checkpoint &checkpoint)
   const SavedLayout layout(checkpoint.head, system.fields(), model, system.wall_model(),
                            simulation.get_solids());
   depth = number_in(checkpoint.head.at("bed_depth"));
-  const Rows all = checkpoint.rows("feed bed");
+  const Rows &all = checkpoint.rows("feed bed");
   const double n_types = model.get_materials().n_types();
   bool ok = true;
   for (std::size_t k = 0; k < all.size(); ++k)
