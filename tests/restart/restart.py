@@ -107,7 +107,7 @@ def sleeping(program: str, folder: Path) -> None:
     share = json.loads((reference.results / "summary.json").read_text())["share_asleep"]
     if not 0.1 < share < 0.9:
         raise Failure(f"A share of {share} slept, so little is tried.")
-    for ranks, more in ((2, FREQUENT), (4, OTHER_MESH), (3, DYNAMIC)):
+    for ranks, more in ((2, FREQUENT), (4, OTHER_MESH)):
         other = QuickCase(program, CASE, folder / str(ranks), settings)
         other.run(ranks, *more)
         compare(reference, other, f"With sleep, on {ranks} ranks", more is not OTHER_MESH)
@@ -118,7 +118,7 @@ def sleeping(program: str, folder: Path) -> None:
         raise Failure("With sleep, the state depends on whether forces on solids are written.")
     other = QuickCase(program, CASE, folder / "restarted", settings)
     other.run(2, *EVERY, "simulation control/iteration end = 11111")
-    other.run(4, *EVERY, "restart/restart = true")
+    other.run(3, *EVERY, *DYNAMIC, "restart/restart = true")
     compare(reference, other, "With sleep, restarted")
 
 
@@ -158,7 +158,6 @@ def curved(program: str, folder: Path) -> None:
 def killed(program: str, folder: Path) -> None:
     longer = ["simulation control/iteration end = 60000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
-    alone.run(1)
     restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
                                    random.Random(3))
     if restarts == 0:

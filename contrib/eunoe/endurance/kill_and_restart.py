@@ -162,10 +162,11 @@ def check_loss(case: Case, output: str, before: int, frequency: int, what: str) 
 
 def kill_and_restart(reference: Case, case: Case, ranks: list[int], kills: int,
                      frequency: int, draw: random.Random) -> tuple[int, int, int]:
-    """@return number of restarts from a checkpoint, number of finished runs that were compared, and
+    """@param reference is run here, alone
+    @return number of restarts from a checkpoint, number of finished runs that were compared, and
     the most steps that a kill has cost"""
     began = time.monotonic()
-    case.run(ranks[0])
+    reference.run(ranks[0])
     duration = time.monotonic() - began
     checkpoints = ("restart/checkpoint = true", f"restart/frequency = {frequency}",
                    f"simulation control/log frequency = {max(1, frequency // 20)}")
@@ -213,7 +214,6 @@ def main(words: list[str]) -> int:
     folder = options.folder.resolve()
     reference = Case(program, options.case, folder / "alone", options.settings)
     killed = Case(program, options.case, folder / "killed", options.settings)
-    reference.run(ranks[0])
     restarts, ends, lost = kill_and_restart(reference, killed, ranks, options.kills, options.frequency,
                                             random.Random(options.seed))
     print(f"{options.kills} kills, {restarts} restarts, each from the last checkpoint; a kill cost at most "
