@@ -2,24 +2,30 @@
 give the run's numbers again, dumps that LAMMPS and LIGGGHTS wrote are read rightly in any unit and frame, and
 bad files are refused with a sentence.
 
-Usage: measure.py path/to/eunoe-particles folder
+Usage: measure.py path/to/many-runs folder
 Exit code 77, which skips the test, if numpy or VTK is missing.
 """
 
+import contextlib
 import importlib.util
+import io
 import shutil
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "vtkmodules")):
     sys.exit(77)
 import numpy as np
 
+from eunoe import commands
 from eunoe.discovery.particle_files import read_particles
 from eunoe.launch import Failure, overrides
 from eunoe.repository import ROOT
 from eunoe.vtk_files import read_vtu
+from many_runs import ManyRuns
 
 HERE = Path(__file__).resolve().parent
 HEAP, SPREADING = HERE.parent / "heap" / "tiny.prm", HERE.parent / "spreading" / "tiny.prm"
@@ -28,9 +34,26 @@ GRAINS = np.array([[0., 4e-5, 0., 8e-5], [8e-5, 3e-5, 1e-5, 6e-5], [-2e-4, 5e-5,
                    [2e-5, 1.2e-4, -1e-5, 9e-5], [4e-4, -6e-4, 0., 9e-5]])
 
 
+class Program:
+    """eunoe-particles, also where the tool starts it; a process of its own for each start would take longer than
+    the rest."""
+
+    runs: ManyRuns
+
+    @classmethod
+    def start(cls, command: list[str], **_: object) -> subprocess.CompletedProcess:
+        return cls.runs(*command[1:], cwd=Path.cwd())
+
+
+def program(*words: str) -> subprocess.CompletedProcess:
+    return Program.start(["eunoe-particles", *words])
+
+
 def tool(*words: str) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, str(ROOT / "contrib" / "tools"), "measure", "--program", PROGRAM, *words],
-                          capture_output=True, text=True, check=False)
+    output, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
+        code = commands.run("measure", list(words))
+    return subprocess.CompletedProcess(words, code, output.getvalue(), errors.getvalue())
 
 
 def measured(*words: str) -> dict[tuple[str, str], float]:
@@ -43,9 +66,9 @@ def measured(*words: str) -> dict[tuple[str, str], float]:
 
 def run(case: Path, folder: Path, *settings: str) -> dict[tuple[str, str], float]:
     """Runs a case; what it measured."""
-    subprocess.run([PROGRAM, str(case), "--quiet", *overrides(
-        [f"simulation control/output path = {folder}", "post-processing/final state/calculation = true", *settings])],
-        check=True)
+    program(str(case), "--quiet", *overrides(
+        [f"simulation control/output path = {folder}", "post-processing/final state/calculation = true",
+         *settings])).check_returncode()
     lines = (folder / "measurements.csv").read_text(encoding="utf-8").splitlines()[1:]
     return {(name, index): float(value) for name, index, value, _ in (line.split(",") for line in lines)}
 
@@ -222,10 +245,9 @@ def check_refusals(folder: Path) -> None:
     assert done.returncode == 2 and "missing.csv cannot be used" in done.stderr, done.stderr
     for words, sentence in ((["--measure", str(folder / "columns.csv")], "the header has no column 'z'"),
                             (["--measure", str(folder / "missing.csv")], "missing.csv")):
-        done = subprocess.run([PROGRAM, str(HEAP), *words], capture_output=True, text=True, check=False)
+        done = program(str(HEAP), *words)
         assert done.returncode == 2 and sentence in done.stderr, (words, done.stderr)
-    done = subprocess.run([PROGRAM, str(ROOT / "prm" / "examples" / "bouncing_sphere.prm"), "--measure", "no.csv"],
-                          capture_output=True, text=True, check=False)
+    done = program(str(ROOT / "prm" / "examples" / "bouncing_sphere.prm"), "--measure", "no.csv")
     assert done.returncode == 2 and "has no process" in done.stderr, done.stderr
 
 
@@ -233,17 +255,19 @@ def main() -> int:
     folder = Path(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    check_others()
-    check_tables(folder)
-    check_pictures_in_parts(folder)
-    check_refusals(folder)
-    check_heap(folder / "heap")
-    check_study_table(folder / "heap")
-    check_spreading(folder / "spreading")
+    Program.runs = ManyRuns(sys.argv[1], folder / "printed")
+    with mock.patch("eunoe.discovery.measure.subprocess", SimpleNamespace(run=Program.start)):
+        check_others()
+        check_tables(folder)
+        check_pictures_in_parts(folder)
+        check_refusals(folder)
+        check_heap(folder / "heap")
+        check_study_table(folder / "heap")
+        check_spreading(folder / "spreading")
+    Program.runs.close()
     print("ok")
     return 0
 
 
 if __name__ == "__main__":
-    PROGRAM = str(Path(sys.argv[1]).resolve())
     sys.exit(main())
