@@ -11,8 +11,6 @@ import sys
 import time
 from pathlib import Path
 
-import sample_bed
-
 CHECK = """\
 It would run with
   particles:  16525 at most, 12374 on average
@@ -31,6 +29,7 @@ def main(words: list[str]) -> int:
     if "--check" in words:
         print(CHECK)
         return 0
+    import sample_bed  # takes longer than the answers above
     peak = 14 if "PS1" in words[0] else 10
     print("starts", folder.name, flush=True)
     if (folder.parent / "wait").exists():

@@ -12,6 +12,7 @@ import unittest
 from dataclasses import fields, replace
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
     print("skipped: numpy, matplotlib or VTK is missing")
@@ -336,6 +337,10 @@ class Page(unittest.TestCase):
     def setUp(self) -> None:
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
+        # Much of the time would go into pixels.
+        coarse = mock.patch("eunoe.report.style.RESOLUTION", 40.)
+        coarse.start()
+        self.addCleanup(coarse.stop)
         self.folder = Path(temporary.name)
         self.names = ["PS1_seed1", "PS1_seed2", "PS3_seed1"]
         for name in self.names:

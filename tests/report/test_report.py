@@ -213,6 +213,13 @@ class Views(unittest.TestCase):
 
 
 class Report(InFolder):
+    def setUp(self) -> None:
+        super().setUp()
+        # Much of the time would go into pixels.
+        coarse = mock.patch("eunoe.report.style.RESOLUTION", 40.)
+        coarse.start()
+        self.addCleanup(coarse.stop)
+
     def make(self, *options: str) -> tuple[int, str, str]:
         """Exit code, output and errors of the script for the folder of the test."""
         output, errors = io.StringIO(), io.StringIO()
@@ -233,9 +240,11 @@ class Report(InFolder):
         self.assertEqual(len(ids), len(set(ids)))
         return page
 
-    def assert_says(self, text: str) -> None:
-        """Asserts that the page has a text; a failure does not print the page."""
-        self.assertTrue(text in self.page(), f"The page lacks '{text}'.")
+    def assert_says(self, *texts: str) -> None:
+        """Asserts that the page has these texts; a failure does not print the page."""
+        page = self.page()
+        for text in texts:
+            self.assertTrue(text in page, f"The page lacks '{text}'.")
 
     def test_whole_run(self) -> None:
         sample_run.write_run(self.folder)
@@ -290,8 +299,7 @@ class Report(InFolder):
 
     def test_run_without_pictures_that_has_not_finished(self) -> None:
         sample_run.write_run(self.folder, layers=2, pictures=False, summary=False)
-        self.assert_says("The run has not finished (there is no summary.json): 2 of 3 layers")
-        self.assert_says("no pictures of the particles")
+        self.assert_says("The run has not finished (there is no summary.json): 2 of 3 layers", "no pictures of the particles")
 
     def test_run_with_a_broken_picture(self) -> None:
         sample_run.write_run(self.folder)
@@ -331,8 +339,7 @@ class Report(InFolder):
         self.file("summary.json", json.dumps(sample_run.SUMMARY))
         self.file("heap_00000.vtu", sample_run.vtu(sample_run.piece(*sample_run.bed(0))))
         self.file("heap.pvd", sample_run.pvd([(0.3, "heap_00000.vtu")]))
-        self.assert_says("The last picture")
-        self.assert_says("abc1234")
+        self.assert_says("The last picture", "abc1234")
 
     def test_measured_densities_of_a_run_that_was_no_spreading(self) -> None:
         own = str(self.file("own.csv", "layer,repeat\n1,0.51\n2,0.56\n"))

@@ -101,10 +101,12 @@ class Campaign(unittest.TestCase):
     def setUp(self) -> None:
         temporary = tempfile.TemporaryDirectory()
         self.addCleanup(temporary.cleanup)
-        # Most of the time would go into pixels.
+        # Most of the time would go into pictures: they are coarse where they are looked at, and empty elsewhere.
         coarse = mock.patch("eunoe.reproduction.pictures.RESOLUTION", 10.)
-        coarse.start()
-        self.addCleanup(coarse.stop)
+        self.empty = mock.patch("matplotlib.figure.Figure.savefig", lambda figure, file, **options: file.touch())
+        for patch in (coarse, self.empty):
+            patch.start()
+            self.addCleanup(patch.stop)
         self.folder = Path(temporary.name)
         self.states = self.folder / "states"
         self.states.mkdir()
@@ -131,7 +133,9 @@ class Campaign(unittest.TestCase):
     def test_runs_page_and_pictures(self) -> None:
         only = ("--only", "PS1_L0.25", "PS3_L0.25", "PS1_L0.25_forget_seed1", "PS1_L0.25_lips_stiff_seed1",
                 "PS1_L1_open_seed1")
+        self.empty.stop()
         self.assertEqual(self.run_it(*only, "--jobs", "2")[::2], (0, ""))
+        self.empty.start()
         self.check_data()
         self.check_page()
         self.check_pictures()
