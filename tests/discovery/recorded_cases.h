@@ -24,7 +24,6 @@ struct DrawnCase
     RandomStream random(seed, 98);
     one = draw_case(simulator, kind, table.fit, seed, random);
     repeats = 3 + static_cast<unsigned int>(random.index(4));
-    find_resolution(simulator, table.fit, repeats, one);
     instrument = 0.4 * random.uniform();
     data = simulator.measure(table.fit, table.held_out, one.truth, repeats, instrument, seed);
   }

@@ -37,7 +37,6 @@ struct SuiteCase
   std::map<std::string, double> strengths; ///< of the effects; negative: below the null value
   Amplitudes truth;                        ///< with the nuisances
   std::vector<std::string> excluded;       ///< deleted from the catalogue
-  double clearness = 0., separation = 0.;  ///< of the truth (Resolution)
 };
 
 /// What the command line of a suite asks for.
@@ -108,15 +107,6 @@ inline SuiteCase draw_case(const KnownSimulator &simulator, const StudyKind &kin
   return one;
 }
 
-/// How far a drawn truth is from the base model and from competing effects.
-inline void find_resolution(const KnownSimulator &simulator, const std::vector<std::string> &fit,
-                            unsigned int repeats, SuiteCase &one)
-{
-  const Resolution resolution(simulator, fit, repeats);
-  one.clearness = resolution.clearness(one.truth);
-  one.separation = one.strengths.empty() ? 0. : resolution.separation(one.truth);
-}
-
 /// A study's answer and the truth: a line that contrib/eunoe/discovery/score.py reads.
 inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
 {
@@ -145,8 +135,6 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"amplitudes", amplitudes}}},
       {"answer",
        {{"verdict", c["verdict"]},
-        {"clearness of the truth", one.clearness},
-        {"separation of the truth", one.separation},
         {"p of nothing missing", c["p of nothing missing"]},
         {"confidence off catalogue", c["confidence off catalogue"]},
         {"candidates", candidates},

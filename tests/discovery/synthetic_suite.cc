@@ -57,7 +57,6 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
   }
   SuiteCase one = draw_case(simulator, kind, fit, seed, random);
   const unsigned int repeats = 3 + static_cast<unsigned int>(random.index(4));
-  find_resolution(simulator, fit, repeats, one);
   const MeasuredData data =
       simulator.measure(fit, held_out, one.truth, repeats, 0.4 * random.uniform(), seed);
   options.further_experiments = {"shear"};

@@ -15,9 +15,6 @@ from .case import STRENGTHS, Case
 
 SOMETHING = ("named", "tie", "off catalogue")
 WITH_A_NAME = ("named", "tie")  # verdicts in which an effect is named or leads
-# A truth counts as distinguishable if it differs from the nearest other single effect by this many
-# standard errors of the measurement.
-APART = 4.
 # A model is refuted by held-out data below this p-value, as in the program's DecisionRule.
 REFUTED = 0.01
 # Borders between the strengths 2, 4, 8 and 16, where strengths are drawn and not given.
@@ -44,7 +41,6 @@ class Outcome:
     amplitudes: dict[str, dict]
     shrink: float | None
     runs: int
-    separation: float | None = None  # from the nearest other effect; None: unknown
     curve: list[tuple[int, set[str]]] = field(default_factory=list)  # runs, and the likeliest model with them
     # What held-out data say of models, by their p-values: of those that the fit has named, and of others.
     names_tested: list[tuple[set[str], float]] = field(default_factory=list)
@@ -52,10 +48,6 @@ class Outcome:
     families: dict[str, str] = field(default_factory=dict)  # of effects that have one
     probabilities: list[float] = field(default_factory=list)  # of the sets in covering
     seen: bool | None = None  # whether something was detected, where that was said beside the verdict
-
-    @property
-    def stands_apart(self) -> bool:
-        return self.separation is not None and self.separation >= APART
 
     @property
     def truth(self) -> set[str]:
@@ -166,7 +158,6 @@ def outcome(case: Case, content: dict) -> Outcome:
     return Outcome(case, content["verdict"], named, candidates[0]["effect"] if candidates else "",
                    covering, {row["effect"]: row["confidence"] for row in candidates}, rows,
                    held_out.get("shrink"), content["runs"]["asked for"],
-                   content.get("separation of the truth"),
                    [(row["runs"], set(row["first"].split(" + ")) if row["verdict"] in WITH_A_NAME else set())
                     for row in content.get("learning curve", [])],
                    names, [row for row in tested("could have refuted") if row not in names],
@@ -266,7 +257,6 @@ def score(outcomes: list[Outcome]) -> Scores:
                        [p for o in single + two if o.families for p in o.p_of_wrong_families(o.names_tested)]),
               _refuted("any wrong model refuted by held-out data",
                        [p for o in known for p in o.wrong_p(o.names_tested + o.others_tested)])]
-    rates += _rates_apart(strong, two, deleted)
     numbers = {}
     for name, some in (("", answered), (", strength 4 and more", [o for o in answered if o.strength >= 4.])):
         if some:
@@ -300,21 +290,6 @@ def _by_strength(outcomes: list[Outcome]) -> dict[str, list[Outcome]]:
 
 def _refuted(name: str, p_values: list[float], target: str = "") -> Rate:
     return Rate(name, sum(1 for p in p_values if p < REFUTED), len(p_values), target)
-
-
-def _rates_apart(strong: list[Outcome], two: list[Outcome], deleted: list[Outcome]) -> list[Rate]:
-    """Rates for truths that are distinguishable from every other single effect."""
-    def apart(outcomes: list[Outcome]) -> list[Outcome]:
-        return [o for o in outcomes if o.stands_apart]
-    answered = [o for o in apart(strong) if o.has_name]
-    return [rate("apart: first name correct at strength 4 and more", apart(strong),
-                 lambda o: o.first_is_right, "at least 90 %"),
-            rate("apart: set covers the truth", answered, lambda o: o.covers, "at least 95 %"),
-            rate("apart: both of two effects named", apart(two), lambda o: o.named == o.truth),
-            rate("apart: deleted effect recognised as off the catalogue", apart(deleted),
-                 lambda o: o.verdict == "off catalogue", "at least 70 %"),
-            rate("apart: confident and wrong", apart(strong + two + deleted),
-                 lambda o: o.confidently_wrong, "at most 3 %")]
 
 
 def _covers_amplitudes(o: Outcome) -> bool:
