@@ -135,6 +135,7 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"amplitudes", amplitudes}}},
       {"answer",
        {{"verdict", c["verdict"]},
+        {"detected", c["detected"]},
         {"p of nothing missing", c["p of nothing missing"]},
         {"confidence off catalogue", c["confidence off catalogue"]},
         {"candidates", candidates},
