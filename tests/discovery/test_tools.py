@@ -41,7 +41,15 @@ class InFolder(unittest.TestCase):
         self.folder = Path(folder.name)
 
 
+def said(study: Study) -> str:
+    return " ".join(verdict_text(study)).replace("\u00a0", " ")
+
+
 class PageOfAStudy(InFolder):
+    def study(self, verdict: str) -> Study:
+        make_study(self.folder / verdict, verdict)
+        return Study(self.folder / verdict)
+
     def test_every_verdict_has_a_page(self) -> None:
         for verdict, title in TITLES.items():
             folder = self.folder / verdict.replace(" ", "_")
@@ -60,110 +68,99 @@ class PageOfAStudy(InFolder):
                     "off catalogue": "resembles cohesion (cosine 0.7)", "none": "Of 2 effects, 2 would",
                     "underpowered": "says little"}
         for verdict, words in expected.items():
-            folder = self.folder / verdict
-            make_study(folder, verdict)
-            self.assertIn(words, " ".join(verdict_text(Study(folder))))
+            self.assertIn(words, said(self.study(verdict)))
 
     def test_nothing_in_the_fit_beside_held_out_data_that_differ(self) -> None:
-        make_study(self.folder / "none", "none")
-        study = Study(self.folder / "none")
+        study = self.study("none")
         self.assertEqual(title_of(study), "Nothing is missing")
         study.content["gaps"]["held-out"] = {"p before": 1e-6, "result": "the base model does not describe the held-out data"}
         self.assertIn("held-out data differ", title_of(study))
-        words = " ".join(verdict_text(study))
+        words = said(study)
         self.assertIn("the held-out data do not (p = 1e-06)", words)
         self.assertNotIn("The measured data agree", words)
 
     def test_a_tie_whose_first_model_fits_badly_says_so(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
-        self.assertNotIn("none of them", " ".join(verdict_text(study)))
+        study = self.study("tie")
+        self.assertNotIn("none of them", said(study))
         study.content["p of the fit"] = 0.03
-        self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
+        self.assertIn("describes the data badly (p = 0.03)", said(study))
 
     def test_one_effect_or_none_of_the_catalogue(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         self.assertEqual(title_of(study), "Several effects explain the data alike")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
                                 {"effects": "none of the catalogue", "probability": 0.1}]
         self.assertEqual(title_of(study), "One effect, or something that the catalogue lacks")
-        words = " ".join(verdict_text(study))
+        words = said(study)
         self.assertIn("would tell whether it is this effect", words)
         self.assertNotIn("bits that are open", words)
         self.assertNotIn("would look like it", words)
 
     def test_a_name_that_an_effect_off_the_catalogue_could_have(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.9},
                                 {"effects": "none of the catalogue", "probability": 0.1}]
         study.content["amplitudes"] = [{"effect": "cohesion", "unit": "J/m2", "amplitude": 1.1e-4,
                                         "lower": 0.9e-4, "upper": 1.3e-4}]
         study.content["calibration"] = {"lookalikes": {"strength": 8., "recognised": 0.7,
                                                      "taken for": {"cohesion": 0.3}}}
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("If it is cohesion (size of it): 0.00011 J/m2 (95 % interval", words)
         self.assertIn("left out of it in turn, 30 % are taken for this one", words)
         study.content["calibration"]["lookalikes"]["taken for"]["cohesion"] = 0.001
-        self.assertNotIn("would look like it", " ".join(verdict_text(study)))
+        self.assertNotIn("would look like it", said(study))
 
     def test_effects_that_were_not_tried(self) -> None:
         for verdict, title, sentence in (
                 ("tie", "One effect, or something that was not tried", "cannot say which of these it is"),
                 ("off catalogue", TITLES["off catalogue"], "no effect of the catalogue that was simulated, nor"),
                 ("underpowered", "Something is missing, and most effects were not tried", "no effect that was simulated")):
-            make_study(self.folder / verdict, verdict)
-            study = Study(self.folder / verdict)
+            study = self.study(verdict)
             study.content |= {"detected": True, "untried": ["wall_friction", "air_drag"]}
             if verdict == "tie":
                 study.content["tie"] = [{"effects": "cohesion", "probability": 0.99},
                                         {"effects": "none of the catalogue", "probability": 0.01}]
             self.assertEqual(title_of(study), title)
-            words = " ".join(verdict_text(study))
+            words = said(study)
             self.assertIn(sentence, words)
             self.assertIn("There is no simulation with wall friction, air drag, so what is missing may be that", words)
             self.assertNotIn("Nothing was found", words)
 
     def test_what_the_effects_of_a_tie_have_in_common(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
-        self.assertNotIn("in common", " ".join(verdict_text(study)))
+        study = self.study("tie")
+        self.assertNotIn("in common", said(study))
         for name in ("cohesion", "rolling_resistance"):
             study.effects[name]["family"] = "contacts that hold"
         self.assertIn("All of them have one thing in common, contacts that hold: an effect of this kind is missing "
-                      "with a probability of 100", " ".join(verdict_text(study)))
+                      "with a probability of 100", said(study))
         study.content["tie"] += [{"effects": "none of the catalogue", "probability": 0.1}]
-        self.assertIn("cohesion, rolling resistance have one thing in common", " ".join(verdict_text(study)))
+        self.assertIn("cohesion, rolling resistance have one thing in common", said(study))
         study.content["tie"][2]["probability"] = 1.5
-        self.assertNotIn("in common", " ".join(verdict_text(study)))
+        self.assertNotIn("in common", said(study))
 
     def test_a_member_of_a_tie_has_the_probability_of_models_with_more_effects(self) -> None:
-        make_study(self.folder / "tie", "tie")
-        study = Study(self.folder / "tie")
+        study = self.study("tie")
         study.content["tie"] = [{"effects": "cohesion", "probability": 0.4},
                                 {"effects": "rolling_resistance", "probability": 0.2}]
         study.content["models"] = [*study.content["tie"],
                                    {"effects": "cohesion + wall_friction", "probability": 0.3},
                                    {"effects": "none of the catalogue", "probability": 0.1}]
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("cohesion (70 %), rolling resistance (20 %)", words)
         for name in ("cohesion", "rolling_resistance"):
             study.effects[name]["family"] = "contacts that hold"
-        words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+        words = said(study)
         self.assertIn("with a probability of 90 %", words)
 
     def test_small_probabilities_are_told(self) -> None:
-        make_study(self.folder / "study", "named")
-        study = Study(self.folder / "study")
-        self.assertIn("probability 0.012.", " ".join(verdict_text(study)))
+        study = self.study("named")
+        self.assertIn("probability 0.012.", said(study))
         study.content["p of nothing missing"] = 3e-9
-        self.assertIn("probability 3e-09.", " ".join(verdict_text(study)))
+        self.assertIn("probability 3e-09.", said(study))
         self.assertIn("refute with a probability of: nothing 90", held_out_text(study))
 
     def test_what_held_out_data_say_of_a_tie(self) -> None:
-        make_study(self.folder / "study", "tie")
-        study = Study(self.folder / "study")
+        study = self.study("tie")
         table = study.content["gaps"]["held-out"]
         members = [{"effects": "cohesion", "p": 0.4, "result": "the gap shrinks"},
                    {"effects": "rolling_resistance", "p": 0.06, "result": "the gap shrinks"}]
@@ -178,16 +175,14 @@ class PageOfAStudy(InFolder):
                       held_out_text(study))
 
     def test_without_held_out_data(self) -> None:
-        make_study(self.folder / "study", "none")
-        study = Study(self.folder / "study")
+        study = self.study("none")
         study.content["gaps"]["held-out"] = {"result": "no held-out data"}
         self.assertIn("No data were held out", held_out_text(study))
         figure = envelope_figure(study, True)
         self.assertEqual([t.get_text() for t in figure.axes[0].texts], ["No data were held out."])
 
     def test_a_gap_that_grows_is_explained(self) -> None:
-        make_study(self.folder / "study", "off catalogue")
-        study = Study(self.folder / "study")
+        study = self.study("off catalogue")
         self.assertEqual(gap_text(study), "")
         study.content["gaps"]["fit"]["gap after"] = 3.5
         study.content["gaps"]["held-out"]["gap after"] = 3.2
@@ -197,8 +192,7 @@ class PageOfAStudy(InFolder):
         self.assertIn("data of the fit, with the closest model", labels)
 
     def test_fingerprints_are_read(self) -> None:
-        make_study(self.folder / "study", "named")
-        cells, prints = Study(self.folder / "study").fingerprints()
+        cells, prints = self.study("named").fingerprints()
         self.assertEqual(len(cells), 4)
         for fingerprint in prints:
             self.assertEqual(list(fingerprint.change), list(5. * CHANGES[fingerprint.effect]))
