@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib")):
@@ -19,7 +20,7 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 from eunoe.discovery import foreign_heaps
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
-from eunoe.discovery.outcomes import outcome_of, read, read_lines, score, wilson
+from eunoe.discovery.outcomes import Outcome, outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
 from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
@@ -290,6 +291,18 @@ class ForeignHeaps(unittest.TestCase):
             self.assertRegex(entries, rf"(?m)^\| `{name.rsplit('/', 1)[-1]}` \|")
 
 
+def line_of(strength: float, answer: dict, kind: str = "single", truth: Sequence[str] = ("a",)) -> dict:
+    """A case of a suite, and its answer, which has nothing else to say."""
+    return {"case": {"name": "1", "kind": kind, "seed": 1, "study_seed": 1, "strengths": dict.fromkeys(truth, strength),
+                     "excluded": list(truth) if kind == "deleted" else [], "amplitudes": dict.fromkeys(truth, 1.)},
+            "answer": {"tie": [], "gaps": {}, "candidates": [{"effect": "a", "confidence": 0.9}], "amplitudes": [],
+                       "runs": {"asked for": 100}, **answer}}
+
+
+def rates_of(outcomes: Iterable[Outcome]) -> dict[str, tuple[int, int]]:
+    return {r.name: (r.hits, r.number) for r in score(list(outcomes)).rates}
+
+
 class Scores(InFolder):
     def add(self, name: str, kind: str, verdict: str, truth: dict[str, float]) -> None:
         folder = self.folder / name
@@ -310,7 +323,7 @@ class Scores(InFolder):
             self.assertEqual(score_script.main([str(self.folder)]), 0)
         outcomes = [outcome_of(line) for line in (read(self.folder / name, "study") for name in "abcdef") if line]
         self.assertEqual(read_lines(self.folder / "answers_study.jsonl"), outcomes)
-        rates = {r.name: (r.hits, r.number) for r in score(outcomes).rates}
+        rates = rates_of(outcomes)
         self.assertEqual(rates["named rightly at strength 4"], (1, 3))
         self.assertEqual(rates["named wrongly at strength 4"], (1, 3))
         self.assertEqual(rates["tied with the truth at strength 4"], (1, 3))
@@ -330,21 +343,17 @@ class Scores(InFolder):
             self.assertIn(row, page)
 
     def test_families(self) -> None:
-        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
-                "excluded": [], "amplitudes": {"a": 1.}}
-        answer = {"verdict": "tie", "gaps": {}, "candidates": [{"effect": "c", "confidence": 0.4}],
+        answer = {"verdict": "tie", "candidates": [{"effect": "c", "confidence": 0.4}],
                   "tie": [{"effects": "c", "probability": 0.4}, {"effects": "a", "probability": 0.3},
                           {"effects": "b", "probability": 0.3}],
-                  "amplitudes": [], "runs": {"asked for": 100},
                   "catalogue": [{"name": "a", "family": "f"}, {"name": "b", "family": "f"},
                                 {"name": "c", "family": ""}]}
 
         def right() -> tuple[int, int]:
-            rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
-            return rates["family right, named or leading, strength 4 and more"]
+            return rates_of([outcome_of(line_of(4.7, answer))])["family right, named or leading, strength 4 and more"]
         self.assertEqual(right(), (1, 1))
         answer["gaps"] = {"held-out": {"members of the tie": [{"effects": "b", "p": 1e-3}, {"effects": "c", "p": 0.2}]}}
-        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        rates = rates_of([outcome_of(line_of(4.7, answer))])
         self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
         self.assertEqual(rates["name of a wrong family refuted by held-out data"], (0, 1))
         answer["tie"][0]["probability"] = 0.7
@@ -357,36 +366,23 @@ class Scores(InFolder):
                                            {"effects": "a + c", "p": 1e-4}, {"effects": "d", "p": 0.3}],
                     "could have refuted": [{"effects": "nothing", "p": 1e-9}, {"effects": "b", "p": 1e-3},
                                            {"effects": "e", "p": 1e-5}]}
-        answer = {"verdict": "tie", "tie": [{"effects": "a"}, {"effects": "d"}], "gaps": {"held-out": held_out},
-                  "candidates": [{"effect": "a", "confidence": 0.6}], "amplitudes": [],
-                  "runs": {"asked for": 100}}
-        case = {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.7},
-                "excluded": [], "amplitudes": {"a": 1.}}
-        rates = {r.name: (r.hits, r.number) for r in score([outcome_of({"case": case, "answer": answer})]).rates}
+        answer = {"verdict": "tie", "tie": [{"effects": "a"}, {"effects": "d"}], "gaps": {"held-out": held_out}}
+        rates = rates_of([outcome_of(line_of(4.7, answer))])
         # Models with the true effect are not wrong names.
         self.assertEqual(rates["wrong name refuted by held-out data"], (1, 2))
         self.assertEqual(rates["any wrong model refuted by held-out data"], (2, 3))
         self.assertEqual(rates["detection at strength 2.8 to 5.7"], (1, 1))
 
     def test_lines_of_answers(self) -> None:
-        lines = []
-        for number, (kind, verdict, truth, named) in enumerate(
-                [("two", "named", ["a", "b"], ["a"]), ("two", "named", ["a", "b"], ["a", "c"]),
-                 ("two", "off catalogue", ["a", "b"], []), ("deleted", "named", ["a"], ["b"]),
-                 ("single", "off catalogue", ["a"], [])]):
-            lines.append(json.dumps({
-                "case": {"name": str(number), "kind": kind, "seed": number, "study_seed": number,
-                         "strengths": {effect: 4. for effect in truth},
-                         "excluded": truth if kind == "deleted" else [],
-                         "amplitudes": {effect: 1. for effect in truth}},
-                "answer": {"verdict": verdict, "tie": [], "gaps": {"held-out": {}},
-                           "candidates": [{"effect": "a", "confidence": 0.9}],
-                           "amplitudes": [{"effect": effect, "amplitude": 1., "lower": 0.5,
-                                           "upper": 1.5} for effect in named],
-                           "runs": {"asked for": 100}}}))
         path = self.folder / "answers.jsonl"
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        rates = {r.name: (r.hits, r.number) for r in score(read_lines(path)).rates}
+        with path.open("w", encoding="utf-8") as file:
+            for kind, verdict, truth, named in (("two", "named", "ab", "a"), ("two", "named", "ab", "ac"),
+                                                ("two", "off catalogue", "ab", ""), ("deleted", "named", "a", "b"),
+                                                ("single", "off catalogue", "a", "")):
+                amplitudes = [{"effect": effect, "amplitude": 1., "lower": 0.5, "upper": 1.5} for effect in named]
+                line = line_of(4., {"verdict": verdict, "amplitudes": amplitudes}, kind, truth)
+                file.write(json.dumps(line) + "\n")
+        rates = rates_of(read_lines(path))
         # A right name of several is incomplete, not wrong; a name that is not part of the truth is
         # wrong.
         self.assertEqual(rates["confident and wrong"], (2, 5))
@@ -405,18 +401,14 @@ class Scores(InFolder):
     def test_the_learning_curve(self) -> None:
         curve = [{"runs": 250, "verdict": "none", "first": "a"}, {"runs": 380, "verdict": "tie", "first": "b"},
                  {"runs": 700, "verdict": "named", "first": "a + b"}]
-        line = {"case": {"name": "1", "kind": "single", "seed": 1, "study_seed": 1, "strengths": {"a": 4.},
-                         "excluded": [], "amplitudes": {"a": 1.}},
-                "answer": {"verdict": "named", "tie": [], "gaps": {}, "amplitudes": [],
-                           "candidates": [{"effect": "a", "confidence": 0.9}], "runs": {"asked for": 700}, "learning curve": curve}}
-        path = self.folder / "answers.jsonl"
-        path.write_text(json.dumps(line) + "\n", encoding="utf-8")
-        self.assertEqual(score(read_lines(path)).learning,
+
+        def learning() -> list[tuple[int, int, int, int]]:
+            return score([outcome_of(line_of(4., {"verdict": "named", "learning curve": curve}))]).learning
+        self.assertEqual(learning(),
                          [(300, 1, 0, 1), (400, 1, 0, 1), (600, 1, 0, 1), (900, 1, 1, 0), (1300, 1, 1, 0),
                           (2000, 1, 1, 0)])
         curve[2]["verdict"] = "off catalogue"
-        path.write_text(json.dumps(line) + "\n", encoding="utf-8")
-        self.assertEqual(score(read_lines(path)).learning[-1], (2000, 1, 0, 0))
+        self.assertEqual(learning()[-1], (2000, 1, 0, 0))
 
     def test_a_truth_that_was_changed_is_not_scored(self) -> None:
         self.add("a", "single", "named", {"cohesion": 1e-4})
