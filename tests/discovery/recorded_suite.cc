@@ -16,8 +16,6 @@
 #include "ideal_observer.h"
 #include "recorded_cases.h"
 
-#include <mpi.h>
-
 namespace {
 
 using namespace test;
@@ -65,7 +63,6 @@ void observe_pairs(const RecordedTable &table, const StudyKind &kind, const Suit
   }
   std::printf("two of strength %g: both named in %u of %u, leading in %u, among the models in %u\n",
               kind.strength, named, options.n_seeds, first, covered);
-  std::fflush(stdout);
 }
 
 /// How often the ideal observer names something outright whose catalogue lacks the effect, by all
@@ -91,7 +88,6 @@ void observe_deleted(const RecordedTable &table, const StudyKind &kind, const Su
   }
   std::printf("deleted effect of strength %g: another one named outright in %u of %u\n",
               kind.strength, named, options.n_seeds);
-  std::fflush(stdout);
 }
 
 /// How often the ideal observer detects and names the right effect, on the data of the studies with
@@ -135,7 +131,6 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
     for (const double level : levels)
       std::printf(", detected at level %g in %u", level, detected[level]);
     std::printf("\n");
-    std::fflush(stdout);
   }
 }
 
@@ -206,7 +201,6 @@ void observe_level(const RecordedTable &table, const StudyOptions &options,
   for (const auto &[level, number] : below)
     std::printf(" p <= %g in %u of %u;", level, number, n_data);
   std::printf("\n");
-  std::fflush(stdout);
 }
 
 /// Variance of data by the scatter of runs along the weights by which a study estimates an
@@ -245,7 +239,6 @@ void observe_weights(const RecordedTable &table, const StudyOptions &options,
   }
   std::printf("seed %u, %s: %.3f of the simulator, %.3f of twins\n", seed, name.c_str(),
               of_simulator / assumed, of_twins / assumed);
-  std::fflush(stdout);
 }
 
 /// Small probabilities by the few draws that a study makes, beside those by many.
@@ -275,7 +268,6 @@ void observe_tail(const RecordedTable &table, const StudyOptions &options, const
     std::printf("%g: %.2g, %.2g, %.2g\n", p, found[n_tails / 10], found[n_tails / 2],
                 found[9 * n_tails / 10]);
   }
-  std::fflush(stdout);
 }
 
 void study_simulations(const RecordedTable &table, const StudyOptions &options,
@@ -325,14 +317,5 @@ void run(const SuiteOptions &options)
 
 int main(int argc, char **argv)
 {
-  MPI_Init(&argc, &argv);
-  int code = 0;
-  try {
-    run(SuiteOptions(argc, argv));
-  } catch (const std::exception &error) {
-    std::fprintf(stderr, "%s\n", error.what());
-    code = 1;
-  }
-  MPI_Finalize();
-  return code;
+  return run_suite(argc, argv, run);
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <mpi.h>
 #include <set>
 
 namespace test {
@@ -148,7 +150,6 @@ inline void print_outcome(const SuiteCase &one, const Discovery &discovery)
         {"gaps", {{"fit", c["gaps"]["fit"]}, {"held-out", held_out}}},
         {"runs", c["runs"]}}}};
   std::printf("%s\n", line.dump().c_str());
-  std::fflush(stdout);
 }
 
 /// The study of a case; its seed is that of the case, so that no two studies share a run.
@@ -160,6 +161,22 @@ inline Discovery study_of(const SuiteCase &one, KnownSimulator &simulator, const
   const std::vector<Factor> factors =
       one.excluded.empty() ? simulator.factors() : simulator.factors_without(one.excluded.front());
   return discover(options, data, factors, simulator, log);
+}
+
+/// What main() of a suite does. Each line of its output is there as soon as it is printed.
+inline int run_suite(int argc, char **argv, void (*run)(const SuiteOptions &))
+{
+  MPI_Init(&argc, &argv);
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+  int code = 0;
+  try {
+    run(SuiteOptions(argc, argv));
+  } catch (const std::exception &error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    code = 1;
+  }
+  MPI_Finalize();
+  return code;
 }
 
 } // namespace test

@@ -10,8 +10,6 @@
 #include "suite.h"
 #include "synthetic.h"
 
-#include <mpi.h>
-
 namespace {
 
 using namespace test;
@@ -63,18 +61,17 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
   print_outcome(one, study_of(one, simulator, data, options));
 }
 
+void run(const SuiteOptions &options)
+{
+  const Nature nature = changed(options.others);
+  for (const StudyKind &kind : standard_kinds())
+    for (std::uint32_t k = 0; options.wants(kind) && k < options.n_seeds; ++k)
+      one_study(kind, options.first_seed + k, nature, options.study);
+}
+
 } // namespace
 
 int main(int argc, char **argv)
 {
-  MPI_Init(&argc, &argv);
-  {
-    const SuiteOptions options(argc, argv);
-    const Nature nature = changed(options.others);
-    for (const StudyKind &kind : standard_kinds())
-      for (std::uint32_t k = 0; options.wants(kind) && k < options.n_seeds; ++k)
-        one_study(kind, options.first_seed + k, nature, options.study);
-  }
-  MPI_Finalize();
-  return 0;
+  return run_suite(argc, argv, run);
 }
