@@ -2,12 +2,12 @@
 // JSON per study.
 //   recorded-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER; simulated (studies whose data
-// are recorded simulations, instead of truths at any amplitude); describe (what the table holds,
-// and no study); ideal (how often an observer who knows all fingerprints detects single effects and
-// names them and two effects rightly, or another one for an effect that his catalogue lacks, and no
-// study); level (how often data without any effect seem to have one, for the runs of one study
-// each, see observe_level); weights and tail (see observe_weights, observe_tail); table=FILE.
+// Options: only=KIND; budget=NUMBER; simulated (studies whose data are recorded simulations,
+// instead of truths at any amplitude); describe (what the table holds, and no study); ideal (how
+// often an observer who knows all fingerprints detects single effects and names them and two
+// effects rightly, or another one for an effect that his catalogue lacks, and no study); level (how
+// often data without any effect seem to have one, for the runs of one study each, see
+// observe_level); weights and tail (see observe_weights, observe_tail); table=FILE.
 
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>

@@ -61,10 +61,6 @@ struct SuiteOptions
         study.budget = std::stoul(option.substr(7));
       else if (option.rfind("only=", 0) == 0)
         only = option.substr(5);
-      else if (option.rfind("null-runs=", 0) == 0)
-        study.null_runs = static_cast<unsigned int>(std::stoul(option.substr(10)));
-      else if (option.rfind("nuisance-runs=", 0) == 0)
-        study.nuisance_runs = static_cast<unsigned int>(std::stoul(option.substr(14)));
       else
         others.push_back(option);
     }

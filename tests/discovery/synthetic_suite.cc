@@ -2,10 +2,7 @@
 // JSON per study. It takes minutes to hours and is not part of ctest.
 //   synthetic-suite [first seed] [seeds] [options] > answers.jsonl
 //   contrib/tools score answers.jsonl
-// Options: only=KIND; budget=, null-runs= and nuisance-runs=NUMBER;
-// no-nuisances, no-bend, even-chaos, no-swing (simpler simulators); steep (little of an effect
-// does most of it, as with cohesion and rolling resistance in a heap: truths lie far before the
-// amplitudes that are screened).
+// Options: only=KIND; budget=NUMBER.
 
 #include "suite.h"
 #include "synthetic.h"
@@ -16,31 +13,10 @@ using namespace test;
 
 const std::vector<std::string> fit = {"spreading", "heap"}, held_out = {"thick layers"};
 
-Nature changed(const std::vector<std::string> &options)
-{
-  Nature nature;
-  for (const std::string &option : options) {
-    if (option == "no-nuisances")
-      nature.n_nuisances = 0;
-    else if (option == "no-bend")
-      nature.bend = 0.;
-    else if (option == "even-chaos")
-      nature.changed_chaos = nature.skewness = 0.;
-    else if (option == "no-swing")
-      nature.swing = 0.;
-    else if (option == "steep") {
-      nature.power = 0.45;
-      nature.bend = 0.;
-      nature.strength_of_scale *= 5.;
-    } else
-      throw std::runtime_error("unknown option " + option);
-  }
-  return nature;
-}
-
-void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOptions options)
+void one_study(const StudyKind &kind, std::uint32_t seed, StudyOptions options)
 {
   RandomStream random(seed, 99);
+  Nature nature;
   nature.seed = seed;
   nature.strength_of_scale *= 0.6 + 0.8 * random.uniform();
   nature.seed_correlation = 0.6 * random.uniform();
@@ -63,10 +39,11 @@ void one_study(const StudyKind &kind, std::uint32_t seed, Nature nature, StudyOp
 
 void run(const SuiteOptions &options)
 {
-  const Nature nature = changed(options.others);
+  if (!options.others.empty())
+    throw std::runtime_error("unknown option " + options.others.front());
   for (const StudyKind &kind : standard_kinds())
     for (std::uint32_t k = 0; options.wants(kind) && k < options.n_seeds; ++k)
-      one_study(kind, options.first_seed + k, nature, options.study);
+      one_study(kind, options.first_seed + k, options.study);
 }
 
 } // namespace
