@@ -24,9 +24,9 @@ public:
       : simulator(simulator), repeats(repeats), instrument(instrument)
   {
     for (const MeasuredPoint &point : data) {
-      Part &part = parts[point.point.experiment];
-      part.values.conservativeResize(part.values.size() + 1);
-      part.values(part.values.size() - 1) = point.value;
+      Eigen::VectorXd &part = parts[point.point.experiment];
+      part.conservativeResize(part.size() + 1);
+      part(part.size() - 1) = point.value;
     }
     covariance_of_nuisances();
     for (const Factor &f : simulator.factors())
@@ -35,7 +35,6 @@ public:
         find_places(f);
         effects.emplace_back(log_evidence(f), f.name);
       }
-    std::sort(effects.begin(), effects.end());
   }
 
   using Names = std::set<std::string>;
@@ -52,22 +51,7 @@ public:
       all.emplace_back(std::log(prior.one_effect / n) + log, Names{name});
     for (const auto &[names, log] : log_evidence_of_pairs())
       all.emplace_back(std::log(prior.two_effects / (0.5 * n * (n - 1.))) + log, names);
-    std::sort(all.rbegin(), all.rend());
-    std::vector<double> logs;
-    for (const auto &[log, names] : all)
-      logs.push_back(log);
-    const double total = log_sum(logs);
-    double sum = 0.;
-    std::vector<Names> result;
-    for (auto it = all.begin(); it != all.end() && sum < probability; ++it) {
-      sum += std::exp(it->first - total);
-      if (std::none_of(result.begin(), result.end(), [&](const Names &likelier) {
-            return std::includes(it->second.begin(), it->second.end(), likelier.begin(),
-                                 likelier.end());
-          }))
-        result.push_back(it->second);
-    }
-    return result;
+    return likeliest(all, probability);
   }
 
   /// Probability that data of a model with one or two effects lie as far from it as these do from
@@ -91,19 +75,12 @@ public:
   }
 
   /// The likeliest single effects, which together have a probability; the likeliest first.
-  std::vector<std::string> names(const double probability) const
+  std::vector<Names> single_effects(const double probability) const
   {
-    std::vector<double> logs;
+    std::vector<std::pair<double, Names>> all;
     for (const auto &[log, name] : effects)
-      logs.push_back(log);
-    const double total = log_sum(logs);
-    std::vector<std::string> list;
-    double sum = 0.;
-    for (auto it = effects.rbegin(); it != effects.rend() && sum < probability; ++it) {
-      list.push_back(it->second);
-      sum += std::exp(it->first - total);
-    }
-    return list;
+      all.emplace_back(log, Names{name});
+    return likeliest(all, probability);
   }
 
   /// Log of the evidence for some effect, each as likely as the others, over that for nothing.
@@ -116,10 +93,26 @@ public:
   }
 
 private:
-  struct Part
+  static std::vector<Names> likeliest(std::vector<std::pair<double, Names>> all,
+                                      const double probability)
   {
-    Eigen::VectorXd values;
-  };
+    std::sort(all.rbegin(), all.rend());
+    std::vector<double> logs;
+    for (const auto &[log, names] : all)
+      logs.push_back(log);
+    const double total = log_sum(logs);
+    double sum = 0.;
+    std::vector<Names> result;
+    for (auto it = all.begin(); it != all.end() && sum < probability; ++it) {
+      sum += std::exp(it->first - total);
+      if (std::none_of(result.begin(), result.end(), [&](const Names &likelier) {
+            return std::includes(it->second.begin(), it->second.end(), likelier.begin(),
+                                 likelier.end());
+          }))
+        result.push_back(it->second);
+    }
+    return result;
+  }
 
   /// An effect at one strength, and its change in units in which the covariance of the base model's
   /// data is the unit matrix.
@@ -251,7 +244,7 @@ private:
   {
     Eigen::Index sum = 0;
     for (const auto &[experiment, part] : parts)
-      sum += part.values.size();
+      sum += part.size();
     return sum;
   }
 
@@ -261,20 +254,20 @@ private:
     Eigen::VectorXd result(size());
     Eigen::Index first = 0;
     for (const auto &[experiment, part] : parts) {
-      result.segment(first, part.values.size()) = of_experiment(experiment, part);
-      first += part.values.size();
+      result.segment(first, part.size()) = of_experiment(experiment, part);
+      first += part.size();
     }
     return result;
   }
 
   Eigen::VectorXd data() const
   {
-    return joined([](const std::string &, const Part &part) { return part.values; });
+    return joined([](const std::string &, const Eigen::VectorXd &part) { return part; });
   }
 
   Eigen::VectorXd mean(const Amplitudes &truth) const
   {
-    return joined([&](const std::string &experiment, const Part &) {
+    return joined([&](const std::string &experiment, const Eigen::VectorXd &) {
       return simulator.mean(experiment, truth);
     });
   }
@@ -298,7 +291,7 @@ private:
     Eigen::MatrixXd result = nuisances;
     Eigen::Index first = 0;
     for (const auto &[experiment, part] : parts) {
-      const Eigen::Index n = part.values.size();
+      const Eigen::Index n = part.size();
       const Eigen::MatrixXd one_run = simulator.covariance(experiment);
       result.block(first, first, n, n) +=
           one_run * std::pow(simulator.growth(experiment, truth), 2) / repeats;
@@ -325,7 +318,7 @@ private:
   const RecordedSimulator &simulator;
   const unsigned int repeats;
   const double instrument;
-  std::map<std::string, Part> parts;
+  std::map<std::string, Eigen::VectorXd> parts; ///< data of each experiment
   Eigen::MatrixXd nuisances;
   Eigen::LLT<Eigen::MatrixXd> base; ///< of the covariance without effects
   std::map<std::string, std::vector<Place>> places;

@@ -116,8 +116,8 @@ void observe(const RecordedTable &table, const SuiteOptions &options)
     for (std::uint32_t k = 0; k < options.n_seeds; ++k) {
       const DrawnCase drawn(table, kind, options.first_seed + k);
       const IdealObserver observer = observer_of(drawn);
-      const std::vector<std::string> names = observer.names(credible);
-      const std::string truth = drawn.one.strengths.begin()->first;
+      const std::vector<IdealObserver::Names> names = observer.single_effects(credible);
+      const IdealObserver::Names truth = {drawn.one.strengths.begin()->first};
       right += names.front() == truth;
       covered += std::count(names.begin(), names.end(), truth) > 0;
       size += names.size();
