@@ -6,13 +6,13 @@
 //
 // Usage: many-runs folder
 
+#include <eunoe/core/mpi_session.h>
 #include <eunoe/simulation/application.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <fcntl.h>
 #include <filesystem>
 #include <iostream>
+#include <mpi.h>
 #include <string>
 #include <unistd.h>
 #include <vector>
@@ -61,21 +61,25 @@ int run(const std::string &line, const std::string &files)
 
 } // namespace
 
-int main(int argc, char **argv)
+int main(int, char **argv)
 {
-  using namespace dealii::Utilities;
-  const MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  const unsigned int rank = MPI::this_mpi_process(MPI_COMM_WORLD);
+  const eunoe::MpiSession mpi(argv);
+  int rank;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   const std::string files = std::filesystem::absolute(argv[1]) / std::to_string(rank);
   for (std::string line;;) {
     if (rank == 0 && !std::getline(std::cin, line))
       line.clear();
-    line = MPI::broadcast(MPI_COMM_WORLD, line, 0);
-    if (line.empty())
+    int length = static_cast<int>(line.size());
+    MPI_Bcast(&length, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    if (length == 0)
       return 0;
+    line.resize(static_cast<std::size_t>(length));
+    MPI_Bcast(line.data(), length, MPI_CHAR, 0, MPI_COMM_WORLD);
     const int code = run(line, files);
-    const int least = MPI::min(code, MPI_COMM_WORLD), most = MPI::max(code, MPI_COMM_WORLD);
+    int least_and_most[] = {code, -code};
+    MPI_Allreduce(MPI_IN_PLACE, least_and_most, 2, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
     if (rank == 0)
-      std::cout << (least == most ? code : -1) << std::endl;
+      std::cout << (least_and_most[0] == -least_and_most[1] ? code : -1) << std::endl;
   }
 }
