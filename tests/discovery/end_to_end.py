@@ -92,17 +92,16 @@ def make_data(program: Program) -> None:
 def check_refusals(program: Program) -> None:
     folder = program.folder
     before = {path for path in folder.rglob("*") if path.is_file()}
-    expect(program.run("study.prm", "--set", "discovery/effects = tlit"), BAD_INPUT,
-           "Did you mean 'tilt'?")
+    expect(program.run("study.prm", *overrides((
+        "discovery/effects = tlit", "discovery/nuisance 0/entries = /lagrangian physical properties/g",
+        "discovery/experiment 0/overrides = restart/restart = true"))), BAD_INPUT, "Did you mean 'tilt'?",
+           "Nuisance 'density' / entry 'entries': '/lagrangian physical properties/g': its path has an empty part",
+           "entry 'restart' is true, and a study simulates a case from its beginning")
     expect(program.run("study.prm", "--set", "discovery/measured data = no.csv"), BAD_INPUT,
            "no.csv cannot be read")
     expect(program.run("study.prm", "--set", "twin/seed = 1"), BAD_INPUT, "subsection 'twin' is unknown")
-    expect(program.run("study.prm", "--set", "discovery/nuisance 0/entries = /lagrangian physical properties/g"), BAD_INPUT,
-           "Nuisance 'density' / entry 'entries': '/lagrangian physical properties/g': its path has an empty part")
     expect(program.run("study.prm", "--set", "discovery/nuisance 0/value = ${base * 1.1}"), BAD_INPUT,
            "does not depend on the amplitude")
-    expect(program.run("study.prm", "--set", "discovery/experiment 0/overrides = restart/restart = true"), BAD_INPUT,
-           "entry 'restart' is true, and a study simulates a case from its beginning")
     expect(program.run("no.prm"), BAD_INPUT, "no.prm cannot be read")
     expect(program.run(), BAD_INPUT, "An input file is missing")
     (folder / "effects" / "bad.prm").write_text(

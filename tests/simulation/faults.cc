@@ -2,8 +2,6 @@
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "../tests.h"
 
 #include <fstream>
@@ -66,18 +64,18 @@ void examine_checkpoints()
   const Checkpoint fault("results/restart_fault.checkpoint", MPI_COMM_WORLD);
   check("step of the fault", fault.head.at("clock").at("step") == step);
   const Rows rows = fault.rows("particles");
-  std::vector<std::string> named;
+  std::vector<std::vector<double>> mine;
   constexpr unsigned int place = 7; // of the position in a row, after the constant values
   for (std::size_t row = 0; row < rows.size(); ++row)
-    named.push_back("particle " + format(rows[row][0]) + " at (" + format(rows[row][place]) + ", " +
-                    format(rows[row][place + 1]) + ", " + format(rows[row][place + 2]) + ") m");
-  unsigned int n_particles = 0, n_named = 0;
-  for (const auto &part : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, named))
-    for (const std::string &name : part) {
-      ++n_particles;
-      n_named += message.find(name) != std::string::npos ? 1 : 0;
-    }
-  check("state at the fault", n_particles == 3 && n_named == 1);
+    mine.push_back({rows[row][0], rows[row][place], rows[row][place + 1], rows[row][place + 2]});
+  const auto all = of_all_ranks(MPI_COMM_WORLD, mine);
+  unsigned int n_named = 0;
+  for (const std::vector<double> &one : all) {
+    const std::string name = "particle " + format(one[0]) + " at (" + format(one[1]) + ", " +
+                             format(one[2]) + ", " + format(one[3]) + ") m";
+    n_named += message.find(name) != std::string::npos ? 1 : 0;
+  }
+  check("state at the fault", all.size() == 3 && n_named == 1);
 
   std::ifstream index("results/restart.latest");
   std::string newest;

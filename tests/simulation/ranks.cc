@@ -4,8 +4,6 @@
 // separation and with drag. The first rank runs the case alone, then all ranks run it together.
 // Meanwhile all particles are compared with all others: no list may lack a pair that touches.
 
-#include <deal.II/base/mpi.h>
-
 #include "../tests.h"
 
 #include <set>
@@ -113,7 +111,7 @@ struct Result
   std::vector<double> load;
   ExactSum lost;
   unsigned long long searches, in_place, balances;
-  std::size_t n_touching = 0, n_missed = 0;
+  unsigned long n_touching = 0, n_missed = 0;
 };
 
 /// Counts the pairs of particles that touch, each once on every rank, and those of them of which
@@ -189,7 +187,7 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
     if (n++ % interval == 0)
       count_touching(simulation, comm, result);
   });
-  result.n_missed = dealii::Utilities::MPI::sum(result.n_missed, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &result.n_missed, 1, MPI_UNSIGNED_LONG, MPI_SUM, comm);
   result.particles = particle_table(*test_case);
   const SolidLoad load = test_case->global_solid_loads().back();
   for (const ExactSum &component : load.force)
