@@ -150,10 +150,10 @@ Json describe_fit(const Round &round, const StudyOptions &options)
   }
   Json content;
   content["nuisances"] = describe_nuisances(evidence.space(), values);
-  content["gap"] = describe_gap(round.target, base, after);
+  content["gap"] = describe_gap(base, after);
   content["envelopes"] = describe_envelopes(round.target, base, after, options.level);
-  content["decisive"] = after && second ? decisive_points(round.target, *after, *second)
-                        : after         ? decisive_points(round.target, *after, base)
+  content["decisive"] = after && second ? decisive_points(*after, *second)
+                        : after         ? decisive_points(*after, base)
                                         : Json::array();
   return content;
 }

@@ -503,13 +503,14 @@ std::pair<double, double> on_fine_grid(
     return result;
   };
   const std::size_t other = model.effects[model.effects[0] == effect ? 1 : 0];
-  const AmplitudeDensity density(evidence, model, target.data());
+  const Hypothesis likeliest = evidence.prepare(target.predict(model.best));
   std::vector<double> logs, marginal;
   for (const double u : axis(effect)) {
     logs.clear();
     for (const double v : axis(other)) {
       const std::map<std::size_t, double> effects = {{effect, u}, {other, v}};
-      logs.push_back(density.log(effects, target.predict(effects)));
+      logs.push_back(
+          log_density(evidence, likeliest, effects, target.predict(effects), target.data()));
     }
     marginal.push_back(log_sum(logs));
   }

@@ -166,11 +166,9 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
   double others = 0.;
   for (const Wish &wish : list)
     others += wish.weight;
-  list.push_back(
-      {space.n_effects(), 0., others > 0. ? others * share_of_base / (1. - share_of_base) : 1.});
-  double sum = 0.;
-  for (const Wish &wish : list)
-    sum += wish.weight;
+  const double of_base = others > 0. ? others * share_of_base / (1. - share_of_base) : 1.;
+  list.push_back({space.n_effects(), 0., of_base});
+  const double sum = others + of_base;
   // Systematic sampling: as many points of each as it has of the weight.
   std::vector<DesignPoint> points;
   double below = 0.;

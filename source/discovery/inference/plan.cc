@@ -149,8 +149,7 @@ Json rank_measurements(const Likelihood &likelihood, const std::vector<Model> &m
                                  {"of", entropy},
                                  {"separation", expectations.size() > 1 ? least : 0.}});
   }
-  const std::size_t all = rows.size();
-  return largest_first(std::move(rows), all);
+  return largest_first(std::move(rows));
 }
 
 /// An effect before anything is measured, at an amplitude: nuisances have their prior.
