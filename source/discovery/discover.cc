@@ -46,12 +46,12 @@ private:
 
 /// Whether the last rounds gave the same answer, and the errors of the emulators no longer matter
 /// for it.
-bool is_settled(const LearningCurve &curve, const Round &round, const double level)
+bool is_settled(const Json &curve, const Round &round, const double level)
 {
   constexpr double sure = 0.99, well_known = 0.15;
   const Findings &findings = round.findings;
-  if (!curve.is_steady(level) || (findings.detected ? has_challenger(round.evidence, findings)
-                                                    : could_be_detected(round.evidence, findings)))
+  if (!is_steady(curve, level) || (findings.detected ? has_challenger(round.evidence, findings)
+                                                     : could_be_detected(round.evidence, findings)))
     return false;
   // More runs do not tell an effect from one like it that the catalogue lacks.
   const Model &first = findings.models.front();
@@ -206,7 +206,7 @@ private:
   HeldOut held_out;
   Design design;
   std::vector<std::string> notes;
-  LearningCurve curve;
+  Json curve = Json::array();
   std::unique_ptr<Round> round;
 };
 
@@ -234,8 +234,8 @@ void Study::run()
   while (true) {
     round = std::make_unique<Round>(measured, samples, options, rule.quick());
     const Findings &findings = round->findings;
-    curve.add(findings, space, n_runs());
-    const Json &last = curve.rows().back();
+    curve.push_back(describe_round(findings, space, n_runs()));
+    const Json &last = curve.back();
     log.line("  " + std::to_string(n_runs()) + " runs: " + last["verdict"].get<std::string>() +
              (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
                                       format(last["probability"].get<double>()) + ")"
@@ -331,7 +331,7 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
   c["effects"] = power;
   c.update(describe_fingerprints(evidence));
   c["calibration"] = describe_calibration(findings, space);
-  c["learning curve"] = curve.rows();
+  c["learning curve"] = curve;
   c["runs"] = {{"known", samples.n_known()},
                {"asked for", samples.n_asked()},
                {"failed", samples.n_failed()},
