@@ -1,5 +1,4 @@
 #include <eunoe/core/parameter_section.h>
-#include <eunoe/discovery/inference/challengers.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/held_out.h>
 #include <eunoe/discovery/inference/learning_curve.h>

@@ -113,12 +113,11 @@ void Design::run_effects(const std::function<Target()> &estimate)
 bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
   const Target &target = evidence.target();
-  const Eigen::VectorXd &data = target.data();
   // Whether a model becomes the likeliest once it is known better.
   std::vector<Wish> list;
   std::vector<double> logs;
   for (const std::size_t k : evidence.usable()) {
-    const std::vector<double> optimistic = evidence.optimistic(k, data);
+    const std::vector<double> optimistic = evidence.optimistic(k);
     for (std::size_t i = 0; i < optimistic.size(); ++i) {
       const Evidence::Place &place = evidence.places(k)[i];
       list.push_back({k, place.amplitude, unknown(target, place.hypothesis.prediction)});
@@ -129,7 +128,7 @@ bool Design::refine(const Evidence &evidence, const Findings &findings)
   // which may hope for a little, would only take runs from these.
   for (const Model &model : findings.models)
     if (findings.detected && model.effects.size() == 2) {
-      const double hope = evidence.optimistic_pair(model, data);
+      const double hope = evidence.optimistic_pair(model);
       for (const auto &[k, amplitude] : model.best) {
         list.push_back({k, amplitude, unknown(target, target.predict({{k, amplitude}}))});
         logs.push_back(hope);
@@ -201,8 +200,7 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
         const Target::Prediction prediction = target.predict(effects);
         list.push_back({k, place.amplitude, unknown(target, prediction)});
         // Runs that lie far from the data by chance must not keep others from being made there.
-        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction), target.data()) /
-                       temperature);
+        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction)) / temperature);
       }
   const std::vector<double> shares = shares_of(std::move(logs));
   double variance = 0.;

@@ -51,8 +51,8 @@ void sort_by_probability(std::vector<Model> &models)
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
 }
 
-Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
-    : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
+Evidence::Evidence(const Target &target, const FactorSpace &space)
+    : Likelihood(target), factors(space), grid(space.n_effects())
 {
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     if (target.knows(k))
@@ -60,22 +60,21 @@ Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &
   discrepancies = make_discrepancies();
 }
 
-std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
-                                         const double deviations) const
+std::vector<double> Evidence::optimistic(const std::size_t effect, const double deviations) const
 {
   std::vector<double> values;
   for (const Place &place : grid[effect])
     values.push_back(place.log_prior +
                      std::log(prior.one_effect / static_cast<double>(usable().size())) +
-                     log_optimistic(place.hypothesis, data, deviations));
+                     log_optimistic(place.hypothesis, deviations));
   return values;
 }
 
-double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const
+double Evidence::optimistic_pair(const Model &pair) const
 {
   const Hypothesis best = prepare(target().predict(pair.best));
-  return pair.log_prior + pair.log_evidence + log_optimistic(best, data) -
-         log_likelihood(best, data);
+  return pair.log_prior + pair.log_evidence + log_optimistic(best) -
+         log_likelihood(best, target().data());
 }
 
 /// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of

@@ -42,7 +42,7 @@ NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPosition
   const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
   const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(gradient.cols(), gradient.cols()),
                         scaled = gradient.transpose() *
-                                 evidence.inverse_variance(hypothesis, data).asDiagonal();
+                                 evidence.inverse_variance(hypothesis).asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> inner(unit + scaled * gradient);
   return {inner.solve(scaled * (data - hypothesis.prediction.mean)), inner.matrixU().solve(unit)};
 }

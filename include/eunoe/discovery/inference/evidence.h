@@ -45,7 +45,7 @@ void sort_by_probability(std::vector<Model> &models);
 class Evidence : public Likelihood
 {
 public:
-  Evidence(const Target &target, const FactorSpace &space, const Prior &prior = {});
+  Evidence(const Target &target, const FactorSpace &space);
 
   /// An amplitude of an effect on the grid over which it is integrated.
   struct Place
@@ -65,10 +65,9 @@ public:
   const FactorSpace &space() const { return factors; }
 
   /// Log of prior and optimistic likelihood of an effect's places.
-  std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data,
-                                 double deviations = 0.) const;
+  std::vector<double> optimistic(std::size_t effect, double deviations = 0.) const;
   /// The same of a pair of effects at its best amplitudes.
-  double optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const;
+  double optimistic_pair(const Model &pair) const;
   /// Effects that were simulated, and so have places.
   std::vector<std::size_t> usable() const;
 

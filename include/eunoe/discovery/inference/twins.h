@@ -51,7 +51,6 @@ public:
   double p(double value) const;
   /// Value with this probability to be exceeded.
   double quantile(double p) const;
-  std::size_t size() const { return sorted.size(); }
 
 private:
   std::vector<double> sorted; ///< from the largest
