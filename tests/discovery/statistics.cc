@@ -249,9 +249,9 @@ void few_values_change()
 void tails()
 {
   RandomStream random(8, 1);
-  std::vector<double> draws;
-  for (int k = 0; k < 4000; ++k)
-    draws.push_back(-std::log(random.uniform()));
+  Eigen::ArrayXd draws(4000);
+  for (double &draw : draws)
+    draw = -std::log(random.uniform());
   const Tail tail(draws);
   check("p within the draws", std::abs(tail.p(1.) - std::exp(-1.)) < 0.03);
   // An exponential tail goes on as it began, beyond all draws.

@@ -54,9 +54,12 @@ void sort_by_probability(std::vector<Model> &models)
 Evidence::Evidence(const Target &target, const FactorSpace &space)
     : Likelihood(target), factors(space), grid(space.n_effects())
 {
-  for (std::size_t k = 0; k < space.n_effects(); ++k)
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
     if (target.knows(k))
       make_grid(k);
+    if (!grid[k].empty())
+      effects.push_back(k);
+  }
   discrepancies = make_discrepancies();
 }
 
@@ -65,7 +68,7 @@ std::vector<double> Evidence::optimistic(const std::size_t effect, const double 
   std::vector<double> values;
   for (const Place &place : grid[effect])
     values.push_back(place.log_prior +
-                     std::log(prior.one_effect / static_cast<double>(usable().size())) +
+                     std::log(prior.one_effect / static_cast<double>(effects.size())) +
                      log_optimistic(place.hypothesis, deviations));
   return values;
 }
@@ -176,7 +179,7 @@ Model Evidence::single(const std::size_t effect, const Eigen::VectorXd &data) co
   of_places.col(0).maxCoeff(&best);
   Model model;
   model.effects = {effect};
-  model.log_prior = std::log(prior.one_effect / static_cast<double>(usable().size()));
+  model.log_prior = std::log(prior.one_effect / static_cast<double>(effects.size()));
   model.log_evidence = log_sums(of_places)(0);
   model.best[effect] = grid[effect][static_cast<std::size_t>(best)].amplitude;
   return model;
@@ -196,19 +199,9 @@ Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd>
   return log_sums(log_t(constants, distances)) - std::log(static_cast<double>(number));
 }
 
-std::vector<std::size_t> Evidence::usable() const
-{
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k < factors.n_effects(); ++k)
-    if (!grid[k].empty())
-      result.push_back(k);
-  return result;
-}
-
 Evidence::Singles Evidence::singles(const Eigen::Ref<const Eigen::MatrixXd> &data,
                                     const std::optional<std::size_t> without) const
 {
-  const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<Eigen::Index>(effects.size());
   const double total = prior.one_effect + prior.none_of_these;
   const double of_each = prior.one_effect / static_cast<double>(without ? n - 1 : n) / total;
@@ -336,7 +329,6 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   all[0].is_discrepancy = true;
   all[0].log_prior = std::log(prior.none_of_these);
   all[0].log_evidence = log_discrepancy(data)(0);
-  const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<double>(effects.size());
   for (const std::size_t k : effects)
     all.push_back(single(k, data));

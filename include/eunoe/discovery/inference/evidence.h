@@ -69,7 +69,7 @@ public:
   /// The same of a pair of effects at its best amplitudes.
   double optimistic_pair(const Model &pair) const;
   /// Effects that were simulated, and so have places.
-  std::vector<std::size_t> usable() const;
+  const std::vector<std::size_t> &usable() const { return effects; }
 
   /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.
   Eigen::ArrayXd log_nothing(const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -124,6 +124,7 @@ private:
   const FactorSpace &factors;
   const Prior prior;
   std::vector<std::vector<Place>> grid;
+  std::vector<std::size_t> effects;
   std::vector<Covariance> discrepancies;
 };
 

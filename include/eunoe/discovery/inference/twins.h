@@ -47,7 +47,7 @@ class Tail
 {
 public:
   Tail() = default;
-  explicit Tail(std::vector<double> draws);
+  explicit Tail(const Eigen::ArrayXd &draws);
   double p(double value) const;
   /// Value with this probability to be exceeded.
   double quantile(double p) const;
