@@ -1,5 +1,4 @@
 #include <eunoe/core/parameter_section.h>
-#include <eunoe/discovery/inference/challengers.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/held_out.h>
 #include <eunoe/discovery/inference/learning_curve.h>
@@ -46,12 +45,12 @@ private:
 
 /// Whether the last rounds gave the same answer, and the errors of the emulators no longer matter
 /// for it.
-bool is_settled(const LearningCurve &curve, const Round &round, const double level)
+bool is_settled(const Json &curve, const Round &round, const double level)
 {
   constexpr double sure = 0.99, well_known = 0.15;
   const Findings &findings = round.findings;
-  if (!curve.is_steady(level) || (findings.detected ? has_challenger(round.evidence, findings)
-                                                    : could_be_detected(round.evidence, findings)))
+  if (!is_steady(curve, level) || (findings.detected ? has_challenger(round.evidence, findings)
+                                                     : could_be_detected(round.evidence, findings)))
     return false;
   // More runs do not tell an effect from one like it that the catalogue lacks.
   const Model &first = findings.models.front();
@@ -149,10 +148,10 @@ Json describe_fit(const Round &round, const StudyOptions &options, const Json &v
         second = fitted(model.best).first;
   }
   return {{"nuisances", describe_nuisances(evidence.space(), values)},
-          {"gaps", {{"fit", describe_gap(round.target, base, after)}, {"held-out", validation}}},
+          {"gaps", {{"fit", describe_gap(base, after)}, {"held-out", validation}}},
           {"envelopes", describe_envelopes(round.target, base, after, options.level)},
-          {"decisive", after && second ? decisive_points(round.target, *after, *second)
-                       : after         ? decisive_points(round.target, *after, base)
+          {"decisive", after && second ? decisive_points(*after, *second)
+                       : after         ? decisive_points(*after, base)
                                        : Json::array()}};
 }
 
@@ -204,7 +203,7 @@ private:
   HeldOut held_out;
   Design design;
   std::vector<std::string> notes;
-  LearningCurve curve;
+  Json curve = Json::array();
   std::unique_ptr<Round> round;
 };
 
@@ -232,8 +231,8 @@ void Study::run()
   while (true) {
     round = std::make_unique<Round>(measured, samples, options, rule.quick());
     const Findings &findings = round->findings;
-    curve.add(findings, space, n_runs());
-    const Json &last = curve.rows().back();
+    curve.push_back(describe_round(findings, space, n_runs()));
+    const Json &last = curve.back();
     log.line("  " + std::to_string(n_runs()) + " runs: " + last["verdict"].get<std::string>() +
              (findings.detected ? ", first " + last["first"].get<std::string>() + " (" +
                                       format(last["probability"].get<double>()) + ")"
@@ -326,7 +325,7 @@ Json Study::describe(const Json &power, const Json &of_fit)
   c["effects"] = power;
   c.update(describe_fingerprints(evidence));
   c["calibration"] = describe_calibration(findings, space);
-  c["learning curve"] = curve.rows();
+  c["learning curve"] = curve;
   c["runs"] = {{"known", samples.n_known()},
                {"asked for", samples.n_asked()},
                {"failed", samples.n_failed()},

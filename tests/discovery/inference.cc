@@ -1,7 +1,6 @@
 // The parts of the inference against closed formulas and against twins of a known truth.
 
 #include <eunoe/discovery/inference/amplitude_posterior.h>
-#include <eunoe/discovery/inference/challengers.h>
 #include <eunoe/discovery/inference/decision.h>
 #include <eunoe/discovery/inference/design.h>
 #include <eunoe/discovery/inference/predictive.h>
@@ -423,9 +422,9 @@ void challenge(Laboratory &lab)
     return has_challenger(evidence, findings);
   };
   const Model single = find({b}), more = find({a, b}), pair = find({b, c});
-  const double hope = log_sum(evidence.optimistic(b, target.data(), by_chance)),
-               hope_of_more = evidence.optimistic_pair(more, target.data()),
-               hope_of_pair = evidence.optimistic_pair(pair, target.data());
+  const double hope = log_sum(evidence.optimistic(b, by_chance)),
+               hope_of_more = evidence.optimistic_pair(more),
+               hope_of_pair = evidence.optimistic_pair(pair);
   check("an effect with 7 % challenges an answer", is_challenged(single, hope, 2.5));
   check("and with 3 % it does not", !is_challenged(single, hope, 3.5));
   check("so does a pair",
@@ -503,13 +502,14 @@ std::pair<double, double> on_fine_grid(
     return result;
   };
   const std::size_t other = model.effects[model.effects[0] == effect ? 1 : 0];
-  const AmplitudeDensity density(evidence, model, target.data());
+  const Hypothesis likeliest = evidence.prepare(target.predict(model.best));
   std::vector<double> logs, marginal;
   for (const double u : axis(effect)) {
     logs.clear();
     for (const double v : axis(other)) {
       const std::map<std::size_t, double> effects = {{effect, u}, {other, v}};
-      logs.push_back(density.log(effects, target.predict(effects)));
+      logs.push_back(
+          log_density(evidence, likeliest, effects, target.predict(effects), target.data()));
     }
     marginal.push_back(log_sum(logs));
   }

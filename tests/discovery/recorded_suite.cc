@@ -252,7 +252,7 @@ void observe_tail(const RecordedTable &table, const StudyOptions &options, const
     const Eigen::ArrayXd factors = evidence.log_bayes_factors(
         Twins(target, 1000 + k).draw(evidence.nothing().prediction, n_draws));
     all.insert(all.end(), factors.begin(), factors.end());
-    tails.emplace_back(std::vector<double>(factors.begin(), factors.end()));
+    tails.emplace_back(factors);
   }
   std::sort(all.rbegin(), all.rend());
   std::printf("seed %u, p by %zu draws, and by %u: tenth, median, nine tenths\n", seed, all.size(),

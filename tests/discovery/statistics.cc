@@ -249,9 +249,9 @@ void few_values_change()
 void tails()
 {
   RandomStream random(8, 1);
-  std::vector<double> draws;
-  for (int k = 0; k < 4000; ++k)
-    draws.push_back(-std::log(random.uniform()));
+  Eigen::ArrayXd draws(4000);
+  for (double &draw : draws)
+    draw = -std::log(random.uniform());
   const Tail tail(draws);
   check("p within the draws", std::abs(tail.p(1.) - std::exp(-1.)) < 0.03);
   // An exponential tail goes on as it began, beyond all draws.
@@ -283,9 +283,9 @@ void modes_and_noise()
       sum += noise.at((k + 0.5) / number)[group].mean() / number;
     return sum;
   };
-  const InstrumentNoise profile(
-      modes, replicate_covariance,
-      {Eigen::VectorXd::Constant(21, std::sqrt(2.)), Eigen::VectorXd::Constant(21, 40.)});
+  const InstrumentNoise profile(modes, replicate_covariance,
+                                Eigen::VectorXd::Constant(21, std::sqrt(2.)),
+                                Eigen::VectorXd::Constant(21, 40.));
   const double expected = mean_of(profile, 1);
   check("noise of the instrument", std::abs(expected - 1.) < 0.15, std::to_string(expected));
   check("a higher level is more noise", profile.at(0.1)[1].mean() < profile.at(0.9)[1].mean());
@@ -296,20 +296,19 @@ void modes_and_noise()
   check("draws of it", std::abs(mean - expected) < 0.03, std::to_string(mean));
 
   // Few repeats that scatter like runs leave less noise than the scatter of their variance.
-  const InstrumentNoise few(modes, replicate_covariance,
-                            {Eigen::VectorXd::Ones(21), Eigen::VectorXd::Constant(21, 4.)});
+  const InstrumentNoise few(modes, replicate_covariance, Eigen::VectorXd::Ones(21),
+                            Eigen::VectorXd::Constant(21, 4.));
   check("little noise", mean_of(few, 1) < 0.25, std::to_string(mean_of(few, 1)));
 
   // An angle that hardly varies between runs says nothing about the profile's noise.
   Eigen::VectorXd deviation = Eigen::VectorXd::Ones(21);
   deviation(20) = 100.;
-  const InstrumentNoise uneven(modes, replicate_covariance,
-                               {deviation, Eigen::VectorXd::Constant(21, 5.)});
+  const InstrumentNoise uneven(modes, replicate_covariance, deviation,
+                               Eigen::VectorXd::Constant(21, 5.));
   const double of_angle = mean_of(uneven, 0), of_profile = mean_of(uneven, 1);
   check("one observable without chaos", of_profile < 0.2 && of_angle > 5e3 && of_angle < 4e4,
         std::to_string(of_angle) + ", " + std::to_string(of_profile));
-  const InstrumentNoise declared(modes, replicate_covariance,
-                                 {deviation, Eigen::VectorXd::Ones(21)});
+  const InstrumentNoise declared(modes, replicate_covariance, deviation, Eigen::VectorXd::Ones(21));
   check("declared deviations are believed", std::abs(declared.at(0.5)[0].mean() - 9999.) < 1e-6);
   constexpr double coarse = 1e12;
   const double mean_of_coarse = ExcessVariance(coarse, 10., coarse).mean();

@@ -64,29 +64,13 @@ private:
   double lowest = 0., highest = 0.; ///< of the effect's range
 };
 
-void set_probabilities(const AmplitudeDensity &density, std::vector<Member> &members)
-{
-  std::vector<double> logs;
-  for (const Member &member : members)
-    logs.push_back(density.log(member.effects, member.prediction));
-  const std::vector<double> shares = shares_of(std::move(logs));
-  for (std::size_t i = 0; i < members.size(); ++i)
-    members[i].probability = shares[i];
-}
-
 } // namespace
 
-AmplitudeDensity::AmplitudeDensity(const Evidence &evidence, const Model &model,
-                                   const Eigen::VectorXd &data)
-    : evidence(evidence), data(data),
-      at_best(evidence.prepare(evidence.target().predict(model.best)))
+double log_density(const Evidence &evidence, const Hypothesis &likeliest,
+                   const EffectPositions &effects, const Target::Prediction &prediction,
+                   const Eigen::VectorXd &data)
 {
-}
-
-double AmplitudeDensity::log(const EffectPositions &effects,
-                             const Target::Prediction &prediction) const
-{
-  double result = evidence.log_likelihoods_about(at_best, prediction.mean, data)(0);
+  double result = evidence.log_likelihoods_about(likeliest, prediction.mean, data)(0);
   for (const auto &[k, amplitude] : effects)
     result += evidence.place_near(k, amplitude).log_reference;
   return result;
@@ -95,13 +79,21 @@ double AmplitudeDensity::log(const EffectPositions &effects,
 std::vector<Member> members(const Evidence &evidence, const Model &model,
                             const Eigen::VectorXd &data)
 {
-  const AmplitudeDensity density(evidence, model, data);
+  const Hypothesis likeliest = evidence.prepare(evidence.target().predict(model.best));
   std::vector<Member> result;
+  const auto set_probabilities = [&] {
+    std::vector<double> logs;
+    for (const Member &member : result)
+      logs.push_back(log_density(evidence, likeliest, member.effects, member.prediction, data));
+    const std::vector<double> shares = shares_of(std::move(logs));
+    for (std::size_t i = 0; i < result.size(); ++i)
+      result[i].probability = shares[i];
+  };
   if (model.effects.size() == 1) {
     const std::size_t k = model.effects.front();
     for (const Evidence::Place &place : evidence.places(k))
       result.push_back({{{k, place.amplitude}}, place.hypothesis.prediction, 0.});
-    set_probabilities(density, result);
+    set_probabilities();
     return result;
   }
   std::vector<Axis> axes;
@@ -117,7 +109,7 @@ std::vector<Member> members(const Evidence &evidence, const Model &model,
                                          {b.effect, b.best * std::exp(y)}};
         result.push_back({effects, evidence.target().predict(effects), 0.});
       }
-    set_probabilities(density, result);
+    set_probabilities();
     bool changed = false;
     for (Axis &axis : axes)
       changed |= axis.fit(result);

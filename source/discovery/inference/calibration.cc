@@ -12,14 +12,18 @@ namespace {
 
 using Pick = boost::random::discrete_distribution<std::size_t>;
 
-/// Mean log probability of the truths of twins.
+/// Mean log probability of the truths of some twins.
 /// @param log_posterior of each model, a column for each twin
-double log_score(const Eigen::ArrayXXd &log_posterior, const std::vector<std::size_t> &truths)
+double log_score(const Eigen::ArrayXXd &log_posterior, const std::vector<std::size_t> &truths,
+                 const std::vector<std::size_t> &twins)
 {
-  double sum = -log_sums(log_posterior).sum();
-  for (std::size_t i = 0; i < truths.size(); ++i)
-    sum += log_posterior(static_cast<Eigen::Index>(truths[i]), static_cast<Eigen::Index>(i));
-  return sum / static_cast<double>(truths.size());
+  const Eigen::ArrayXd all = log_sums(log_posterior);
+  double sum = 0.;
+  for (const std::size_t i : twins) {
+    const auto column = static_cast<Eigen::Index>(i);
+    sum += log_posterior(static_cast<Eigen::Index>(truths[i]), column) - all(column);
+  }
+  return sum / static_cast<double>(twins.size());
 }
 
 } // namespace
@@ -46,24 +50,23 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
     amplitudes.push_back(place.amplitude);
     data.col(i) = twins.draw(place.hypothesis.prediction);
   }
-  Evidence::Singles singles = evidence.singles(data);
+  const Evidence::Singles singles = evidence.singles(data);
   const Eigen::ArrayXXd posterior = singles.log_posterior();
   const Eigen::ArrayXd all = log_sums(posterior), factors = all - evidence.log_nothing(data);
-  std::vector<Eigen::Index> detected;
-  std::vector<std::size_t> truths_detected;
+  std::vector<std::size_t> detected;
   std::vector<double> likelier;
-  for (Eigen::Index i = 0; i < data.cols(); ++i) {
-    if (factors(i) < threshold)
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    if (factors(column) < threshold)
       continue;
-    const std::size_t truth = truths[static_cast<std::size_t>(i)], effect = usable[truth];
-    const Model alone = evidence.single(effect, data.col(i));
+    const Eigen::VectorXd twin = data.col(column);
+    const std::size_t effect = usable[truths[i]];
     Eigen::Index first = 0;
-    result.stated += std::exp(posterior.col(i).maxCoeff(&first) - all(i));
-    result.right += first == static_cast<Eigen::Index>(truth) ? 1. : 0.;
-    likelier.push_back(AmplitudePosterior(evidence, alone, data.col(i), effect)
-                           .likelier_than(amplitudes[static_cast<std::size_t>(i)]));
+    result.stated += std::exp(posterior.col(column).maxCoeff(&first) - all(column));
+    result.right += first == static_cast<Eigen::Index>(truths[i]) ? 1. : 0.;
+    likelier.push_back(AmplitudePosterior(evidence, evidence.single(effect, twin), twin, effect)
+                           .likelier_than(amplitudes[i]));
     detected.push_back(i);
-    truths_detected.push_back(truth);
   }
   result.twins = static_cast<unsigned int>(detected.size());
   if (detected.empty())
@@ -71,12 +74,10 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
   const auto n = static_cast<double>(detected.size());
   result.stated /= n;
   result.right /= n;
-  singles.log_evidence =
-      Eigen::ArrayXXd(singles.log_evidence(Eigen::seqN(0, singles.log_evidence.rows()), detected));
   double highest = -1e300;
   // Never below 1: twins know nothing of what is wrong with the model besides.
   for (double temperature = 1.; temperature < 3.; temperature *= 1.05)
-    if (const double score = log_score(singles.log_posterior(temperature), truths_detected);
+    if (const double score = log_score(singles.log_posterior(temperature), truths, detected);
         score > highest)
     {
       highest = score;

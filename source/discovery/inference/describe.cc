@@ -1,6 +1,5 @@
 #include <eunoe/discovery/inference/amplitude_posterior.h>
 #include <eunoe/discovery/inference/describe.h>
-#include <eunoe/discovery/inference/predictive.h>
 
 #include <boost/algorithm/string/join.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -29,18 +28,12 @@ Json name_of_point(const DataPoint &point)
       {"experiment", point.experiment}, {"observable", point.observable}, {"index", point.index}};
 }
 
-/// Variance of each data point of a run over that of the base model.
-Eigen::VectorXd growth_of(const Target::Part &part, const Target::Prediction &prediction)
+double gap(const Fitted &model)
 {
-  return part.emulator.growth(part.rotation.transpose().cwiseAbs2() * part.of(prediction.scatter));
-}
-
-/// Variance of a measured mean about a prediction at each data point, in base deviations squared.
-Eigen::VectorXd point_variance(const Target::Part &part, const Target::Prediction &prediction)
-{
-  return part.point_ratio.cwiseMax(growth_of(part, prediction)).array() /
-             part.measured.repeats.array() +
-         part.of(prediction.leverage).mean() + part.tolerance.array().square();
+  double square = 0.;
+  for (const FittedPoint &point : model)
+    square += point.deviation * point.deviation - point.variance;
+  return std::copysign(std::sqrt(std::abs(square) / static_cast<double>(model.size())), square);
 }
 
 } // namespace
@@ -68,17 +61,13 @@ std::string name_of(const Model &model, const FactorSpace &space)
 Json describe_candidates(const Evidence &evidence, const Findings &findings)
 {
   const FactorSpace &space = evidence.space();
-  std::vector<std::pair<double, std::size_t>> order;
-  for (std::size_t k = 0; k < space.n_effects(); ++k)
-    order.emplace_back(findings.detected ? -probability_of(findings.models, k) : 0., k);
-  std::stable_sort(order.begin(), order.end(),
-                   [](const auto &a, const auto &b) { return a.first < b.first; });
-  Json rows = Json::array();
   const Eigen::VectorXd &data = evidence.target().data();
-  for (const auto &[minus, k] : order) {
+  std::vector<std::pair<double, Json>> rows;
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
     const Factor &effect = space.effect(k);
+    const double confidence = findings.detected ? probability_of(findings.models, k) : 0.;
     Json row = {{"effect", effect.name},
-                {"confidence", 0. - minus},
+                {"confidence", confidence},
                 {"mechanism", effect.mechanism},
                 {"unit", effect.unit},
                 {"source", effect.source}};
@@ -87,9 +76,9 @@ Json describe_candidates(const Evidence &evidence, const Findings &findings)
       row["log Bayes factor alone"] = alone.log_evidence - evidence.log_nothing(data)(0);
       row["amplitude alone"] = amplitude_of(effect, alone.best.at(k));
     }
-    rows.push_back(row);
+    rows.emplace_back(confidence, row);
   }
-  return rows;
+  return largest_first(std::move(rows));
 }
 
 Json describe_amplitudes(const Evidence &evidence, const Findings &findings)
@@ -217,40 +206,49 @@ Fitted fit_to(const Target &target, const EffectPositions &effects,
               const Eigen::VectorXd &nuisances)
 {
   const Target::Prediction prediction = target.predict(effects);
-  return {prediction.mean + prediction.gradient * nuisances, prediction};
+  const Eigen::VectorXd mean = prediction.mean + prediction.gradient * nuisances;
+  Fitted result;
+  for (const Target::Part &part : target.experiments()) {
+    const MeasuredExperiment &measured = part.measured;
+    const Eigen::VectorXd values = values_of(part, mean), unit = part.emulator.base_deviation();
+    // Variances in those of a run of the base model.
+    const Eigen::VectorXd growth =
+        part.emulator.growth(part.rotation.transpose().cwiseAbs2() * part.of(prediction.scatter));
+    const double error = part.of(prediction.leverage).mean();
+    for (Eigen::Index c = 0; c < values.size(); ++c)
+      result.push_back({measured.points[static_cast<std::size_t>(c)], measured.value(c), values(c),
+                        (measured.value(c) - values(c)) / unit(c),
+                        std::max(part.point_ratio(c), growth(c)) / measured.repeats(c) + error +
+                            part.tolerance(c) * part.tolerance(c),
+                        unit(c) * std::sqrt(growth(c))});
+  }
+  return result;
 }
 
 Json describe_envelopes(const Target &target, const Fitted &before,
                         const std::optional<Fitted> &after, const double level)
 {
   Json rows = Json::array();
-  std::size_t n_points = 0;
-  for (const Target::Part &part : target.experiments())
-    n_points += part.measured.points.size();
   for (const Target::Part &part : target.experiments()) {
-    const Eigen::VectorXd unit = part.emulator.base_deviation();
-    const Eigen::VectorXd base = part.emulator.base_mean(),
-                          with_nuisances = values_of(part, before.mean);
-    const Eigen::VectorXd variance = point_variance(part, before.prediction);
     const boost::math::students_t t(std::max(1., part.emulator.degrees_of_freedom()));
-    for (Eigen::Index c = 0; c < unit.size(); ++c) {
-      Json row = name_of_point(part.measured.points[static_cast<std::size_t>(c)]);
-      const double deviation =
-          (part.measured.value(c) - with_nuisances(c)) / unit(c) / std::sqrt(variance(c));
+    for (Eigen::Index c = 0; c < part.measured.value.size(); ++c) {
+      const FittedPoint &point = before[rows.size()];
+      const double deviation = point.deviation / std::sqrt(point.variance);
       const double p =
-          std::min(1., static_cast<double>(n_points) * 2. *
+          std::min(1., static_cast<double>(before.size()) * 2. *
                            boost::math::cdf(boost::math::complement(t, std::abs(deviation))));
-      row["measured"] = part.measured.value(c);
+      Json row = name_of_point(point.point);
+      row["measured"] = point.measured;
       row["measured deviation"] = part.measured.deviation(c);
       row["repeats"] = part.measured.repeats(c);
-      row["base"] = base(c);
-      row["base deviation"] = unit(c);
+      row["base"] = part.emulator.base_mean()(c);
+      row["base deviation"] = part.emulator.base_deviation()(c);
       row["deviation"] = deviation;
       row["p"] = p;
       row["flagged"] = p <= level;
       if (after) {
-        row["after"] = values_of(part, after->mean)(c);
-        row["after deviation"] = unit(c) * std::sqrt(growth_of(part, after->prediction)(c));
+        row["after"] = (*after)[rows.size()].model;
+        row["after deviation"] = (*after)[rows.size()].scatter;
       }
       rows.push_back(row);
     }
@@ -258,53 +256,31 @@ Json describe_envelopes(const Target &target, const Fitted &before,
   return rows;
 }
 
-double gap(const Target &target, const Fitted &model)
+Json describe_gap(const Fitted &before, const std::optional<Fitted> &after)
 {
-  double square = 0., number = 0.;
-  for (const Target::Part &part : target.experiments()) {
-    const Eigen::VectorXd deviation = (part.measured.value - values_of(part, model.mean))
-                                          .cwiseQuotient(part.emulator.base_deviation());
-    square += deviation.squaredNorm() - point_variance(part, model.prediction).sum();
-    number += static_cast<double>(deviation.size());
-  }
-  return std::copysign(std::sqrt(std::abs(square) / number), square);
-}
-
-Json describe_gap(const Target &target, const Fitted &before, const std::optional<Fitted> &after)
-{
-  std::size_t cells = 0;
-  for (const Target::Part &part : target.experiments())
-    cells += part.measured.points.size();
-  Json table = {{"cells", cells}, {"gap before", gap(target, before)}};
+  const double first = gap(before);
+  Json table = {{"cells", before.size()}, {"gap before", first}};
   if (after) {
-    const double left = gap(target, *after);
+    const double left = gap(*after);
     table["gap after"] = left;
-    const double first = table["gap before"];
     table["shrink"] = first > 0. ? Json(1. - left / first) : Json(nullptr);
   }
   return table;
 }
 
-Json decisive_points(const Target &target, const Fitted &first, const Fitted &second)
+Json decisive_points(const Fitted &first, const Fitted &second)
 {
   constexpr std::size_t most = 12;
   std::vector<std::pair<double, Json>> rows;
-  for (const Target::Part &part : target.experiments()) {
-    const Eigen::VectorXd unit = part.emulator.base_deviation();
-    const Eigen::VectorXd variance = point_variance(part, first.prediction);
-    const Eigen::VectorXd a = values_of(part, first.mean), b = values_of(part, second.mean);
-    for (Eigen::Index c = 0; c < unit.size(); ++c) {
-      const auto squared = [&](const Eigen::VectorXd &mean) {
-        return std::pow((part.measured.value(c) - mean(c)) / unit(c), 2) / variance(c);
-      };
-      const double favours = 0.5 * (squared(b) - squared(a));
-      Json row = name_of_point(part.measured.points[static_cast<std::size_t>(c)]);
-      row["log likelihood ratio"] = favours;
-      row["measured"] = part.measured.value(c);
-      row["first"] = a(c);
-      row["second"] = b(c);
-      rows.emplace_back(std::abs(favours), row);
-    }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const FittedPoint &a = first[i], &b = second[i];
+    const double favours = 0.5 * (std::pow(b.deviation, 2) - std::pow(a.deviation, 2)) / a.variance;
+    Json row = name_of_point(a.point);
+    row["log likelihood ratio"] = favours;
+    row["measured"] = a.measured;
+    row["first"] = a.model;
+    row["second"] = b.model;
+    rows.emplace_back(std::abs(favours), row);
   }
   return largest_first(std::move(rows), most);
 }

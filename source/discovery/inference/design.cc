@@ -76,36 +76,31 @@ void Design::run_base()
 
 void Design::run_effects(const std::function<Target()> &estimate)
 {
-  struct Ladder
-  {
-    std::size_t effect;
-    double amplitude;
-  };
-  std::vector<Ladder> open, ends;
+  std::vector<std::pair<std::size_t, double>> open, ends; // effects and amplitudes
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     for (const double limit : {space.lower(k), space.upper(k)})
       if (limit != 0.) {
         const double side = limit < 0. ? -1. : 1.;
-        open.push_back({k, std::min(1., std::abs(limit)) * side});
+        open.emplace_back(k, std::min(1., std::abs(limit)) * side);
         // An emulator knows little of amplitudes beyond the last that was run.
         if (std::abs(limit) > 1.)
-          ends.push_back({k, limit});
+          ends.emplace_back(k, limit);
       }
   for (int level = 0; level < most_levels && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
-    std::vector<Ladder> looks = open;
+    auto looks = open;
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
-    for (const Ladder &ladder : looks)
-      if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments) &&
-          !samples.fails_near(ladder.effect, ladder.amplitude, experiments))
-        points.push_back(point(ladder.effect, ladder.amplitude));
+    for (const auto &[effect, amplitude] : looks)
+      if (!samples.has_near(effect, amplitude, replicates, experiments) &&
+          !samples.fails_near(effect, amplitude, experiments))
+        points.push_back(point(effect, amplitude));
     samples.run(points, experiments);
     const Target target = estimate();
-    std::vector<Ladder> still;
-    for (const Ladder &ladder : open)
-      if (strength(target, ladder.effect, ladder.amplitude) > just_visible)
-        still.push_back({ladder.effect, ladder.amplitude * amplitude_ratio});
+    decltype(open) still;
+    for (const auto &[effect, amplitude] : open)
+      if (strength(target, effect, amplitude) > just_visible)
+        still.emplace_back(effect, amplitude * amplitude_ratio);
     open = still;
   }
 }
@@ -113,12 +108,11 @@ void Design::run_effects(const std::function<Target()> &estimate)
 bool Design::refine(const Evidence &evidence, const Findings &findings)
 {
   const Target &target = evidence.target();
-  const Eigen::VectorXd &data = target.data();
   // Whether a model becomes the likeliest once it is known better.
   std::vector<Wish> list;
   std::vector<double> logs;
   for (const std::size_t k : evidence.usable()) {
-    const std::vector<double> optimistic = evidence.optimistic(k, data);
+    const std::vector<double> optimistic = evidence.optimistic(k);
     for (std::size_t i = 0; i < optimistic.size(); ++i) {
       const Evidence::Place &place = evidence.places(k)[i];
       list.push_back({k, place.amplitude, unknown(target, place.hypothesis.prediction)});
@@ -129,7 +123,7 @@ bool Design::refine(const Evidence &evidence, const Findings &findings)
   // which may hope for a little, would only take runs from these.
   for (const Model &model : findings.models)
     if (findings.detected && model.effects.size() == 2) {
-      const double hope = evidence.optimistic_pair(model, data);
+      const double hope = evidence.optimistic_pair(model);
       for (const auto &[k, amplitude] : model.best) {
         list.push_back({k, amplitude, unknown(target, target.predict({{k, amplitude}}))});
         logs.push_back(hope);
@@ -166,11 +160,9 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
   double others = 0.;
   for (const Wish &wish : list)
     others += wish.weight;
-  list.push_back(
-      {space.n_effects(), 0., others > 0. ? others * share_of_base / (1. - share_of_base) : 1.});
-  double sum = 0.;
-  for (const Wish &wish : list)
-    sum += wish.weight;
+  const double of_base = others > 0. ? others * share_of_base / (1. - share_of_base) : 1.;
+  list.push_back({space.n_effects(), 0., of_base});
+  const double sum = others + of_base;
   // Systematic sampling: as many points of each as it has of the weight.
   std::vector<DesignPoint> points;
   double below = 0.;
@@ -203,8 +195,7 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
         const Target::Prediction prediction = target.predict(effects);
         list.push_back({k, place.amplitude, unknown(target, prediction)});
         // Runs that lie far from the data by chance must not keep others from being made there.
-        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction), target.data()) /
-                       temperature);
+        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction)) / temperature);
       }
   const std::vector<double> shares = shares_of(std::move(logs));
   double variance = 0.;

@@ -37,7 +37,12 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
   // small: new data scatter more along them (Dodelson and Schneider 2013).
   whitening *= std::sqrt(1. - own);
   fit_scatter(groups);
+  // Runs with any effect tell of the base model, too, mostly of its nuisances. All emulators share
+  // that: one that knew more of the base model than the others would describe data in which nothing
+  // is missing better than they do.
   const BaseInformation without_effects = information_of_base(groups);
+  BaseInformation all = without_effects;
+  std::vector<BaseInformation> of_effects;
   for (std::size_t k = 0; k < n_effects; ++k) {
     std::vector<GaussianProcess::Point> with;
     for (const Group &group : groups)
@@ -48,8 +53,12 @@ ExperimentEmulator::ExperimentEmulator(const FactorSpace &space, const std::vect
                         chaos.common(k, u) / static_cast<double>(group.rows.rows())});
       }
     processes.emplace_back(std::move(with), without_effects);
+    of_effects.push_back(processes.back().about_base());
+    all += of_effects.back();
   }
-  share_base(without_effects);
+  alone = GaussianProcess({}, all).predict(0.);
+  for (std::size_t k = 0; k < n_effects; ++k)
+    processes[k].set_base(all - of_effects[k]);
 }
 
 std::vector<ExperimentEmulator::Group> ExperimentEmulator::make_groups(
@@ -166,21 +175,6 @@ BaseInformation ExperimentEmulator::information_of_base(const std::vector<Group>
     weighted += weight * terms * (whitening * group.mean).transpose();
   }
   return {precision.reshaped().replicate(1, size()), weighted};
-}
-
-/// Runs with any effect tell of the base model, too, mostly of its nuisances. All emulators share
-/// that: one that knew more of the base model than the others would describe data in which nothing
-/// is missing better than they do.
-void ExperimentEmulator::share_base(BaseInformation all)
-{
-  std::vector<BaseInformation> parts;
-  for (const GaussianProcess &process : processes) {
-    parts.push_back(process.about_base());
-    all += parts.back();
-  }
-  alone = GaussianProcess({}, all).predict(0.);
-  for (std::size_t k = 0; k < n_effects; ++k)
-    processes[k].set_base(all - parts[k]);
 }
 
 ExperimentEmulator::Prediction ExperimentEmulator::predict(const EffectPositions &effects) const

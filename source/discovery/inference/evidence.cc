@@ -51,31 +51,33 @@ void sort_by_probability(std::vector<Model> &models)
                    [](const Model &a, const Model &b) { return a.probability > b.probability; });
 }
 
-Evidence::Evidence(const Target &target, const FactorSpace &space, const Prior &prior)
-    : Likelihood(target), factors(space), prior(prior), grid(space.n_effects())
+Evidence::Evidence(const Target &target, const FactorSpace &space)
+    : Likelihood(target), factors(space), grid(space.n_effects())
 {
-  for (std::size_t k = 0; k < space.n_effects(); ++k)
+  for (std::size_t k = 0; k < space.n_effects(); ++k) {
     if (target.knows(k))
       make_grid(k);
+    if (!grid[k].empty())
+      effects.push_back(k);
+  }
   discrepancies = make_discrepancies();
 }
 
-std::vector<double> Evidence::optimistic(const std::size_t effect, const Eigen::VectorXd &data,
-                                         const double deviations) const
+std::vector<double> Evidence::optimistic(const std::size_t effect, const double deviations) const
 {
   std::vector<double> values;
   for (const Place &place : grid[effect])
     values.push_back(place.log_prior +
-                     std::log(prior.one_effect / static_cast<double>(usable().size())) +
-                     log_optimistic(place.hypothesis, data, deviations));
+                     std::log(prior.one_effect / static_cast<double>(effects.size())) +
+                     log_optimistic(place.hypothesis, deviations));
   return values;
 }
 
-double Evidence::optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const
+double Evidence::optimistic_pair(const Model &pair) const
 {
   const Hypothesis best = prepare(target().predict(pair.best));
-  return pair.log_prior + pair.log_evidence + log_optimistic(best, data) -
-         log_likelihood(best, data);
+  return pair.log_prior + pair.log_evidence + log_optimistic(best) -
+         log_likelihood(best, target().data());
 }
 
 /// Amplitudes from the smallest that could be seen to the end of the range. Equal ratios of
@@ -115,12 +117,11 @@ void Evidence::make_grid(const std::size_t k)
     }
     grid[k].insert(grid[k].end(), side.begin(), side.end());
   }
-  std::vector<double> weights;
+  double sum = 0.;
   for (const Place &place : grid[k])
-    weights.push_back(place.log_prior);
-  const double total = grid[k].empty() ? 0. : log_sum(weights);
+    sum += std::exp(place.log_prior);
   for (Place &place : grid[k])
-    place.log_prior -= total;
+    place.log_prior -= std::log(sum);
 }
 
 /// "None of these" is a change of any size, half of it along directions like those of the
@@ -177,7 +178,7 @@ Model Evidence::single(const std::size_t effect, const Eigen::VectorXd &data) co
   of_places.col(0).maxCoeff(&best);
   Model model;
   model.effects = {effect};
-  model.log_prior = std::log(prior.one_effect / static_cast<double>(usable().size()));
+  model.log_prior = std::log(prior.one_effect / static_cast<double>(effects.size()));
   model.log_evidence = log_sums(of_places)(0);
   model.best[effect] = grid[effect][static_cast<std::size_t>(best)].amplitude;
   return model;
@@ -197,19 +198,9 @@ Eigen::ArrayXd Evidence::log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd>
   return log_sums(log_t(constants, distances)) - std::log(static_cast<double>(number));
 }
 
-std::vector<std::size_t> Evidence::usable() const
-{
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k < factors.n_effects(); ++k)
-    if (!grid[k].empty())
-      result.push_back(k);
-  return result;
-}
-
 Evidence::Singles Evidence::singles(const Eigen::Ref<const Eigen::MatrixXd> &data,
                                     const std::optional<std::size_t> without) const
 {
-  const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<Eigen::Index>(effects.size());
   const double total = prior.one_effect + prior.none_of_these;
   const double of_each = prior.one_effect / static_cast<double>(without ? n - 1 : n) / total;
@@ -337,7 +328,6 @@ std::vector<Model> Evidence::models(const Eigen::VectorXd &data) const
   all[0].is_discrepancy = true;
   all[0].log_prior = std::log(prior.none_of_these);
   all[0].log_evidence = log_discrepancy(data)(0);
-  const std::vector<std::size_t> effects = usable();
   const auto n = static_cast<double>(effects.size());
   for (const std::size_t k : effects)
     all.push_back(single(k, data));

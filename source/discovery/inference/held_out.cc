@@ -213,7 +213,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
   if (leader)
     after = fitted(last->tested.models[*leader]);
   const Fitted before = fitted({});
-  Json table = describe_gap(held_out, before, after);
+  Json table = describe_gap(before, after);
   table.update(describe_test(*last, by_fit, leader));
   table["envelopes"] = describe_envelopes(held_out, before, after, options.level);
   return table;

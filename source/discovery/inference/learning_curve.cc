@@ -5,27 +5,13 @@
 
 namespace eunoe::discovery {
 
-void LearningCurve::add(const Findings &findings, const FactorSpace &space,
-                        const std::uint64_t runs)
-{
-  const Model &first = findings.models.front();
-  Json row = {{"runs", runs},
-              {"p of nothing missing", findings.p_nothing},
-              {"verdict", name_of(findings.detected ? findings.verdict : Verdict::none)},
-              {"first", name_of(first, space)},
-              {"probability", first.probability},
-              {"probability off catalogue", findings.off_catalogue}};
-  Json set = Json::array();
-  for (const Model &model : findings.answer)
-    set.push_back(name_of(model, space));
-  row["answer"] = set;
-  list.push_back(row);
-}
+namespace {
 
-std::size_t LearningCurve::n_alike() const
+/// Number of last rounds with the same answer.
+std::size_t n_alike(const Json &rounds)
 {
   constexpr double same = 0.05;
-  const Json &last = list.back();
+  const Json &last = rounds.back();
   const bool detected = last["verdict"] != name_of(Verdict::none);
   const auto is_alike = [&](const Json &row) {
     return row["verdict"] == last["verdict"] &&
@@ -34,22 +20,39 @@ std::size_t LearningCurve::n_alike() const
                                    last["probability"].get<double>()) <= same));
   };
   std::size_t n = 0;
-  while (n < list.size() && is_alike(list[list.size() - 1 - n]))
+  while (n < rounds.size() && is_alike(rounds[rounds.size() - 1 - n]))
     ++n;
   return n;
 }
 
-bool LearningCurve::is_steady(const double level) const
+} // namespace
+
+Json describe_round(const Findings &findings, const FactorSpace &space, const std::uint64_t runs)
+{
+  Json answer = Json::array();
+  for (const Model &model : findings.answer)
+    answer.push_back(name_of(model, space));
+  const Model &first = findings.models.front();
+  return {{"runs", runs},
+          {"p of nothing missing", findings.p_nothing},
+          {"verdict", name_of(findings.detected ? findings.verdict : Verdict::none)},
+          {"first", name_of(first, space)},
+          {"probability", first.probability},
+          {"probability off catalogue", findings.off_catalogue},
+          {"answer", answer}};
+}
+
+bool is_steady(const Json &rounds, const double level)
 {
   constexpr std::size_t enough = 3, enough_near_the_level = 6;
-  if (list.size() < enough)
+  if (rounds.size() < enough)
     return false;
   const double clear = std::min(4. * level, 0.5);
-  bool is_clear = true;
-  for (std::size_t k = list.size() - enough; k < list.size(); ++k)
-    is_clear = is_clear && (list[k]["verdict"] != name_of(Verdict::none) ||
-                            list[k]["p of nothing missing"].get<double>() >= clear);
-  return n_alike() >= (is_clear ? enough : enough_near_the_level);
+  const bool is_clear = std::all_of(rounds.end() - enough, rounds.end(), [&](const Json &row) {
+    return row["verdict"] != name_of(Verdict::none) ||
+           row["p of nothing missing"].get<double>() >= clear;
+  });
+  return n_alike(rounds) >= (is_clear ? enough : enough_near_the_level);
 }
 
 } // namespace eunoe::discovery

@@ -92,25 +92,24 @@ Eigen::ArrayXd Likelihood::log_likelihoods_about(
          std::log(static_cast<double>(hypothesis.inverse.cols()));
 }
 
-Eigen::VectorXd Likelihood::inverse_variance(const Hypothesis &hypothesis,
-                                             const Eigen::VectorXd &data) const
+Eigen::VectorXd Likelihood::inverse_variance(const Hypothesis &hypothesis) const
 {
-  const Eigen::ArrayXd logs = log_of_levels(hypothesis, hypothesis.prediction.mean, data).col(0);
+  const Eigen::ArrayXd logs =
+      log_of_levels(hypothesis, hypothesis.prediction.mean, aim.data()).col(0);
   const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp();
   return hypothesis.inverse * (weights / weights.sum()).matrix();
 }
 
-double Likelihood::log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
-                                  const double deviations) const
+double Likelihood::log_optimistic(const Hypothesis &hypothesis, const double deviations) const
 {
   Target::Prediction known = hypothesis.prediction;
   known.leverage = known.leverage.cwiseMin(base.prediction.leverage);
   const Eigen::VectorXd share =
       1. - aim.variance(known).array() / aim.variance(hypothesis.prediction).array();
-  known.mean += share.cwiseProduct(data - known.mean);
+  known.mean += share.cwiseProduct(aim.data() - known.mean);
   // The mean will not lie where the data pull it, but scatters about that by what is left of its
   // error: otherwise those who know least would hope for more than the truth can have.
-  return log_likelihood(prepare(known), data) - 0.5 * share.sum() +
+  return log_likelihood(prepare(known), aim.data()) - 0.5 * share.sum() +
          deviations * std::sqrt(share.sum());
 }
 

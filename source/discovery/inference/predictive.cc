@@ -31,8 +31,7 @@ double p_of_fit(const Evidence &evidence, const Model &model, const PosteriorDra
     truth.gradient.resize(truth.mean.size(), 0);
     drawn.col(i) = source.draw(truth);
   }
-  const Eigen::ArrayXd of_twins = misfits(drawn);
-  return Tail({of_twins.begin(), of_twins.end()}).p(misfits(data)(0));
+  return Tail(misfits(drawn)).p(misfits(data)(0));
 }
 
 NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPositions &effects)
@@ -42,7 +41,7 @@ NuisancePosterior nuisances_given(const Evidence &evidence, const EffectPosition
   const Eigen::MatrixXd &gradient = hypothesis.prediction.gradient;
   const Eigen::MatrixXd unit = Eigen::MatrixXd::Identity(gradient.cols(), gradient.cols()),
                         scaled = gradient.transpose() *
-                                 evidence.inverse_variance(hypothesis, data).asDiagonal();
+                                 evidence.inverse_variance(hypothesis).asDiagonal();
   const Eigen::LLT<Eigen::MatrixXd> inner(unit + scaled * gradient);
   return {inner.solve(scaled * (data - hypothesis.prediction.mean)), inner.matrixU().solve(unit)};
 }
@@ -108,8 +107,7 @@ Predictive::Predictive(const Target &target, const PosteriorDraws &posterior,
   llt.compute(with(variances.rowwise().mean()));
   for (Eigen::Index l = 0; l < variances.cols(); ++l)
     levels.emplace_back(with(variances.col(l)));
-  const Eigen::ArrayXd surprises = -log_density(likely);
-  tail = Tail({surprises.begin(), surprises.end()});
+  tail = Tail(-log_density(likely));
 }
 
 Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -126,10 +124,8 @@ Eigen::ArrayXd Predictive::log_density(const Eigen::Ref<const Eigen::MatrixXd> &
 
 Contest::Contest(std::vector<Predictive> competing) : models(std::move(competing))
 {
-  for (std::size_t m = 0; m < models.size(); ++m) {
-    const Eigen::ArrayXd of_twins = advantage(m, log_densities(models[m].twins()));
-    tails.emplace_back(std::vector<double>(of_twins.begin(), of_twins.end()));
-  }
+  for (std::size_t m = 0; m < models.size(); ++m)
+    tails.emplace_back(advantage(m, log_densities(models[m].twins())));
 }
 
 Eigen::ArrayXXd Contest::log_densities(const Eigen::Ref<const Eigen::MatrixXd> &data) const

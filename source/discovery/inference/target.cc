@@ -78,7 +78,7 @@ Target::Part::Part(const MeasuredExperiment &one, const Samples &samples,
     : measured(one),
       emulator(samples.space(), samples.of(one.name), one.columns, one.points, one.least_deviation),
       noise(emulator.modes(), emulator.mode_covariance(),
-            {one.deviation.cwiseQuotient(emulator.base_deviation()), one.repeats}),
+            one.deviation.cwiseQuotient(emulator.base_deviation()), one.repeats),
       tolerance(model_tolerance *
                 emulator.base_mean().cwiseQuotient(emulator.base_deviation()).cwiseAbs()),
       repeats(1. / one.repeats.cwiseInverse().mean()), first(first)

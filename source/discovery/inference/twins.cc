@@ -61,7 +61,7 @@ Eigen::MatrixXd Twins::draw(const Target::Prediction &truth, const unsigned int 
   return result;
 }
 
-Tail::Tail(std::vector<double> draws) : sorted(std::move(draws))
+Tail::Tail(const Eigen::ArrayXd &draws) : sorted(draws.begin(), draws.end())
 {
   std::sort(sorted.rbegin(), sorted.rend());
   constexpr std::size_t one_in = 10;
@@ -95,9 +95,7 @@ double Tail::quantile(const double p) const
 Tail null_distribution(const Evidence &evidence, const unsigned int draws, const std::uint32_t seed)
 {
   Twins twins(evidence.target(), seed);
-  const Eigen::ArrayXd values =
-      evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction, draws));
-  return Tail({values.begin(), values.end()});
+  return Tail(evidence.log_bayes_factors(twins.draw(evidence.nothing().prediction, draws)));
 }
 
 } // namespace eunoe::discovery

@@ -16,12 +16,12 @@ struct Witness
 };
 
 Witness witness(const Modes::Group &group, const Eigen::MatrixXd &replicate_covariance,
-                const Repeats &repeats)
+                const Eigen::VectorXd &deviation, const Eigen::VectorXd &repeats)
 {
   double ratio = 0., number = 0.;
   for (const Eigen::Index c : group.points) {
-    ratio += repeats.deviation(c) * repeats.deviation(c);
-    number += repeats.number(c);
+    ratio += deviation(c) * deviation(c);
+    number += repeats(c);
   }
   const auto n = static_cast<double>(group.points.size());
   double trace = 0., squares = 0.;
@@ -86,7 +86,7 @@ double ExcessVariance::draw(RandomStream &random) const
 }
 
 InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
-                                 const Repeats &repeats)
+                                 const Eigen::VectorXd &deviation, const Eigen::VectorXd &repeats)
 {
   // An instrument is chosen such that its noise is a small part of the scatter, as a rule: half of
   // the prior (half of a Cauchy distribution) is below `usual`.
@@ -96,7 +96,7 @@ InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &repl
     std::vector<ExcessVariance> groups;
     double log = std::log(common) - std::log1p(std::pow(common / usual, 2));
     for (const Modes::Group &group : modes.groups()) {
-      const Witness w = witness(group, replicate_covariance, repeats);
+      const Witness w = witness(group, replicate_covariance, deviation, repeats);
       // An observable that hardly varies between runs says nothing about the others.
       const bool is_far = w.ratio > highest;
       groups.emplace_back(w.ratio, w.degrees_of_freedom, is_far ? w.ratio : common);

@@ -61,11 +61,6 @@ double GaussianProcess::Kernel::at(const double a, const double b) const
   return (same_side ? 1. : -1.) * s * t + (same_side ? roughness * std::min(s, t) : 0.);
 }
 
-std::vector<double> GaussianProcess::usual_variances()
-{
-  return {0., 0.01, 0.16, 2.5, 40., 650., 1e4};
-}
-
 GaussianProcess::GaussianProcess(std::vector<Point> points, const BaseInformation &base,
                                  const std::vector<double> &variances)
     : all(std::move(points)), base(base.solve())

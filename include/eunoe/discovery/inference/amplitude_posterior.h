@@ -17,22 +17,14 @@ struct Member
   double probability = 0.;
 };
 
-/// Posterior density of a model's amplitudes, with Jeffreys' prior. The variance is that at the
-/// likeliest amplitudes: with the variance of each, those near which many runs were made, or where
-/// runs scatter less, would be favoured, by an error that is itself known roughly.
-class AmplitudeDensity
-{
-public:
-  AmplitudeDensity(const Evidence &evidence, const Model &model, const Eigen::VectorXd &data);
-
-  /// Its logarithm up to a constant, where @p prediction is that of these amplitudes.
-  double log(const EffectPositions &effects, const Target::Prediction &prediction) const;
-
-private:
-  const Evidence &evidence;
-  const Eigen::VectorXd &data;
-  const Hypothesis at_best;
-};
+/// Log of the posterior density of amplitudes up to a constant, with Jeffreys' prior.
+/// @param likeliest amplitudes, whose variance it has: with the variance of each, those near which
+/// many runs were made, or where runs scatter less, would be favoured, by an error that is itself
+/// known roughly
+/// @param prediction of the amplitudes
+double log_density(const Evidence &evidence, const Hypothesis &likeliest,
+                   const EffectPositions &effects, const Target::Prediction &prediction,
+                   const Eigen::VectorXd &data);
 
 /// All places of one effect. For two effects a grid of both amplitudes, as large as the posterior.
 /// Their probabilities sum to one.

@@ -66,6 +66,15 @@ void allow_for_untried(std::size_t untried, std::size_t effects, Findings &findi
 /// Of an answer that is chosen: no model, one, or several.
 Verdict verdict_of(const Findings &findings);
 
+/// Whether a model that is not in the answer could join it once it is known better: with a
+/// twentieth of the probability, or, where it only adds an effect to a model of the answer, as the
+/// likelier one of the two.
+bool has_challenger(const Evidence &evidence, const Findings &findings);
+
+/// Where nothing is detected: whether an effect would be if it is what it could be once it is known
+/// better.
+bool could_be_detected(const Evidence &evidence, const Findings &findings);
+
 /// Probability that an effect is among those that are missing.
 double probability_of(const std::vector<Model> &models, std::size_t effect);
 

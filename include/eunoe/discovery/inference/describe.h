@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <limits>
 #include <optional>
 
 namespace eunoe::discovery {
@@ -14,7 +15,8 @@ using Json = nlohmann::ordered_json;
 /// Tables of discovery.json (doc/discovery_json.md).
 
 /// So many rows of a list, those with the largest numbers first.
-Json largest_first(std::vector<std::pair<double, Json>> rows, std::size_t most);
+Json largest_first(std::vector<std::pair<double, Json>> rows,
+                   std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Names of a model's effects, joined by " + "; "none of the catalogue" for a discrepancy.
 std::string name_of(const Model &model, const FactorSpace &space);
@@ -35,12 +37,19 @@ Json describe_power(const Evidence &evidence, const Findings &findings, std::uin
 /// the amplitude, and cosines between the changes.
 Json describe_fingerprints(const Evidence &evidence);
 
-/// A model's prediction with the nuisances at their best values for the data of the fit.
-struct Fitted
+/// A measured data point beside a model with the nuisances at their best values for the data of the
+/// fit.
+struct FittedPoint
 {
-  Eigen::VectorXd mean; ///< in the target's coordinates
-  Target::Prediction prediction;
+  DataPoint point;
+  double measured, model;
+  double
+      deviation;   ///< of the one from the other, in standard deviations of a run of the base model
+  double variance; ///< of it, by noise
+  double scatter;  ///< standard deviation of a run of the model
 };
+/// All data points in the target's order.
+using Fitted = std::vector<FittedPoint>;
 Fitted fit_to(const Target &target, const EffectPositions &effects,
               const Eigen::VectorXd &nuisances);
 
@@ -48,15 +57,13 @@ Fitted fit_to(const Target &target, const EffectPositions &effects,
 Json describe_envelopes(const Target &target, const Fitted &before,
                         const std::optional<Fitted> &after, double level);
 
-/// Root mean square deviation between data and model over the data points, in standard deviations
-/// of a run, less what noise explains; negative if noise explains more than there is.
-double gap(const Target &target, const Fitted &model);
-
-/// The gap before and after.
-Json describe_gap(const Target &target, const Fitted &before, const std::optional<Fitted> &after);
+/// The gap before and after: root mean square deviation between data and model over the data
+/// points, in standard deviations of a run, less what noise explains; negative if noise explains
+/// more than there is.
+Json describe_gap(const Fitted &before, const std::optional<Fitted> &after);
 
 /// Data points by how much they speak for one model against another, the most first.
-Json decisive_points(const Target &target, const Fitted &first, const Fitted &second);
+Json decisive_points(const Fitted &first, const Fitted &second);
 
 } // namespace eunoe::discovery
 

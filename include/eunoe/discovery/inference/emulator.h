@@ -81,7 +81,6 @@ private:
                            const std::function<bool(const Group &)> &condition);
   void fit_scatter(const std::vector<Group> &groups);
   BaseInformation information_of_base(const std::vector<Group> &groups) const;
-  void share_base(BaseInformation all);
 
   std::size_t n_effects, n_nuisances;
   Modes reduction;

@@ -45,7 +45,7 @@ void sort_by_probability(std::vector<Model> &models);
 class Evidence : public Likelihood
 {
 public:
-  Evidence(const Target &target, const FactorSpace &space, const Prior &prior = {});
+  Evidence(const Target &target, const FactorSpace &space);
 
   /// An amplitude of an effect on the grid over which it is integrated.
   struct Place
@@ -65,12 +65,11 @@ public:
   const FactorSpace &space() const { return factors; }
 
   /// Log of prior and optimistic likelihood of an effect's places.
-  std::vector<double> optimistic(std::size_t effect, const Eigen::VectorXd &data,
-                                 double deviations = 0.) const;
+  std::vector<double> optimistic(std::size_t effect, double deviations = 0.) const;
   /// The same of a pair of effects at its best amplitudes.
-  double optimistic_pair(const Model &pair, const Eigen::VectorXd &data) const;
+  double optimistic_pair(const Model &pair) const;
   /// Effects that were simulated, and so have places.
-  std::vector<std::size_t> usable() const;
+  const std::vector<std::size_t> &usable() const { return effects; }
 
   /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.
   Eigen::ArrayXd log_nothing(const Eigen::Ref<const Eigen::MatrixXd> &data) const
@@ -125,6 +124,7 @@ private:
   const FactorSpace &factors;
   const Prior prior;
   std::vector<std::vector<Place>> grid;
+  std::vector<std::size_t> effects;
   std::vector<Covariance> discrepancies;
 };
 

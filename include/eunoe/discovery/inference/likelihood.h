@@ -47,15 +47,15 @@ public:
   /// With another mean than the hypothesis has.
   Eigen::ArrayXd log_likelihoods_about(const Hypothesis &hypothesis, const Eigen::VectorXd &mean,
                                        const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  /// Inverse of the variances, at the levels of noise that the data speak for.
-  Eigen::VectorXd inverse_variance(const Hypothesis &hypothesis, const Eigen::VectorXd &data) const;
+  /// Inverse of the variances, at the levels of noise that the target's data speak for.
+  Eigen::VectorXd inverse_variance(const Hypothesis &hypothesis) const;
 
-  /// Log-likelihood that is to be expected once runs have left no more error than that of the base
-  /// model, if the hypothesis is true: its mean moves towards the data as far as its error allows.
+  /// Log-likelihood of the target's data that is to be expected once runs have left no more error
+  /// than that of the base model, if the hypothesis is true: its mean moves towards the data as far
+  /// as its error allows.
   /// @param deviations by which the likelihood may exceed what is expected, as the mean could come
   /// to lie nearer to the data by chance
-  double log_optimistic(const Hypothesis &hypothesis, const Eigen::VectorXd &data,
-                        double deviations = 0.) const;
+  double log_optimistic(const Hypothesis &hypothesis, double deviations = 0.) const;
 
   const Target &target() const { return aim; }
   const Hypothesis &nothing() const { return base; }

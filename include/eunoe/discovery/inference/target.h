@@ -93,9 +93,9 @@ public:
     /// From the scatter of one run to that of the data, in whitened modes: points that were
     /// repeated less often scatter more.
     Eigen::MatrixXd averaging;
-    Eigen::MatrixXd rotation;     ///< from whitened modes to coordinates
-    Eigen::VectorXd tolerated;    ///< variance of the coordinates by the model's error
-    Eigen::MatrixXd instrument;   ///< that of the means by it: coordinates x noise levels
+    Eigen::MatrixXd rotation;   ///< from whitened modes to coordinates
+    Eigen::VectorXd tolerated;  ///< variance of the coordinates by the model's error
+    Eigen::MatrixXd instrument; ///< that of the means by the instrument: coordinates x noise levels
     Eigen::VectorXd point_ratio;  ///< variance of a repeat over that of a run, of each point
     Eigen::VectorXd mean_scatter; ///< variance of the coordinates of the data over a run's
 

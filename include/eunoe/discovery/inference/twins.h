@@ -47,11 +47,10 @@ class Tail
 {
 public:
   Tail() = default;
-  explicit Tail(std::vector<double> draws);
+  explicit Tail(const Eigen::ArrayXd &draws);
   double p(double value) const;
   /// Value with this probability to be exceeded.
   double quantile(double p) const;
-  std::size_t size() const { return sorted.size(); }
 
 private:
   std::vector<double> sorted; ///< from the largest

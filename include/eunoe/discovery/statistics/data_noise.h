@@ -9,13 +9,6 @@
 
 namespace eunoe::discovery {
 
-/// Standard deviations and numbers of the repeats of a measurement.
-struct Repeats
-{
-  Eigen::VectorXd deviation; ///< of a single repeat, in units of modes.deviations()
-  Eigen::VectorXd number;    ///< of repeats
-};
-
 /// Variance that the instrument adds to that between replicates, in units of the latter, in one
 /// observable: its posterior, as few repeats tell it.
 class ExcessVariance
@@ -45,8 +38,10 @@ class InstrumentNoise
 public:
   /// @param modes in groups, one for each observable
   /// @param replicate_covariance of the modes of one replicate
+  /// @param deviation of a single repeat at each data point, in units of modes.deviations()
+  /// @param repeats their number
   InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
-                  const Repeats &repeats);
+                  const Eigen::VectorXd &deviation, const Eigen::VectorXd &repeats);
 
   /// Excess variance of each group if the level is at this quantile.
   const std::vector<ExcessVariance> &at(double quantile) const;

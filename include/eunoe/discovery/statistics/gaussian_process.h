@@ -60,14 +60,11 @@ public:
     double at(double a, double b) const; ///< for unit variance
   };
 
-  /// From nothing to a strong effect.
-  static std::vector<double> usual_variances();
-
   /// @param points with the effect; none: the effect changes nothing
   /// @param base what other runs say of the base model
-  /// @param variances that a value's kernel may have
+  /// @param variances that a value's kernel may have, from nothing to a strong effect
   GaussianProcess(std::vector<Point> points, const BaseInformation &base,
-                  const std::vector<double> &variances = usual_variances());
+                  const std::vector<double> &variances = {0., 0.01, 0.16, 2.5, 40., 650., 1e4});
 
   struct Prediction
   {
