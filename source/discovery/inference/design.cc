@@ -93,14 +93,22 @@ void Design::run_effects(const std::function<Target()> &estimate)
       }
   for (int level = 0; level < most_levels && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
+    // The ends of all ranges come first, and all effects in turns, so that a budget that ends, or a
+    // table that is stopped, within this look has something of each.
+    std::vector<unsigned int> turns;
     std::vector<Ladder> looks = open;
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const Ladder &ladder : looks)
       if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments) &&
           !samples.fails_near(ladder.effect, ladder.amplitude, experiments))
+      {
         points.push_back(point(ladder.effect, ladder.amplitude));
-    samples.run(points, experiments);
+        const bool is_end = ladder.amplitude == space.lower(ladder.effect) ||
+                            ladder.amplitude == space.upper(ladder.effect);
+        turns.push_back(is_end ? 0 : 1);
+      }
+    samples.run(points, experiments, turns);
     const Target target = estimate();
     std::vector<Ladder> still;
     for (const Ladder &ladder : open)

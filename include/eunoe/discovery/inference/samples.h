@@ -72,7 +72,10 @@ public:
           const std::vector<std::string> &experiments);
 
   /// Runs design points, as many as the budget has room for.
-  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments);
+  /// @param turns of the points, if not one after the other: those of the first turn are run before
+  ///   those of the next, and of each turn first one replicate of all. Seeds do not depend on it.
+  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
+           const std::vector<unsigned int> &turns = {});
   /// The same of the replicates that are missing in each experiment.
   void complete(const std::vector<DesignPoint> &points,
                 const std::vector<std::string> &experiments);
@@ -111,7 +114,7 @@ private:
   using Number = std::function<unsigned int(const DesignPoint &, const std::string &)>;
   /// Runs as many replicates of each design point in each experiment.
   void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
-           const Number &number);
+           const Number &number, const std::vector<unsigned int> &turns = {});
   void add(const RunRequest &request, const RunResult &result);
   /// Whether a position has nearly this amplitude and no other effect, and how many runs that
   /// reached their end have.
