@@ -26,8 +26,10 @@ from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
 from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
+from eunoe.report.discovery_report import add_tie_breakers
 from eunoe.report.discovery_results import Study
 from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, title_of, verdict_text
+from eunoe.report.page import Page
 from eunoe.repository import DOC
 from sample_study import CHANGES, make_study
 
@@ -81,6 +83,18 @@ class PageOfAStudy(InFolder):
         self.assertNotIn("none of them", " ".join(verdict_text(study)))
         study.content["p of the fit"] = 0.03
         self.assertIn("describes the data badly (p = 0.03)", " ".join(verdict_text(study)))
+
+    def test_what_breaks_a_tie_has_a_cost(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        for costs, known in ((study.costs, True), ({}, False)):  # an older answer does not tell them
+            study.costs = costs
+            words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+            self.assertEqual("A run of heap takes about 4.5 s of one core." in words, known, words)
+            page = Page("", "")
+            add_tie_breakers(page, study)
+            row = next(row for row in page.parts[-1].split("<tr>") if "profile" in row)
+            self.assertIn(">4.5<" if known else ">–<", row)
 
     def test_one_effect_or_none_of_the_catalogue(self) -> None:
         make_study(self.folder / "tie", "tie")
