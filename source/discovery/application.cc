@@ -1,5 +1,6 @@
 #include <eunoe/core/exit_code.h>
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/machine.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/stop_request.h>
@@ -8,15 +9,14 @@
 #include <eunoe/discovery/results.h>
 #include <eunoe/discovery/synthetic_data.h>
 #include <eunoe/simulation/command_line.h>
+#include <eunoe/simulation/forecast.h>
 
 #include <boost/algorithm/string.hpp>
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <memory>
 
 namespace eunoe::discovery {
 
@@ -52,16 +52,14 @@ std::string word_for(const Factor::Sign sign)
 
 void list_effects(const std::vector<Effect> &effects, Log &log)
 {
-  for (const Effect &effect : effects) {
-    const Factor &f = effect.factor;
+  for (const Effect &f : effects) {
     if (f.kind != Factor::Kind::effect)
       continue;
     const std::string others = boost::join(f.confounders, ", ");
     log.line(f.name + ": " + f.mechanism + "\n  amplitude: " + f.parameter + " (" + f.unit +
              "), null value " + format(f.null_value) + ", scale " + format(f.scale) + ", range " +
              format(f.lower) + " to " + format(f.upper) + "; sign: " + word_for(f.sign) +
-             "; confounders: " + (others.empty() ? "none" : others) +
-             "; process: " + effect.process);
+             "; confounders: " + (others.empty() ? "none" : others) + "; process: " + f.process);
   }
 }
 
@@ -69,6 +67,81 @@ void refuse_if_any(const Problems &problems)
 {
   if (!problems.empty())
     throw UserError(problems);
+}
+
+/// Prints the warnings about a study, for `--check` and for the start of the study.
+/// @return number of warnings
+std::size_t print_doubts(const StudyInput &study, const Problems &problems, Log &log)
+{
+  std::size_t n = problems.warnings().size();
+  for (const Problem &doubt : problems.warnings())
+    log.warning(doubt.text());
+  for (const Experiment &experiment : study.experiments) {
+    n += experiment.doubts().size();
+    for (const Problem &doubt : experiment.doubts())
+      log.warning("Experiment '" + experiment.name() + "': " + doubt.text());
+  }
+  return n;
+}
+
+/// Prints what a study would cost, for `--check`.
+void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log)
+{
+  const StudyOptions &options = study.parameters.options;
+  std::string names;
+  double n_effects = 0., n_nuisances = 0.;
+  for (const Effect &effect : study.factors) {
+    names += (names.empty() ? "" : ", ") + effect.name;
+    (effect.kind == Factor::Kind::effect ? n_effects : n_nuisances) += 1.;
+  }
+  double runs = 0., core_hours = 0.;
+  std::uint64_t of_base = 0; // without which there is no study
+  for (const Experiment &experiment : study.experiments) {
+    double n_points = 0.;
+    for (const auto *list : {&study.data.fit, &study.data.held_out})
+      for (const MeasuredPoint &m : *list)
+        n_points += m.point.experiment == experiment.name() ? 1. : 0.;
+    const bool is_compared = n_points > 0. || (study.data.fit.empty() && !experiment.is_held_out());
+    // First runs; the rest of the budget goes where it is expected to tell most.
+    constexpr double levels = 4., replicates = 2., models = 4.;
+    const double n = experiment.is_held_out()
+                         ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
+                     : !is_compared ? 0.
+                                    : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
+                                          levels * replicates * n_effects;
+    of_base += is_compared && !experiment.is_held_out() ? options.null_runs : 0;
+    const RunEstimate &estimate = experiment.estimate();
+    const double hours = n * estimate.core_seconds() / 3600.;
+    log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
+             (experiment.is_held_out() ? ", held out" : "") +
+             "): " + format_count(n_points, "measured cell", "measured cells") + "; first about " +
+             format_count(n, "run", "runs") + " of " +
+             format_count(estimate.particles, "particle", "particles") + " and " +
+             format_count(estimate.steps, "step", "steps") + ", " +
+             format_roughly(estimate.core_seconds()) + " core-seconds each");
+    runs += n;
+    core_hours += hours;
+  }
+  // What is left of the budget is spent as the first runs were.
+  if (options.budget > 0) {
+    core_hours *= static_cast<double>(options.budget) / std::max(1., runs);
+    runs = static_cast<double>(options.budget);
+  }
+  log.line("  factors:    " + format_count(n_effects, "effect", "effects") + " and " +
+           format_count(n_nuisances, "nuisance", "nuisances") + ": " + names);
+  if (!study.left_out.empty())
+    log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
+  log.line("  runs:       about " + format_whole(runs) +
+           (options.budget > 0 ? " at most" : " at first, and no limit"));
+  log.line("  core-hours: about " + format_roughly(core_hours));
+  const bool is_short = options.budget > 0 && options.budget < of_base;
+  if (is_short)
+    log.warning("The budget has no room for the " + std::to_string(of_base) +
+                " first runs of the base model, unless the table of runs has some. Increase "
+                "'budget of runs'.");
+  const std::size_t n = n_warnings + (is_short ? 1 : 0);
+  log.line(n == 0 ? "The study is in order."
+                  : "The study can be made. " + count_of_warnings(n) + ": see above.");
 }
 
 /// Runs the base models of a study a few times, and checks that they give all data points of the
@@ -111,46 +184,34 @@ std::vector<std::string> check_base_models(StudyInput &study, DemSimulator &simu
 /// Refuses a study whose folders cannot be written to, before it spends hours on runs.
 void refuse_folders(const StudyParameters &p, MPI_Comm comm)
 {
-  Problems problems;
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  for (const auto &[entry, folder] :
-       {std::pair<std::string, std::string>("output path", p.output_path),
-        std::pair<std::string, std::string>(
-            "table of runs", (std::filesystem::path(".") / p.table_file()).parent_path().string())})
-  {
-    const std::string obstacle = broadcast(rank == 0 ? obstacle_to_folder(folder) : "", comm);
-    if (!obstacle.empty())
-      problems.add("subsection 'discovery' / entry '" + entry + "':",
-                   "the folder " + shortened(folder) + " cannot be written to: " + obstacle + ".",
-                   "Choose another folder, or mend the permissions.");
-  }
-  refuse_if_any(problems);
+  on_first_rank(comm, [&] {
+    Problems problems;
+    for (const auto &[entry, folder] :
+         {std::pair<std::string, std::string>("output path", p.output_path),
+          std::pair<std::string, std::string>(
+              "table of runs",
+              (std::filesystem::path(".") / p.table_file()).parent_path().string())})
+    {
+      const std::string obstacle = obstacle_to_folder(folder);
+      if (!obstacle.empty())
+        problems.add("subsection 'discovery' / entry '" + entry + "':",
+                     "the folder " + shortened(folder) + " cannot be written to: " + obstacle + ".",
+                     "Choose another folder, or mend the permissions.");
+    }
+    refuse_if_any(problems);
+  });
 }
 
 /// Experiments that can be simulated but were not measured.
 std::vector<std::string> further_experiments(const StudyInput &study)
 {
+  const std::vector<std::string> measured = experiments_of(study.data.fit);
   std::vector<std::string> names;
   for (const Experiment &experiment : study.experiments)
     if (!experiment.is_held_out() &&
-        std::none_of(study.data.fit.begin(), study.data.fit.end(), [&](const MeasuredPoint &m) {
-          return m.point.experiment == experiment.name();
-        }))
+        std::find(measured.begin(), measured.end(), experiment.name()) == measured.end())
       names.push_back(experiment.name());
   return names;
-}
-
-void write_page(const StudyInput &study, MPI_Comm comm, Log &log)
-{
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  if (rank != 0 || !study.parameters.write_page)
-    return;
-  const std::string command = page_command(study.parameters.output_path);
-  if (command.empty() || std::system(command.c_str()) != 0)
-    log.warning("discovery.html was not written. Run contrib/tools discovery-report " +
-                study.parameters.output_path + " where Python has Matplotlib.");
 }
 
 /// @param tells_verdict whether the exit code is that of the verdict. MPI's launchers take every
@@ -159,34 +220,32 @@ int make_study(StudyInput &study, const bool tells_verdict, MPI_Comm comm, Log &
 {
   const StudyParameters &p = study.parameters;
   StudyFolder folder(p.output_path, comm);
-  try {
-    DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
-                           log);
-    const auto began = folder.open(study.identity(), simulator.last_row());
-    if (began) {
-      log.line("Going on with the study in " + p.output_path);
-      simulator.hide_rows_after(*began);
-    }
-    folder.write("used.prm", p.as_input_file());
-    stop_request::listen();
-    const std::vector<std::string> left_out = check_base_models(study, simulator);
-    for (const std::string &note : left_out)
-      log.line(note);
-    StudyOptions options = p.options;
-    options.further_experiments = further_experiments(study);
-    Discovery discovery = discover(options, study.data, study.plain_factors(), simulator, log);
-    for (const std::string &note : left_out)
-      discovery.content["notes"].push_back(note);
-    // Nuisances stay at their null values: they are of the apparatus, not of the model.
-    write_models(study, discovery.model_after, folder);
-    write_answer(study, discovery, simulator, folder);
-    write_page(study, comm, log);
-    print_answer(discovery, folder, log);
-    return tells_verdict ? exit_code(discovery.verdict) : exit_success;
-  } catch (const Interrupted &) {
-    log.line("Stopped as asked. Start the study again to go on.");
-    return exit_stopped;
+  DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
+                         log);
+  const auto began = folder.open(study.identity(), simulator.last_row());
+  if (began) {
+    log.line("Going on with the study in " + p.output_path);
+    simulator.hide_rows_after(*began);
   }
+  folder.write("used.prm", p.as_input_file());
+  stop_request::listen();
+  const std::vector<std::string> left_out = check_base_models(study, simulator);
+  for (const std::string &note : left_out)
+    log.line(note);
+  StudyOptions options = p.options;
+  options.further_experiments = further_experiments(study);
+  Discovery discovery = discover(options, study.data, study.plain_factors(), simulator, log);
+  for (const std::string &note : left_out)
+    discovery.content["notes"].push_back(note);
+  // Nuisances stay at their null values: they are of the apparatus, not of the model.
+  write_models(study, discovery.model_after, folder);
+  write_answer(study, discovery, simulator, folder);
+  if (p.write_page)
+    write_page(p.output_path, comm, log);
+  for (const auto &[name, amplitude] : discovery.model_after)
+    log.line("  " + name + ": " + format(amplitude));
+  log.line("The answer is in " + folder.file("discovery.json"));
+  return tells_verdict ? exit_code(discovery.verdict) : exit_success;
 }
 
 /// Tells which measurements would say most about which effect is missing.
@@ -213,32 +272,25 @@ void make_plan(const StudyInput &study, const std::vector<std::string> &experime
 }
 
 /// What can be done before anything is measured.
-int prepare(const StudyInput &study, const ExtraArguments &arguments, MPI_Comm comm, Log &log)
+void prepare(const StudyInput &study, const ExtraArguments &arguments, MPI_Comm comm, Log &log)
 {
   const StudyParameters &p = study.parameters;
-  try {
-    stop_request::listen();
-    std::vector<std::string> experiments;
-    for (const Experiment &experiment : study.experiments)
-      experiments.push_back(experiment.name());
-    // Each opens the table anew, so that a plan knows what has just been filled in.
-    const auto simulate = [&](const std::function<void(DemSimulator &)> &task) {
-      DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run,
-                             comm, log);
-      simulator.find_data_points(100000 * p.options.seed + 1);
-      task(simulator);
-    };
-    if (arguments.fill_table)
-      simulate([&](DemSimulator &simulator) {
-        fill_table(p.options, experiments, study.plain_factors(), simulator, log);
-      });
-    if (arguments.plan)
-      simulate([&](DemSimulator &simulator) { make_plan(study, experiments, simulator, log); });
-  } catch (const Interrupted &) {
-    log.line("Stopped as asked. Give the same command again to go on.");
-    return exit_stopped;
-  }
-  return exit_success;
+  std::vector<std::string> experiments;
+  for (const Experiment &experiment : study.experiments)
+    experiments.push_back(experiment.name());
+  // Each opens the table anew, so that a plan knows what has just been filled in.
+  const auto simulate = [&](const std::function<void(DemSimulator &)> &task) {
+    DemSimulator simulator(study.experiments, study.factors, p.table_file(), p.ranks_per_run, comm,
+                           log);
+    simulator.find_data_points(100000 * p.options.seed + 1);
+    task(simulator);
+  };
+  if (arguments.fill_table)
+    simulate([&](DemSimulator &simulator) {
+      fill_table(p.options, experiments, study.plain_factors(), simulator, log);
+    });
+  if (arguments.plan)
+    simulate([&](DemSimulator &simulator) { make_plan(study, experiments, simulator, log); });
 }
 
 /// Prints what can be told without reading a whole study.
@@ -303,18 +355,21 @@ int run(const CommandLine &line, const ExtraArguments &arguments, MPI_Comm comm)
   } catch (const UserError &error) {
     throw RefusedInput(error);
   }
-  if (needs_no_data)
-    return prepare(study, arguments, comm, log);
-  if (!makes_data)
-    return make_study(study, arguments.verdict_exit_code, comm, log);
+  const bool is_study = !needs_no_data && !makes_data;
   try {
+    if (is_study)
+      return make_study(study, arguments.verdict_exit_code, comm, log);
     stop_request::listen();
-    make_synthetic_data(study.parameters, study.factors, comm, log);
+    if (needs_no_data)
+      prepare(study, arguments, comm, log);
+    else
+      make_synthetic_data(study.parameters, study.factors, comm, log);
+    return exit_success;
   } catch (const Interrupted &) {
-    log.line("Stopped as asked. Give the same command again to go on.");
+    log.line(std::string("Stopped as asked. ") +
+             (is_study ? "Start the study again" : "Give the same command again") + " to go on.");
     return exit_stopped;
   }
-  return exit_success;
 }
 
 } // namespace

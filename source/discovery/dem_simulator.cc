@@ -1,4 +1,3 @@
-#include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/stop_request.h>
@@ -12,37 +11,9 @@
 #include <cmath>
 #include <new>
 #include <sstream>
+#include <utility>
 
 namespace eunoe::discovery {
-
-namespace {
-
-nlohmann::ordered_json description(const RunRequest &request)
-{
-  nlohmann::ordered_json about;
-  about["experiment"] = request.experiment;
-  about["amplitudes"] = nlohmann::ordered_json::object();
-  for (const auto &[name, amplitude] : request.amplitudes)
-    about["amplitudes"][name] = amplitude;
-  about["seed"] = request.seed;
-  return about;
-}
-
-} // namespace
-
-DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
-                           const std::vector<Effect> &factors, const std::string &table_file,
-                           const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
-    : experiments(experiments), factors(factors), maker(experiments, factors, comm),
-      table(table_file, comm), queue(comm, ranks_per_run), comm(comm), log(log)
-{
-  table.open();
-  earlier = table.rows();
-  maker.remember(table.keys());
-  for (const RunTable::Row &row : earlier)
-    if (row.engine == engine_digest())
-      records[row.key] = row.record;
-}
 
 namespace {
 
@@ -55,7 +26,63 @@ std::vector<std::string> parts_of(const RunRequest &request)
   return parts;
 }
 
+/// What a run has measured at a data point; NaN if nothing.
+double value_at(const DataPoint &point, const RunRecord &record)
+{
+  for (const Measurement &m : record.measurements)
+    if (m.observable == point.observable && m.index == point.index)
+      return m.value;
+  return std::nan("");
+}
+
 } // namespace
+
+DemSimulator::DemSimulator(const std::vector<Experiment> &experiments,
+                           const std::vector<Effect> &factors, const std::string &table_file,
+                           const unsigned int ranks_per_run, MPI_Comm comm, Log &log)
+    : experiments(experiments), factors(factors), table(table_file, comm),
+      queue(comm, ranks_per_run), comm(comm), log(log)
+{
+  table.open();
+  earlier = table.rows();
+  keys_by_recipe = table.keys();
+  for (const RunTable::Row &row : earlier)
+    if (row.engine == engine_digest())
+      records[row.key] = row.record;
+}
+
+const Experiment &DemSimulator::find(const std::string &experiment) const
+{
+  return *std::find_if(experiments.begin(), experiments.end(),
+                       [&](const Experiment &e) { return e.name() == experiment; });
+}
+
+bool DemSimulator::is_of_study(const RunRequest &request) const
+{
+  return std::any_of(experiments.begin(), experiments.end(),
+                     [&](const Experiment &e) { return e.name() == request.experiment; }) &&
+         std::all_of(request.amplitudes.begin(), request.amplitudes.end(), [&](const auto &a) {
+           return std::any_of(factors.begin(), factors.end(),
+                              [&](const Effect &e) { return e.name == a.first; });
+         });
+}
+
+std::string DemSimulator::key_of(const RunRequest &request)
+{
+  std::string recipe;
+  try {
+    recipe = find(request.experiment).recipe(factors, request);
+  } catch (const UserError &) {
+    return case_of(request).key;
+  }
+  if (const auto known = keys_by_recipe.find(recipe); known != keys_by_recipe.end())
+    return known->second;
+  const StudyCase one = case_of(request);
+  // Files that a case names may change without their names.
+  if (one.problem.empty() && !one.names_files)
+    keys_by_recipe[recipe] = new_keys[recipe] = one.key;
+  return one.key;
+}
 
 /// Runs simulations of another engine again, as far as this one has not made them.
 /// @return parts of the study in whose simulations a result has changed
@@ -63,12 +90,10 @@ std::set<std::string> DemSimulator::find_changes(
     const std::map<std::string, const RunTable::Row *> &samples)
 {
   std::vector<StudyCase> cases;
-  std::set<std::string> begun;
   for (const auto &[part, row] : samples)
-    if (records.count(row->key) == 0 && begun.insert(row->key).second)
-      cases.push_back(maker.make(row->request));
-  if (!cases.empty())
-    simulate_all(cases);
+    if (records.count(row->key) == 0)
+      cases.push_back(case_of(row->request));
+  simulate_missing(cases);
   std::set<std::string> changed;
   for (const auto &[part, row] : samples)
     if (text_of(records.at(row->key).measurements) != text_of(row->record.measurements))
@@ -118,8 +143,8 @@ void DemSimulator::adopt_earlier_runs()
   for (const RunTable::Row &row : earlier)
     // A failure may have been the engine's. The case may have changed since, or belong to another
     // study.
-    if (row.engine != engine_digest() && row.record.failure.empty() &&
-        maker.is_of_study(row.request) && maker.key(row.request) == row.key)
+    if (row.engine != engine_digest() && row.record.failure.empty() && is_of_study(row.request) &&
+        key_of(row.request) == row.key)
       others[row.engine].push_back(&row);
   for (const auto &[engine, rows] : others)
     adopt(rows);
@@ -128,10 +153,10 @@ void DemSimulator::adopt_earlier_runs()
 bool DemSimulator::concerns(const std::string &experiment,
                             const std::vector<std::string> &effects) const
 {
-  const std::string &process = maker.find(experiment).process_name();
+  const std::string &process = find(experiment).process_name();
   return effects.empty() || std::any_of(factors.begin(), factors.end(), [&](const Effect &e) {
            return e.concerns(process) &&
-                  std::find(effects.begin(), effects.end(), e.factor.name) != effects.end();
+                  std::find(effects.begin(), effects.end(), e.name) != effects.end();
          });
 }
 
@@ -141,28 +166,26 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
   std::set<std::string> given; // a row of each engine may have it
   for (const RunTable::Row &row : earlier) {
     if (row.request.experiment != experiment || row.number > last_known ||
-        records.count(row.key) == 0 || !maker.is_of_study(row.request))
+        records.count(row.key) == 0 || !is_of_study(row.request))
       continue;
     const std::string text = text_of(row.request);
     if (keys.count(text) == 0) {
       // The case may have changed since, or belong to another study.
-      if (maker.key(row.request) != row.key)
+      if (key_of(row.request) != row.key)
         continue;
-      keys[text] = row.key;
-      ++cached;
       add_to_ledger(row.request, row.key, true);
     }
     if (keys.at(text) == row.key && given.insert(text).second)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
-  if (const auto found = maker.new_keys(); !found.empty())
-    table.store_keys(found);
+  if (!new_keys.empty())
+    table.store_keys(std::exchange(new_keys, {}));
   return result;
 }
 
 void DemSimulator::take_over(const RunRequest &request, const RunRecord &record)
 {
-  const StudyCase one = maker.make(request);
+  const StudyCase one = case_of(request);
   if (!one.problem.empty())
     throw UserError(one.problem);
   on_first_rank(comm, [&] { table.store({0, one.key, engine_digest(), request, record}); });
@@ -258,19 +281,27 @@ RunRecord DemSimulator::simulate(const StudyCase &one)
   return record;
 }
 
-void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
+std::set<std::string> DemSimulator::simulate_missing(const std::vector<StudyCase> &cases)
 {
   const double begin = MPI_Wtime();
-  const int n = static_cast<int>(cases.size());
+  std::set<std::string> begun;
+  std::vector<const StudyCase *> missing;
+  for (const StudyCase &one : cases)
+    if (records.count(one.key) == 0 && begun.insert(one.key).second)
+      missing.push_back(&one);
+  if (missing.empty())
+    return begun;
+  const int n = static_cast<int>(missing.size());
   auto mine = nlohmann::ordered_json::array();
   std::string error;
   bool interrupted = false;
   const auto one_case = [&](const int k) {
-    const RunRecord record = simulate(cases[k]);
+    const StudyCase &one = *missing[k];
+    const RunRecord record = simulate(one);
     if (queue.is_leader()) {
-      mine.push_back({cases[k].key, to_json(record)});
+      mine.push_back({one.key, to_json(record)});
       try {
-        table.store({0, cases[k].key, engine_digest(), cases[k].request, record});
+        table.store({0, one.key, engine_digest(), one.request, record});
       } catch (const UserError &failure) {
         error = failure.what();
       }
@@ -300,6 +331,7 @@ void DemSimulator::simulate_all(const std::vector<StudyCase> &cases)
       records[item.at(0)] = record_from(item.at(1));
       ++made;
     }
+  return begun;
 }
 
 std::string DemSimulator::failure_of(const RunRequest &request, const RunRecord &record) const
@@ -307,12 +339,7 @@ std::string DemSimulator::failure_of(const RunRequest &request, const RunRecord 
   if (!record.failure.empty())
     return record.failure;
   for (const DataPoint &point : required)
-    if (point.experiment == request.experiment &&
-        std::none_of(record.measurements.begin(), record.measurements.end(),
-                     [&](const Measurement &m) {
-                       return m.observable == point.observable && m.index == point.index &&
-                              std::isfinite(m.value);
-                     }))
+    if (point.experiment == request.experiment && !std::isfinite(value_at(point, record)))
       return "The run ended without a value of '" + point.observable + "', index " +
              std::to_string(point.index) + ", which was measured.";
   return "";
@@ -322,17 +349,10 @@ RunResult DemSimulator::result(const RunRequest &request, const RunRecord &recor
 {
   if (!failure_of(request, record).empty())
     return std::nullopt;
-  const auto known = known_points.find(request.experiment);
-  if (known == known_points.end())
-    return std::vector<double>();
-  std::map<std::pair<std::string, int>, double> found;
-  for (const Measurement &m : record.measurements)
-    found[{m.observable, m.index}] = m.value;
   std::vector<double> values;
-  for (const DataPoint &point : known->second) {
-    const auto value = found.find({point.observable, point.index});
-    values.push_back(value == found.end() ? std::nan("") : value->second);
-  }
+  if (const auto known = known_points.find(request.experiment); known != known_points.end())
+    for (const DataPoint &point : known->second)
+      values.push_back(value_at(point, record));
   return values;
 }
 
@@ -340,10 +360,14 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
                                  const bool was_cached)
 {
   const RunRecord &record = records.at(key);
-  nlohmann::ordered_json run = description(request);
-  run["key"] = key;
-  run["cached"] = was_cached;
-  run["core_seconds"] = record.core_seconds;
+  keys[text_of(request)] = key;
+  cached += was_cached ? 1 : 0;
+  nlohmann::ordered_json run = {{"experiment", request.experiment},
+                                {"amplitudes", request.amplitudes},
+                                {"seed", request.seed},
+                                {"key", key},
+                                {"cached", was_cached},
+                                {"core_seconds", record.core_seconds}};
   if (const std::string failure = failure_of(request, record); !failure.empty())
     run["failure"] = failure;
   runs.push_back(run);
@@ -351,30 +375,14 @@ void DemSimulator::add_to_ledger(const RunRequest &request, const std::string &k
 
 std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests)
 {
-  std::map<std::string, std::pair<StudyCase, RunRequest>>
-      unknown; // by words: also the order of the tasks
-  std::vector<std::string> order;
+  std::vector<StudyCase> unknown;
+  std::set<std::string> texts;
   for (const RunRequest &request : requests)
-    if (keys.count(text_of(request)) == 0 && unknown.count(text_of(request)) == 0) {
-      unknown[text_of(request)] = {maker.make(request), request};
-      order.push_back(text_of(request));
-    }
-  std::vector<StudyCase> missing;
-  std::set<std::string> begun;
-  for (const std::string &text : order) {
-    const StudyCase &one = unknown.at(text).first;
-    if (records.count(one.key) == 0 && begun.insert(one.key).second)
-      missing.push_back(one);
-  }
-  if (!missing.empty())
-    simulate_all(missing);
-  for (const std::string &text : order) {
-    const auto &[one, request] = unknown.at(text);
-    const bool was_cached = begun.count(one.key) == 0;
-    keys[text] = one.key;
-    cached += was_cached ? 1 : 0;
-    add_to_ledger(request, one.key, was_cached);
-  }
+    if (keys.count(text_of(request)) == 0 && texts.insert(text_of(request)).second)
+      unknown.push_back(case_of(request));
+  const std::set<std::string> begun = simulate_missing(unknown);
+  for (const StudyCase &one : unknown)
+    add_to_ledger(one.request, one.key, begun.count(one.key) == 0);
   std::vector<RunResult> results;
   for (const RunRequest &request : requests)
     results.push_back(result(request, records.at(keys.at(text_of(request)))));

@@ -131,8 +131,8 @@ Json describe_calibration(const Findings &findings, const FactorSpace &space)
       {"interval", c.interval}};
 }
 
-/// Everything that the page says of the data of the fit.
-Json describe_fit(const Round &round, const StudyOptions &options)
+/// Everything that the page says of the data of the fit, and what validation says beside it.
+Json describe_fit(const Round &round, const StudyOptions &options, const Json &validation)
 {
   const Evidence &evidence = round.evidence;
   const Findings &findings = round.findings;
@@ -150,14 +150,12 @@ Json describe_fit(const Round &round, const StudyOptions &options)
       if (!second && model.effects.size() == 1 && model.effects != first->effects)
         second = fitted(model.best).first;
   }
-  Json content;
-  content["nuisances"] = describe_nuisances(evidence.space(), values);
-  content["gap"] = describe_gap(round.target, base, after);
-  content["envelopes"] = describe_envelopes(round.target, base, after, options.level);
-  content["decisive"] = after && second ? decisive_points(round.target, *after, *second)
-                        : after         ? decisive_points(round.target, *after, base)
-                                        : Json::array();
-  return content;
+  return {{"nuisances", describe_nuisances(evidence.space(), values)},
+          {"gaps", {{"fit", describe_gap(round.target, base, after)}, {"held-out", validation}}},
+          {"envelopes", describe_envelopes(round.target, base, after, options.level)},
+          {"decisive", after && second ? decisive_points(round.target, *after, *second)
+                       : after         ? decisive_points(round.target, *after, base)
+                                       : Json::array()}};
 }
 
 /// A study while it is made.
@@ -196,7 +194,7 @@ private:
   void note_what_was_not_run();
   /// Effects that could be what is missing, but of which there is no result.
   std::vector<std::string> untried() const;
-  Json describe(const Json &power, const Json &validation, const Json &of_fit);
+  Json describe(const Json &power, const Json &of_fit);
 
   const StudyOptions &options;
   const MeasuredData &data;
@@ -299,7 +297,7 @@ std::vector<std::string> Study::untried() const
   return names;
 }
 
-Json Study::describe(const Json &power, const Json &validation, const Json &of_fit)
+Json Study::describe(const Json &power, const Json &of_fit)
 {
   const Findings &findings = round->findings;
   const Evidence &evidence = round->evidence;
@@ -327,10 +325,7 @@ Json Study::describe(const Json &power, const Json &validation, const Json &of_f
                        ? describe_remainder(evidence, findings)
                        : Json::object();
   c["models"] = describe_models(likeliest, space);
-  c["nuisances"] = of_fit["nuisances"];
-  c["gaps"] = {{"fit", of_fit["gap"]}, {"held-out", validation}};
-  c["envelopes"] = of_fit["envelopes"];
-  c["decisive"] = of_fit["decisive"];
+  c.update(of_fit);
   c["effects"] = power;
   c.update(describe_fingerprints(evidence));
   c["calibration"] = describe_calibration(findings, space);
@@ -354,8 +349,7 @@ Discovery Study::answer()
   const Json validation = held_out.test(round->evidence, findings);
   allow_for_untried(untried().size(), space.n_effects(), findings);
   Discovery discovery;
-  const Json of_fit = describe_fit(*round, options);
-  discovery.content = describe(power, validation, of_fit);
+  discovery.content = describe(power, describe_fit(*round, options, validation));
   discovery.verdict = findings.verdict;
   if (findings.verdict == Verdict::named || findings.verdict == Verdict::tie)
     for (const auto &[k, position] : findings.answer.front().best)

@@ -1,11 +1,28 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/named_files.h>
 #include <eunoe/core/quoted_text.h>
+#include <eunoe/core/sha256.h>
+#include <eunoe/core/version.h>
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
 #include <algorithm>
+#include <cstdio>
 
 namespace eunoe::discovery {
+
+namespace {
+
+/// Overrides that make a run silent.
+const std::vector<std::string> quiet_overrides = {"simulation control/output path = unused",
+                                                  "simulation control/output control = iteration",
+                                                  "simulation control/output frequency = 0",
+                                                  "simulation control/log frequency = 0",
+                                                  "restart/checkpoint = false",
+                                                  "restart/restart = false"};
+
+} // namespace
 
 Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Problems &problems)
     : parameters(parameters)
@@ -17,24 +34,27 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     problems.add("Experiment '" + name() + "':", error.what(), "");
     return;
   }
-  const std::size_t n_before = problems.all().size();
+  Problems wrong; // its doubts are among those of the run below
   const Parameters read = Parameters::read(
-      texts[file], file, parameters.overrides, problems,
+      texts[file], file, parameters.overrides, wrong,
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
   base = values_in(read.as_input_file());
   process = read.process_name;
   // Every run begins from nothing.
   if (base.at({{"restart"}, "restart"}) == "true")
-    problems.add(file + ": subsection 'restart' / entry 'restart'",
-                 "is true, and a study simulates a case from its beginning, without checkpoints.",
-                 "Make a case of it that needs none, and set it to false.");
-  if (problems.all().size() != n_before)
+    wrong.add(file + ": subsection 'restart' / entry 'restart'",
+              "is true, and a study simulates a case from its beginning, without checkpoints.",
+              "Make a case of it that needs none, and set it to false.");
+  for (const Problem &problem : wrong.all())
+    problems.add(problem.where, problem.what, problem.mend);
+  if (!wrong.empty())
     return;
+  for (const auto &[place, digest] : named_files(read.file_entries(), comm))
+    digests += digest;
   try {
     // Building the parts of a run finds what reading alone cannot.
     std::vector<std::string> list = parameters.overrides;
-    for (const std::string &line : quiet_overrides())
-      list.push_back(line);
+    list.insert(list.end(), quiet_overrides.begin(), quiet_overrides.end());
     Problems found;
     Parameters of_run = make(list, found);
     if (!found.empty())
@@ -66,48 +86,72 @@ std::vector<std::string> Experiment::overrides(const std::vector<Effect> &factor
   EntryValues values = base;
   std::vector<const Effect *> active;
   for (const Effect &effect : factors) {
-    const auto amplitude = amplitudes.find(effect.factor.name);
-    if (amplitude != amplitudes.end() && amplitude->second != effect.factor.null_value &&
+    const auto amplitude = amplitudes.find(effect.name);
+    if (amplitude != amplitudes.end() && amplitude->second != effect.null_value &&
         effect.concerns(process))
       active.push_back(&effect);
   }
   std::sort(active.begin(), active.end(), [](const Effect *a, const Effect *b) {
     const auto key = [](const Effect *e) {
-      return std::pair(e->factor.kind == Factor::Kind::effect, e->factor.name);
+      return std::pair(e->kind == Factor::Kind::effect, e->name);
     };
     return key(a) < key(b);
   });
   for (const Effect *const effect : active)
-    effect->patch.apply(amplitudes.at(effect->factor.name), values, list);
+    effect->apply(amplitudes.at(effect->name), values, list);
   return list;
 }
 
-std::vector<std::string> Experiment::quiet_overrides()
+std::vector<std::string> Experiment::run_overrides(const std::vector<Effect> &factors,
+                                                   const RunRequest &request) const
 {
-  return {"simulation control/output path = unused",
-          "simulation control/output control = iteration",
-          "simulation control/output frequency = 0",
-          "simulation control/log frequency = 0",
-          "restart/checkpoint = false",
-          "restart/restart = false"};
-}
-
-std::vector<std::string> Experiment::run_overrides(const std::uint32_t seed) const
-{
-  std::vector<std::string> list = quiet_overrides();
+  std::vector<std::string> list = overrides(factors, request.amplitudes);
+  list.insert(list.end(), quiet_overrides.begin(), quiet_overrides.end());
   // Entries hold numbers of 31 bits.
-  list.push_back("simulation control/seed = " + std::to_string(seed & 0x7fffffff));
+  list.push_back("simulation control/seed = " + std::to_string(request.seed & 0x7fffffff));
   return list;
 }
 
-std::string Experiment::recipe(const std::vector<std::string> &overrides) const
+StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunRequest &request,
+                                MPI_Comm comm) const
 {
-  std::string all;
+  StudyCase one;
+  one.experiment = this;
+  one.request = request;
+  std::string input;
+  EntryValues naming_files;
+  try {
+    // Ranks may see different files.
+    on_every_rank(comm, [&] {
+      one.overrides = run_overrides(factors, request);
+      Problems found;
+      const Parameters made = make(one.overrides, found);
+      input = made.as_input_file();
+      naming_files = made.file_entries();
+      if (!found.empty())
+        throw UserError(found);
+    });
+  } catch (const UserError &error) {
+    one.problem = error.what();
+    one.key = sha256(one.problem + text_of(request));
+    return one;
+  }
+  std::string files;
+  for (const auto &[place, digest] : named_files(naming_files, comm))
+    files += digest;
+  one.names_files = !files.empty();
+  one.key = sha256(files + input);
+  return one;
+}
+
+std::string Experiment::recipe(const std::vector<Effect> &factors, const RunRequest &request) const
+{
+  std::string all = engine_digest(); // the engine reads the parameters
   for (const auto &[file, text] : texts)
     all += file + "\n" + text + "\n";
-  for (const std::string &line : overrides)
+  for (const std::string &line : run_overrides(factors, request))
     all += line + "\n";
-  return all;
+  return sha256(all);
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const
@@ -121,22 +165,32 @@ Parameters Experiment::make(const std::vector<std::string> &overrides, Problems 
       });
 }
 
+std::string text_of(const RunRequest &request)
+{
+  std::string text = request.experiment + " " + std::to_string(request.seed);
+  for (const auto &[name, amplitude] : request.amplitudes) {
+    char number[40];
+    std::snprintf(number, sizeof number, "=%.17g", amplitude);
+    text += " " + name + number;
+  }
+  return text;
+}
+
 Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems)
 {
   Effect effect;
-  Factor &factor = effect.factor;
-  factor.name = parameters.name;
-  factor.kind = Factor::Kind::nuisance;
-  factor.scale = factor.prior_deviation = parameters.standard_deviation;
-  factor.lower = -3. * parameters.standard_deviation;
-  factor.upper = 3. * parameters.standard_deviation;
-  factor.sign = Factor::Sign::both;
-  factor.mechanism = "uncertain number of the base model";
+  effect.name = parameters.name;
+  effect.kind = Factor::Kind::nuisance;
+  effect.scale = effect.prior_deviation = parameters.standard_deviation;
+  effect.lower = -3. * parameters.standard_deviation;
+  effect.upper = 3. * parameters.standard_deviation;
+  effect.sign = Factor::Sign::both;
+  effect.mechanism = "uncertain number of the base model";
   const std::string where = "Nuisance '" + parameters.name + "'";
   for (const std::string &entry : parameters.entries) {
     Problems found;
-    effect.patch.entries.push_back(parse_override(entry + " = " + parameters.value, found));
-    effect.patch.entries.back().where = where;
+    effect.entries.push_back(parse_override(entry + " = " + parameters.value, found));
+    effect.entries.back().where = where;
     for (const Problem &problem : found.all())
       problems.add(where + " / entry 'entries': '" + shortened(entry) + "':", problem.what,
                    "Write 'subsection/entry', and ';' between several.");

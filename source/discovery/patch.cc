@@ -1,5 +1,5 @@
 #include <eunoe/core/silent_errors.h>
-#include <eunoe/discovery/patch.h>
+#include <eunoe/discovery/catalogue.h>
 
 #include <deal.II/base/function_parser.h>
 
@@ -104,8 +104,8 @@ std::string patched_value(const std::string &pattern, const std::string &base,
   return boost::join(patterns, ", ");
 }
 
-void Patch::apply(const double amplitude, EntryValues &values,
-                  std::vector<std::string> &overrides) const
+void Effect::apply(const double amplitude, EntryValues &values,
+                   std::vector<std::string> &overrides) const
 {
   for (const InputEntry &entry : entries) {
     if (entry.name.empty())

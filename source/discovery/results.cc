@@ -1,17 +1,70 @@
+#include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
+#include <eunoe/core/problems.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/results.h>
-#include <eunoe/simulation/forecast.h>
 
 #include <boost/algorithm/string.hpp>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 namespace eunoe::discovery {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+const std::string identity_file = "study.json";
+
+/// The text of a file on the first rank, given to all; nothing if there is none.
+std::optional<nlohmann::ordered_json> read_json(const std::string &file, MPI_Comm comm)
+{
+  std::error_code failure;
+  const std::string is_there =
+      broadcast(is_first_rank(comm) && fs::exists(file, failure) ? "yes" : "", comm);
+  if (is_there.empty())
+    return std::nullopt;
+  try {
+    return nlohmann::ordered_json::parse(read_file(file, comm));
+  } catch (const nlohmann::json::exception &) {
+    throw UserError(file + " is damaged. Remove it; the runs are kept in their table.");
+  }
+}
+
+/// A list of objects as a table with commas; members other than numbers, words and truth values
+/// are left out. Empty for any other value.
+std::string as_csv(const nlohmann::ordered_json &list)
+{
+  if (!list.is_array() || list.empty() ||
+      !std::all_of(list.begin(), list.end(), [](const auto &row) { return row.is_object(); }))
+    return "";
+  std::vector<std::string> columns;
+  for (const auto &row : list)
+    for (const auto &[name, value] : row.items())
+      if (value.is_primitive() && std::find(columns.begin(), columns.end(), name) == columns.end())
+        columns.push_back(name);
+  if (columns.empty())
+    return "";
+  std::string text = boost::join(columns, ",") + "\n";
+  for (const auto &row : list) {
+    std::vector<std::string> words;
+    for (const std::string &column : columns) {
+      const auto value = row.find(column);
+      words.push_back(value == row.end() || !value->is_primitive() || value->is_null() ? ""
+                      : value->is_string() ? value->template get<std::string>()
+                                           : value->dump());
+      if (words.back().find_first_of(",\"") != std::string::npos)
+        words.back() = "\"" + boost::replace_all_copy(words.back(), "\"", "\"\"") + "\"";
+    }
+    text += boost::join(words, ",") + "\n";
+  }
+  return text;
+}
+
+/// Entries whose values differ, as an input file of the new ones with the old ones beside them.
 std::string differences(const EntryValues &before, const EntryValues &after)
 {
   std::string text;
@@ -41,6 +94,64 @@ std::string differences(const EntryValues &before, const EntryValues &after)
   }
   close_to(0);
   return text;
+}
+
+/// As one word of a shell's command.
+std::string quoted(const std::string &text)
+{
+  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
+}
+
+} // namespace
+
+std::string StudyFolder::file(const std::string &name) const
+{
+  return (fs::path(path) / name).lexically_normal().string();
+}
+
+std::optional<std::int64_t> StudyFolder::open(const std::map<std::string, std::string> &identity,
+                                              const std::int64_t last_row)
+{
+  const std::string began = "last row of the table at the start";
+  create_folder(path, comm);
+  lock = std::make_unique<RunLock>(file("running.lock"), "The folder " + path,
+                                   "Wait until it ends, or choose another 'output path'.", comm);
+  nlohmann::ordered_json mine;
+  for (const auto &[name, text] : identity)
+    mine[name] = sha256(text);
+  const auto before = read_json(file(identity_file), comm);
+  if (!before) {
+    mine[began] = last_row;
+    write(identity_file, mine.dump(1) + "\n");
+    return std::nullopt;
+  }
+  std::vector<std::string> differ;
+  for (const auto &[name, digest] : mine.items())
+    if (!before->contains(name) || before->at(name) != digest)
+      differ.push_back(name);
+  for (const auto &[name, digest] : before->items())
+    if (!mine.contains(name) && name != began)
+      differ.push_back(name);
+  if (!differ.empty())
+    throw UserError("The folder " + path +
+                    " holds another study; what differs: " + boost::join(differ, ", ") +
+                    ". Choose another 'output path', or remove the folder. (With the same 'table "
+                    "of runs' no run is made twice.)");
+  return before->value(began, std::int64_t(0));
+}
+
+void StudyFolder::write_csv(const std::string &name, const nlohmann::ordered_json &list) const
+{
+  const std::string csv = as_csv(list);
+  if (!csv.empty())
+    write(name, csv);
+  else if (is_first_rank(comm))
+    remove_file(file(name)); // that of an earlier answer
+}
+
+void StudyFolder::write(const std::string &name, const std::string &text) const
+{
+  on_first_rank(comm, [&] { write_file(file(name), text); });
 }
 
 void write_models(const StudyInput &study, const Amplitudes &after, const StudyFolder &folder)
@@ -80,8 +191,7 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
   origin["seed"] = study.parameters.options.seed;
   origin["measured_data"] = study.data.header;
   auto &effects = answer["catalogue"];
-  for (const Effect &effect : study.factors) {
-    const Factor &f = effect.factor;
+  for (const Factor &f : study.factors)
     effects.push_back({{"name", f.name},
                        {"kind", f.kind == Factor::Kind::effect ? "effect" : "nuisance"},
                        {"mechanism", f.mechanism},
@@ -93,7 +203,6 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                        {"range", {f.lower, f.upper}},
                        {"confounders", f.confounders},
                        {"source", f.source}});
-  }
   auto &observables = answer["observables"];
   for (const Experiment &experiment : study.experiments)
     for (const ObservableDescription &o : experiment.observables())
@@ -119,109 +228,17 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
     folder.write_csv(boost::replace_all_copy(name, " ", "_") + ".csv", answer[name]);
 }
 
-namespace {
-
-/// As one word of a shell's command.
-std::string quoted(const std::string &text)
+void write_page(const std::string &folder, MPI_Comm comm, Log &log)
 {
-  return "'" + boost::replace_all_copy(text, "'", "'\\''") + "'";
-}
-
-} // namespace
-
-std::string page_command(const std::string &folder)
-{
+  if (!is_first_rank(comm))
+    return;
   std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  for (const fs::path &script : {program.parent_path().parent_path() / "share/eunoe/contrib/tools",
-                                 fs::path(source_folder()) / "contrib/tools"})
-    if (fs::is_regular_file(script, failure)) {
-      const bool has_own = fs::exists("/usr/bin/python3", failure);
-      return std::string(has_own ? "/usr/bin/python3" : "python3") + " " + quoted(script.string()) +
-             " discovery-report " + quoted(folder);
-    }
-  return "";
-}
-
-void print_answer(const Discovery &discovery, const StudyFolder &folder, Log &log)
-{
-  for (const auto &[name, amplitude] : discovery.model_after)
-    log.line("  " + name + ": " + format(amplitude));
-  log.line("The answer is in " + folder.file("discovery.json"));
-}
-
-std::size_t print_doubts(const StudyInput &study, const Problems &problems, Log &log)
-{
-  std::size_t n = problems.warnings().size();
-  for (const Problem &doubt : problems.warnings())
-    log.warning(doubt.text());
-  for (const Experiment &experiment : study.experiments) {
-    n += experiment.doubts().size();
-    for (const Problem &doubt : experiment.doubts())
-      log.warning("Experiment '" + experiment.name() + "': " + doubt.text());
-  }
-  return n;
-}
-
-void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log)
-{
-  const StudyOptions &options = study.parameters.options;
-  const double n_effects = static_cast<double>(study.n_effects());
-  const auto n_factors = static_cast<double>(study.factors.size());
-  double runs = 0., core_hours = 0.;
-  std::uint64_t of_base = 0; // without which there is no study
-  for (const Experiment &experiment : study.experiments) {
-    const auto count_points = [&](const std::vector<MeasuredPoint> &list) {
-      return std::count_if(list.begin(), list.end(), [&](const MeasuredPoint &m) {
-        return m.point.experiment == experiment.name();
-      });
-    };
-    const auto n_points = count_points(study.data.fit) + count_points(study.data.held_out);
-    const double n_nuisances = n_factors - n_effects;
-    const bool is_compared = n_points > 0 || (study.data.fit.empty() && !experiment.is_held_out());
-    // First runs; the rest of the budget goes where it is expected to tell most.
-    constexpr double levels = 4., replicates = 2., models = 4.;
-    const double n = experiment.is_held_out()
-                         ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
-                     : !is_compared ? 0.
-                                    : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
-                                          levels * replicates * n_effects;
-    of_base += is_compared && !experiment.is_held_out() ? options.null_runs : 0;
-    const RunEstimate &estimate = experiment.estimate();
-    const double hours = n * estimate.core_seconds() / 3600.;
-    log.line("  experiment " + experiment.name() + " (" + experiment.process_name() +
-             (experiment.is_held_out() ? ", held out" : "") + "): " +
-             format_count(static_cast<double>(n_points), "measured cell", "measured cells") +
-             "; first about " + format_count(n, "run", "runs") + " of " +
-             format_count(estimate.particles, "particle", "particles") + " and " +
-             format_count(estimate.steps, "step", "steps") + ", " +
-             format_roughly(estimate.core_seconds()) + " core-seconds each");
-    runs += n;
-    core_hours += hours;
-  }
-  // What is left of the budget is spent as the first runs were.
-  if (options.budget > 0) {
-    core_hours *= static_cast<double>(options.budget) / std::max(1., runs);
-    runs = static_cast<double>(options.budget);
-  }
-  std::string names;
-  for (const Effect &effect : study.factors)
-    names += (names.empty() ? "" : ", ") + effect.factor.name;
-  log.line("  factors:    " + format_count(n_effects, "effect", "effects") + " and " +
-           format_count(n_factors - n_effects, "nuisance", "nuisances") + ": " + names);
-  if (!study.left_out.empty())
-    log.line("  left out, as no experiment can have them: " + boost::join(study.left_out, ", "));
-  log.line("  runs:       about " + format_whole(runs) +
-           (options.budget > 0 ? " at most" : " at first, and no limit"));
-  log.line("  core-hours: about " + format_roughly(core_hours));
-  const bool is_short = options.budget > 0 && options.budget < of_base;
-  if (is_short)
-    log.warning("The budget has no room for the " + std::to_string(of_base) +
-                " first runs of the base model, unless the table of runs has some. Increase "
-                "'budget of runs'.");
-  const std::size_t n = n_warnings + (is_short ? 1 : 0);
-  log.line(n == 0 ? "The study is in order."
-                  : "The study can be made. " + count_of_warnings(n) + ": see above.");
+  const std::string script = shipped("contrib/tools"), python = "/usr/bin/python3";
+  const std::string command = (fs::exists(python, failure) ? python : "python3") + " " +
+                              quoted(script) + " discovery-report " + quoted(folder);
+  if (!fs::is_regular_file(script, failure) || std::system(command.c_str()) != 0)
+    log.warning("discovery.html was not written. Run contrib/tools discovery-report " + folder +
+                " where Python has Matplotlib.");
 }
 
 } // namespace eunoe::discovery

@@ -63,38 +63,24 @@ std::string text_at(sqlite3_stmt *statement, const int column)
   return text == nullptr ? "" : std::string(text, text + sqlite3_column_bytes(statement, column));
 }
 
-RunTable::Row row_from(const nlohmann::ordered_json &json)
-{
-  return {json.at("number"),
-          json.at("key"),
-          json.at("engine"),
-          {json.at("experiment"), json.at("amplitudes").get<Amplitudes>(), json.at("seed")},
-          record_from(json.at("record"))};
-}
-
 } // namespace
 
 std::string text_of(const std::vector<Measurement> &measurements)
 {
-  auto list = nlohmann::ordered_json::array();
-  for (const Measurement &m : measurements)
-    list.push_back({m.observable, m.index, m.value}); // JSON has no NaN; it becomes null
-  return list.dump();
+  return eunoe::to_json(measurements).dump(); // JSON has no NaN; it becomes null
 }
 
 nlohmann::ordered_json to_json(const RunRecord &record)
 {
-  return {{"failure", record.failure},
-          {"core_seconds", record.core_seconds},
-          {"measurements", nlohmann::ordered_json::parse(text_of(record.measurements))}};
+  return {record.failure, record.core_seconds, eunoe::to_json(record.measurements)};
 }
 
 RunRecord record_from(const nlohmann::ordered_json &json)
 {
   RunRecord record;
-  record.failure = json.at("failure").get<std::string>();
-  record.core_seconds = json.at("core_seconds").get<double>();
-  for (const auto &m : json.at("measurements"))
+  record.failure = json.at(0).get<std::string>();
+  record.core_seconds = json.at(1).get<double>();
+  for (const auto &m : json.at(2))
     record.measurements.push_back({m.at(0).get<std::string>(), m.at(1).get<int>(),
                                    m.at(2).is_null() ? std::nan("") : m.at(2).get<double>()});
   return record;
@@ -122,39 +108,39 @@ std::vector<RunTable::Row> RunTable::rows() const
   on_first_rank(comm, [&] {
     auto list = nlohmann::ordered_json::array();
     Connection(file).run(
-        "SELECT number, key, engine, experiment, amplitudes, seed, message, \"values\", "
-        "core_seconds FROM runs ORDER BY number",
+        "SELECT number, key, engine, experiment, amplitudes, seed, message, core_seconds, "
+        "\"values\" FROM runs ORDER BY number",
         {}, [&](sqlite3_stmt *s) {
-          const nlohmann::ordered_json record = {
-              {"failure", text_at(s, 6)},
-              {"core_seconds", sqlite3_column_double(s, 8)},
-              {"measurements", nlohmann::ordered_json::parse(text_at(s, 7))}};
-          list.push_back({{"number", sqlite3_column_int64(s, 0)},
-                          {"key", text_at(s, 1)},
-                          {"engine", text_at(s, 2)},
-                          {"experiment", text_at(s, 3)},
-                          {"amplitudes", nlohmann::ordered_json::parse(text_at(s, 4))},
-                          {"seed", sqlite3_column_int64(s, 5)},
-                          {"record", record}});
+          list.push_back({sqlite3_column_int64(s, 0),
+                          text_at(s, 1),
+                          text_at(s, 2),
+                          text_at(s, 3),
+                          nlohmann::ordered_json::parse(text_at(s, 4)),
+                          sqlite3_column_int64(s, 5),
+                          {text_at(s, 6), sqlite3_column_double(s, 7),
+                           nlohmann::ordered_json::parse(text_at(s, 8))}});
         });
     text = list.dump();
   });
   std::vector<Row> result;
   for (const auto &json : nlohmann::ordered_json::parse(broadcast(text, comm)))
-    result.push_back(row_from(json));
+    result.push_back(Row{json.at(0),
+                         json.at(1),
+                         json.at(2),
+                         {json.at(3), json.at(4).get<Amplitudes>(), json.at(5)},
+                         record_from(json.at(6))});
   return result;
 }
 
 void RunTable::store(const Row &row) const
 {
-  const nlohmann::ordered_json amplitudes = row.request.amplitudes;
   Connection(file).run(
       "INSERT OR IGNORE INTO runs (key, engine, experiment, amplitudes, seed, state, message, "
       "\"values\", core_seconds) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)",
-      {row.key, row.engine, row.request.experiment, amplitudes.is_null() ? "{}" : amplitudes.dump(),
-       std::to_string(row.request.seed), row.record.failure.empty() ? "done" : "failed",
-       row.record.failure, text_of(row.record.measurements),
-       std::to_string(row.record.core_seconds)});
+      {row.key, row.engine, row.request.experiment,
+       nlohmann::ordered_json(row.request.amplitudes).dump(), std::to_string(row.request.seed),
+       row.record.failure.empty() ? "done" : "failed", row.record.failure,
+       text_of(row.record.measurements), std::to_string(row.record.core_seconds)});
 }
 
 std::map<std::string, std::string> RunTable::keys() const

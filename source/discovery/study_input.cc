@@ -1,5 +1,4 @@
 #include <eunoe/core/files.h>
-#include <eunoe/core/named_files.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
@@ -9,21 +8,6 @@
 #include <set>
 
 namespace eunoe::discovery {
-
-std::vector<Factor> StudyInput::plain_factors() const
-{
-  std::vector<Factor> plain;
-  for (const Effect &effect : factors)
-    plain.push_back(effect.factor);
-  return plain;
-}
-
-std::size_t StudyInput::n_effects() const
-{
-  return static_cast<std::size_t>(
-      std::count_if(factors.begin(), factors.end(),
-                    [](const Effect &e) { return e.factor.kind == Factor::Kind::effect; }));
-}
 
 std::map<std::string, std::string> StudyInput::identity() const
 {
@@ -39,46 +23,26 @@ std::map<std::string, std::string> StudyInput::identity() const
     if (places.count(place.second) == 0)
       parts["study file"] += describe(place.first, place.second) + value + "\n";
   Problems none;
-  for (const Experiment &experiment : experiments)
+  for (const Experiment &experiment : experiments) {
     parts["case of " + experiment.name()] =
         experiment.make(experiment.overrides({}, {}), none).as_input_file();
-  for (const auto &[name, digest] : digests)
-    parts["files of " + name] = digest;
-  for (const Effect &effect : factors)
-    if (effect.factor.kind == Factor::Kind::effect) {
-      std::string &text = parts["effect " + effect.factor.name];
-      const Factor &f = effect.factor;
+    if (!experiment.named_digests().empty())
+      parts["files of " + experiment.name()] = experiment.named_digests();
+  }
+  for (const Effect &f : factors)
+    if (f.kind == Factor::Kind::effect) {
+      std::string &text = parts["effect " + f.name];
       for (const double number :
            {f.null_value, f.scale, f.lower, f.upper, static_cast<double>(f.sign)}) {
         char exactly[32];
         std::snprintf(exactly, sizeof exactly, "%.17g ", number);
         text += exactly;
       }
-      text += effect.process + "\n";
-      for (const InputEntry &entry : effect.patch.entries)
+      text += f.process + "\n";
+      for (const InputEntry &entry : f.entries)
         text += describe(entry.path, entry.name) + entry.value + "\n";
     }
   return parts;
-}
-
-std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
-                                 Problems &problems)
-{
-  const FileLoader load = [comm](const std::string &path) { return read_file(path, comm); };
-  std::vector<Effect> all;
-  for (const std::string &folder : folders)
-    for (Effect &effect :
-         read_catalogue(folder == "standard" ? standard_catalogue() : folder, problems, load))
-    {
-      const auto same = std::find_if(all.begin(), all.end(), [&](const Effect &e) {
-        return e.factor.name == effect.factor.name;
-      });
-      if (same != all.end())
-        problems.add(effect.file + ":", "has the name of " + same->file + ".", "Rename it.");
-      else
-        all.push_back(std::move(effect));
-    }
-  return all;
 }
 
 StudyInput read_study(const std::string &file, const std::vector<std::string> &overrides,
@@ -102,21 +66,16 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
                     [&](const Experiment &e) { return effect.concerns(e.process_name()); }))
       study.factors.push_back(std::move(effect));
     else
-      study.left_out.push_back(effect.factor.name);
+      study.left_out.push_back(effect.name);
   for (const NuisanceParameters &nuisance : p.nuisances) {
     if (std::any_of(study.factors.begin(), study.factors.end(),
-                    [&](const Effect &e) { return e.factor.name == nuisance.name; }))
+                    [&](const Effect &e) { return e.name == nuisance.name; }))
       problems.add(file + ": nuisance '" + nuisance.name + "'", "has the name of an effect.",
                    "Rename it, or exclude the effect.");
     study.factors.push_back(make_nuisance(nuisance, problems));
   }
   if (problems.empty())
     check_patches(study, problems);
-  if (problems.empty())
-    for (const Experiment &experiment : study.experiments)
-      for (const auto &[place, digest] : named_files(
-               experiment.make(experiment.overrides({}, {}), problems).file_entries(), comm))
-        study.digests[experiment.name()] += digest;
   return study;
 }
 
@@ -129,10 +88,11 @@ void read_data(StudyInput &study, MPI_Comm comm, Problems &problems)
 
 void check_patches(const StudyInput &study, Problems &problems)
 {
-  for (const Effect &effect : study.factors)
+  for (const Effect &f : study.factors)
     for (const Experiment &experiment : study.experiments) {
-      const Factor &f = effect.factor;
-      const double amplitude = f.null_value + (f.sign == Factor::Sign::below ? -f.scale : f.scale);
+      // Of an effect of both signs the scale may fit on one side only.
+      const bool is_above = f.sign != Factor::Sign::below && f.null_value + f.scale <= f.upper;
+      const double amplitude = f.null_value + (is_above ? f.scale : -f.scale);
       Problems found;
       try {
         experiment.make(experiment.overrides(study.factors, {{f.name, amplitude}}), found);
@@ -140,8 +100,8 @@ void check_patches(const StudyInput &study, Problems &problems)
         problems.add("Experiment '" + experiment.name() + "':", error.what(), "");
       }
       for (const Problem &problem : found.all())
-        problems.add((effect.file.empty() ? "Nuisance '" + f.name + "'" : effect.file) +
-                         ", in experiment '" + experiment.name() + "':",
+        problems.add((f.file.empty() ? "Nuisance '" + f.name + "'" : f.file) + ", in experiment '" +
+                         experiment.name() + "':",
                      problem.text(), "");
     }
 }

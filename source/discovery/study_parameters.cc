@@ -130,17 +130,14 @@ void resolve_files(std::vector<InputEntry> &entries, const std::string &file,
                    const bool with_synthetic_data)
 {
   // Defaults first, so that what is written overrides them.
-  InputEntry data, sealed;
-  data.path = {study_section};
-  data.name = "measured data";
-  data.value = StudyParameters().measured_data;
-  sealed.path = {"twin"};
-  sealed.name = "sealed file";
-  sealed.value = SyntheticDataParameters().sealed_file;
-  data.where = sealed.where = file + ":0";
+  const std::string unwritten = file + ":0";
   if (with_synthetic_data)
-    entries.insert(entries.begin(), sealed);
-  entries.insert(entries.begin(), data);
+    entries.insert(
+        entries.begin(),
+        InputEntry{{"twin"}, "sealed file", SyntheticDataParameters().sealed_file, unwritten});
+  entries.insert(
+      entries.begin(),
+      InputEntry{{study_section}, "measured data", StudyParameters().measured_data, unwritten});
   for (InputEntry &entry : entries) {
     if (entry.where.rfind("--set", 0) == 0)
       continue;

@@ -1,10 +1,11 @@
 #include <eunoe/core/files.h>
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/measured_csv.h>
-#include <eunoe/discovery/study_folder.h>
+#include <eunoe/discovery/results.h>
 #include <eunoe/discovery/synthetic_data.h>
 
 #include <boost/algorithm/string.hpp>
@@ -19,6 +20,7 @@ namespace eunoe::discovery {
 
 namespace {
 
+/// A nuisance that only the truth has.
 const std::string time_step_change = "time step of the truth";
 
 /// Normal numbers, the same everywhere: the standard library's distribution is not.
@@ -45,8 +47,8 @@ Amplitudes truth_of(const SyntheticDataParameters &synthetic, const std::vector<
   Amplitudes truth;
   std::vector<std::string> names;
   for (const Effect &effect : factors)
-    if (effect.factor.kind == Factor::Kind::effect)
-      names.push_back(effect.factor.name);
+    if (effect.kind == Factor::Kind::effect)
+      names.push_back(effect.name);
   const std::string where = "subsection 'twin' / entry 'effects'";
   for (const std::string &text : synthetic.effects) {
     const std::size_t colon = text.find(':');
@@ -81,17 +83,6 @@ std::vector<Experiment> experiments_of(const StudyParameters &study, MPI_Comm co
   if (!problems.empty())
     throw UserError(problems);
   return experiments;
-}
-
-/// A nuisance that changes the time step of the truth.
-Effect make_time_step_change()
-{
-  NuisanceParameters p;
-  p.name = time_step_change;
-  p.entries = {"simulation control/time step"};
-  p.value = "${base * (1 + amplitude)}";
-  Problems none;
-  return make_nuisance(p, none);
 }
 
 /// Readings of an instrument with noise, from simulated repeats.
@@ -139,15 +130,6 @@ std::vector<MeasuredPoint> measure(const std::vector<DataPoint> &points,
   return rows;
 }
 
-void refuse_existing(const std::string &file, MPI_Comm comm)
-{
-  int rank;
-  MPI_Comm_rank(comm, &rank);
-  std::error_code failure;
-  if (!broadcast(rank == 0 && std::filesystem::exists(file, failure) ? "yes" : "", comm).empty())
-    throw UserError(file + " is there already. Remove it, or name another file.");
-}
-
 /// Refuses observables that no experiment has, before any run is made.
 void check_observables(const std::vector<std::string> &wanted,
                        const std::vector<Experiment> &experiments)
@@ -184,9 +166,9 @@ Truth draw_truth(const SyntheticDataParameters &synthetic, const std::vector<Eff
   truth.sealed["effects"] = truth.amplitudes;
   truth.sealed["nuisances"] = nlohmann::ordered_json::object();
   for (const Effect &factor : factors)
-    if (factor.factor.kind == Factor::Kind::nuisance && synthetic.jitter_nuisances)
-      truth.sealed["nuisances"][factor.factor.name] = truth.amplitudes[factor.factor.name] =
-          factor.factor.prior_deviation * normal();
+    if (factor.kind == Factor::Kind::nuisance && synthetic.jitter_nuisances)
+      truth.sealed["nuisances"][factor.name] = truth.amplitudes[factor.name] =
+          factor.prior_deviation * normal();
   truth.amplitudes[time_step_change] = synthetic.time_step_factor - 1.;
   truth.sealed["time_step_factor"] = synthetic.time_step_factor;
   truth.sealed["overrides"] = synthetic.overrides;
@@ -237,13 +219,19 @@ void make_synthetic_data(const StudyParameters &study, const std::vector<Effect>
 {
   const SyntheticDataParameters &synthetic = study.synthetic;
   const std::string data_file = study.measured_data, sealed_file = synthetic.sealed_file;
-  refuse_existing(data_file, comm);
-  refuse_existing(sealed_file, comm);
+  on_first_rank(comm, [&] {
+    std::error_code failure;
+    for (const std::string &file : {data_file, sealed_file})
+      if (std::filesystem::exists(file, failure))
+        throw UserError(file + " is there already. Remove it, or name another file.");
+  });
 
   NormalNumbers normal(synthetic.seed);
   const Truth truth = draw_truth(synthetic, factors, normal);
   std::vector<Effect> changes = factors;
-  changes.push_back(make_time_step_change());
+  Problems none;
+  changes.push_back(make_nuisance(
+      {time_step_change, {"simulation control/time step"}, "${base * (1 + amplitude)}"}, none));
   const std::vector<Experiment> experiments = experiments_of(study, comm);
   check_observables(synthetic.observables, experiments);
   for (const std::string &file : {data_file, sealed_file})

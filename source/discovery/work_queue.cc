@@ -45,7 +45,6 @@ void WorkQueue::answer(const int source)
 {
   Question question;
   MPI_Recv(&question, 2, MPI_INT, source, tag_ask, comm, MPI_STATUS_IGNORE);
-  n_finished += question.has_finished;
   if (question.leaves != 0) {
     next = n_tasks;
     ++n_dismissed;
@@ -56,7 +55,7 @@ void WorkQueue::answer(const int source)
     ++n_dismissed;
   MPI_Send(&task, 1, MPI_INT, source, tag_answer, comm);
   if (question.has_finished != 0)
-    on_progress(n_finished);
+    on_progress(++n_finished);
 }
 
 void WorkQueue::serve()
@@ -76,9 +75,8 @@ int WorkQueue::take()
 {
   int task = none_left;
   if (rank == 0) {
-    n_finished += has_finished ? 1 : 0;
     if (has_finished)
-      on_progress(n_finished);
+      on_progress(++n_finished);
     serve();
     task = next < n_tasks ? next++ : none_left;
   } else if (is_leader()) {

@@ -27,9 +27,9 @@ EUNOE_MPI_TEST()
   check("at least 14 effects", study.factors.size() >= 14);
   std::vector<std::string> names;
   for (const Effect &effect : study.factors)
-    names.push_back(effect.factor.name);
+    names.push_back(effect.name);
   for (const Effect &effect : study.factors) {
-    const Factor &f = effect.factor;
+    const Factor &f = effect;
     bool null_is_base = true, known = true;
     int n_changed = 0, n_concerned = 0;
     for (const Experiment &experiment : study.experiments) {

@@ -1,6 +1,6 @@
 // Values of patched entries: expressions of the amplitude and of the case's own value.
 
-#include <eunoe/discovery/patch.h>
+#include <eunoe/discovery/catalogue.h>
 
 #include "../tests.h"
 
@@ -31,7 +31,7 @@ EUNOE_TEST()
 
   const std::vector<std::string> path = {"a", "b"};
   EntryValues values = {{{path, "c"}, "2"}};
-  discovery::Patch patch;
+  discovery::Effect patch;
   patch.entries = {{path, "", "", "x.prm:1"}, {path, "c", "${base * amplitude}", "x.prm:2"}};
   std::vector<std::string> overrides;
   patch.apply(3., values, overrides);

@@ -1,7 +1,6 @@
 // The error messages for bad studies, effects and measurements; and files that are written can be
 // read back.
 
-#include <eunoe/core/files.h>
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
 
@@ -89,19 +88,40 @@ void effects()
          "subsection effect\n set mechanism = m\n set source = s\n set range = 0, 1\n"
          " set null value = -1\n set scale = 3\nend\nset process = ${amplitude}\n");
   Problems problems;
-  const std::vector<Effect> all =
-      read_catalogue(folder + "/effects", problems,
-                     [](const std::string &path) { return read_file(path, MPI_COMM_WORLD); });
+  const std::vector<Effect> all = read_effects({folder + "/effects"}, MPI_COMM_WORLD, problems);
   check("three effects", all.size() == 3 && problems.empty());
   select(all, {"all"}, {"bonce"}, "study.prm", problems);
   select(all, {"humidity"}, {}, "study.prm", problems);
   print_problems("selection", problems);
   check("all but one", select(all, {"all"}, {"tilt"}, "study.prm", problems).size() == 2);
   try {
-    read_catalogue(folder + "/no_such_folder", problems, {});
+    read_effects({folder + "/no_such_folder"}, MPI_COMM_WORLD, problems);
   } catch (const UserError &error) {
     print(std::string(error.what()).substr(folder.size() + 1));
   }
+  Problems none;
+  StudyInput study;
+  study.experiments = experiments();
+  study.factors = {read_effect(
+      "subsection effect\n set mechanism = m\n set source = s\n set range = -0.55, 0.2\n"
+      " set scale = 0.5\n set sign = both\nend\nsubsection lagrangian physical properties\n"
+      " subsection particle type 0\n"
+      "  set restitution coefficient particles = ${base + amplitude}\n end\nend\n",
+      "effects/dull.prm", none)};
+  check_patches(study, none);
+  check("a scale that fits on one side only is tried there", none.empty());
+}
+
+void doubts()
+{
+  Problems problems;
+  ExperimentParameters box;
+  box.name = "box";
+  box.case_file = folder + "/drop.prm";
+  box.overrides = {"drop/seed = 3", "simulation control/seed = 5"};
+  const Experiment experiment(box, MPI_COMM_WORLD, problems);
+  check("a doubt about a case is told once",
+        problems.empty() && problems.warnings().empty() && experiment.doubts().size() == 1);
 }
 
 void measurements()
@@ -148,5 +168,6 @@ EUNOE_MPI_TEST()
 {
   studies();
   effects();
+  doubts();
   measurements();
 }

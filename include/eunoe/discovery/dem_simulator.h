@@ -2,11 +2,14 @@
 #define eunoe_discovery_dem_simulator_h
 
 #include <eunoe/core/log.h>
-#include <eunoe/discovery/case_maker.h>
+#include <eunoe/discovery/experiment.h>
 #include <eunoe/discovery/run_table.h>
 #include <eunoe/discovery/work_queue.h>
 
 #include <nlohmann/json.hpp>
+
+#include <limits>
+#include <set>
 
 namespace eunoe::discovery {
 
@@ -56,20 +59,32 @@ public:
   const nlohmann::ordered_json &ledger() const { return runs; }
 
 private:
+  const Experiment &find(const std::string &experiment) const;
+  /// Whether the study has the experiment and all factors of a request.
+  bool is_of_study(const RunRequest &request) const;
+  /// Collective.
+  StudyCase case_of(const RunRequest &request) const
+  {
+    return find(request.experiment).make_case(factors, request, comm);
+  }
+  /// The key of the case of a request, which is made only if no recipe tells it; collective.
+  std::string key_of(const RunRequest &request);
   RunRecord simulate(const StudyCase &one);
   void serve_and_check_stop(unsigned long long step);
-  void simulate_all(const std::vector<StudyCase> &cases);
+  /// Runs those cases of which there is no result, each once.
+  /// @return their keys
+  std::set<std::string> simulate_missing(const std::vector<StudyCase> &cases);
   void adopt_earlier_runs();
   void adopt(const std::vector<const RunTable::Row *> &rows);
   std::set<std::string> find_changes(const std::map<std::string, const RunTable::Row *> &samples);
   /// Why a run has no result; empty if it has one.
   std::string failure_of(const RunRequest &request, const RunRecord &record) const;
   RunResult result(const RunRequest &request, const RunRecord &record) const;
+  /// Notes a request that has an answer now.
   void add_to_ledger(const RunRequest &request, const std::string &key, bool was_cached);
 
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
-  CaseMaker maker;
   RunTable table;
   std::vector<RunTable::Row> earlier; ///< rows that were there at the start
   std::int64_t last_known = std::numeric_limits<std::int64_t>::max();
@@ -78,8 +93,9 @@ private:
   Log &log;
   std::map<std::string, std::vector<DataPoint>> known_points;
   std::set<DataPoint> rare, required;
-  std::map<std::string, RunRecord> records; ///< by key
-  std::map<std::string, std::string> keys;  ///< by what was requested
+  std::map<std::string, RunRecord> records;                    ///< by key
+  std::map<std::string, std::string> keys;                     ///< by what was requested
+  std::map<std::string, std::string> keys_by_recipe, new_keys; ///< the new ones not in the table
   std::uint64_t made = 0, cached = 0;
   nlohmann::ordered_json runs = nlohmann::ordered_json::array();
 };

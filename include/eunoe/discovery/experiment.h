@@ -10,6 +10,19 @@
 
 namespace eunoe::discovery {
 
+class Experiment;
+
+/// A request as it is run.
+struct StudyCase
+{
+  const Experiment *experiment;
+  std::vector<std::string> overrides;
+  std::string key;     ///< hash of the complete input, with the files that it names
+  std::string problem; ///< why it cannot be run; empty if it can
+  bool names_files = false;
+  RunRequest request;
+};
+
 /// An experiment of a study: its base case, and the cases that come from it. All files are read
 /// when it is made, so that afterwards each rank can make cases on its own.
 class Experiment
@@ -24,6 +37,8 @@ public:
   const std::string &process_name() const { return process; }
   const RunEstimate &estimate() const { return cost; }
   const std::vector<ObservableDescription> &observables() const { return described; }
+  /// Digests of the files that the base case names.
+  const std::string &named_digests() const { return digests; }
   /// Warnings about the base case, which do not forbid the study.
   const std::vector<Problem> &doubts() const { return doubtful; }
 
@@ -34,27 +49,33 @@ public:
   std::vector<std::string> overrides(const std::vector<Effect> &factors,
                                      const Amplitudes &amplitudes) const;
 
-  /// Overrides that change all seeds and make a run silent, to be put behind those of the model.
-  std::vector<std::string> run_overrides(std::uint32_t seed) const;
+  /// The case of a request. All ranks run it, or none if one of them cannot; collective.
+  StudyCase make_case(const std::vector<Effect> &factors, const RunRequest &request,
+                      MPI_Comm comm) const;
 
-  /// All from which a case with these overrides is made.
-  std::string recipe(const std::vector<std::string> &overrides) const;
+  /// Hash of all from which the case of a request is made, as making it takes milliseconds. Throws
+  /// a UserError if a patch does not fit.
+  std::string recipe(const std::vector<Effect> &factors, const RunRequest &request) const;
 
   /// The parameters of a case with these overrides.
   Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
 
 private:
-  /// Overrides that make a run silent.
-  static std::vector<std::string> quiet_overrides();
+  /// Overrides of the case of a request, which is silent and has its own seeds.
+  std::vector<std::string> run_overrides(const std::vector<Effect> &factors,
+                                         const RunRequest &request) const;
 
   ExperimentParameters parameters;
-  std::string process;
+  std::string process, digests;
   std::vector<ObservableDescription> described;
   RunEstimate cost;
   std::vector<Problem> doubtful;
   std::map<std::string, std::string> texts; ///< of the case file and those that it is made of
   EntryValues base;                         ///< all entries of the base case
 };
+
+/// A text that is the same for equal requests.
+std::string text_of(const RunRequest &request);
 
 /// Makes the factor for a nuisance of the study. Entries that are none go to @p problems.
 Effect make_nuisance(const NuisanceParameters &parameters, Problems &problems);

@@ -16,11 +16,8 @@ struct StudyInput
   std::vector<std::string> left_out; ///< names of effects that no experiment can have
   MeasuredData data;
   std::string data_text; ///< the whole table
-  /// Digests of the files that a case names, by experiment.
-  std::map<std::string, std::string> digests;
 
-  std::vector<Factor> plain_factors() const;
-  std::size_t n_effects() const;
+  std::vector<Factor> plain_factors() const { return {factors.begin(), factors.end()}; }
 
   /// All that decides the study's results, by name.
   std::map<std::string, std::string> identity() const;
@@ -33,10 +30,6 @@ StudyInput read_study(const std::string &file, const std::vector<std::string> &o
 
 /// Reads its measured data.
 void read_data(StudyInput &study, MPI_Comm comm, Problems &problems);
-
-/// Reads the effects of folders, "standard" for those that come with the program; collective.
-std::vector<Effect> read_effects(const std::vector<std::string> &folders, MPI_Comm comm,
-                                 Problems &problems);
 
 /// Notes effects and nuisances whose patches do not fit the cases at a clear amplitude.
 void check_patches(const StudyInput &study, Problems &problems);
