@@ -1,5 +1,6 @@
 #include <eunoe/core/first_rank.h>
 #include <eunoe/core/problems.h>
+#include <eunoe/core/sha256.h>
 #include <eunoe/core/stop_request.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
@@ -25,6 +26,18 @@ std::vector<std::string> parts_of(const RunRequest &request)
     parts.push_back(name);
   return parts;
 }
+
+/// Recipes of keys, and of keys of the complete input.
+///@{
+std::string recipe_of(const std::string &engine, const std::string &made_from)
+{
+  return sha256("entries that are not defaults\n" + engine + made_from);
+}
+std::string old_recipe_of(const std::string &engine, const std::string &made_from)
+{
+  return sha256(engine + made_from);
+}
+///@}
 
 /// What a run has measured at a data point; NaN if nothing.
 double value_at(const DataPoint &point, const RunRecord &record)
@@ -67,21 +80,51 @@ bool DemSimulator::is_of_study(const RunRequest &request) const
          });
 }
 
-std::string DemSimulator::key_of(const RunRequest &request)
+void DemSimulator::remember(const StudyCase &one)
 {
-  std::string recipe;
-  try {
-    recipe = find(request.experiment).recipe(factors, request);
-  } catch (const UserError &) {
-    return case_of(request).key;
-  }
-  if (const auto known = keys_by_recipe.find(recipe); known != keys_by_recipe.end())
-    return known->second;
-  const StudyCase one = case_of(request);
   // Files that a case names may change without their names.
-  if (one.problem.empty() && !one.names_files)
-    keys_by_recipe[recipe] = new_keys[recipe] = one.key;
-  return one.key;
+  if (!one.problem.empty() || one.names_files)
+    return;
+  const std::string made_from = one.experiment->recipe(factors, one.request);
+  for (const auto &[recipe, key] : {std::pair(recipe_of(engine_digest(), made_from), one.key),
+                                    {old_recipe_of(engine_digest(), made_from), one.old_key}})
+    if (keys_by_recipe[recipe] != key)
+      keys_by_recipe[recipe] = new_keys[recipe] = key;
+}
+
+void DemSimulator::store_new_keys()
+{
+  if (!new_keys.empty())
+    table.store_keys(std::exchange(new_keys, {}));
+}
+
+std::string DemSimulator::key_of(const RunTable::Row &row)
+{
+  std::string made_from;
+  try {
+    made_from = find(row.request.experiment).recipe(factors, row.request);
+  } catch (const UserError &) {
+    const std::string key = case_of(row.request).key;
+    return key == row.key ? key : "";
+  }
+  const auto by_recipe = [&](const std::string &recipe) {
+    const auto found = keys_by_recipe.find(recipe);
+    return found == keys_by_recipe.end() ? "" : found->second;
+  };
+  std::string key = by_recipe(recipe_of(engine_digest(), made_from)), old_key;
+  if (key.empty()) {
+    const StudyCase one = case_of(row.request);
+    remember(one);
+    key = one.key;
+    old_key = one.old_key;
+  }
+  // Keys of the complete input change with the program. Then its notes may tell that it made the
+  // row from the same files and overrides.
+  const bool is_same = row.key == key || row.key == old_key ||
+                       row.key == by_recipe(old_recipe_of(engine_digest(), made_from)) ||
+                       row.key == by_recipe(recipe_of(row.engine, made_from)) ||
+                       row.key == by_recipe(old_recipe_of(row.engine, made_from));
+  return is_same ? key : "";
 }
 
 /// Runs simulations of another engine again, as far as this one has not made them.
@@ -121,13 +164,13 @@ void DemSimulator::adopt(const std::vector<const RunTable::Row *> &rows)
           !is_first && cost(row) < cost(sample->second))
         sample->second = row;
   const std::set<std::string> changed = find_changes(samples);
-  std::vector<std::int64_t> adopted;
+  std::vector<const RunTable::Row *> adopted;
   for (const RunTable::Row *const row : rows) {
     const std::vector<std::string> parts = parts_of(row->request);
     if (std::any_of(parts.begin(), parts.end(),
                     [&](const std::string &part) { return changed.count(part) > 0; }))
       continue;
-    adopted.push_back(row->number);
+    adopted.push_back(row);
     records.emplace(row->key, row->record);
   }
   table.adopt(adopted, engine_digest());
@@ -139,13 +182,30 @@ void DemSimulator::adopt(const std::vector<const RunTable::Row *> &rows)
 
 void DemSimulator::adopt_earlier_runs()
 {
+  std::vector<const RunTable::Row *> renamed;
   std::map<std::string, std::vector<const RunTable::Row *>> others;
-  for (const RunTable::Row &row : earlier)
-    // A failure may have been the engine's. The case may have changed since, or belong to another
-    // study.
-    if (row.engine != engine_digest() && row.record.failure.empty() && is_of_study(row.request) &&
-        key_of(row.request) == row.key)
-      others[row.engine].push_back(&row);
+  for (RunTable::Row &row : earlier) {
+    if (row.key.empty())
+      continue;
+    // The case may have changed since, or belong to another study.
+    const std::string key = is_of_study(row.request) ? key_of(row) : "";
+    const bool is_renamed = std::exchange(row.key, key) != key;
+    if (key.empty())
+      continue;
+    if (row.engine != engine_digest()) {
+      // A failure may have been the engine's.
+      if (row.record.failure.empty())
+        others[row.engine].push_back(&row);
+    } else if (is_renamed && records.emplace(key, row.record).second)
+      renamed.push_back(&row);
+  }
+  store_new_keys();
+  if (!renamed.empty()) {
+    table.adopt(renamed, engine_digest());
+    log.line(std::to_string(renamed.size()) +
+             " runs of this version of the engine have keys of an earlier version of the program, "
+             "and are used.");
+  }
   for (const auto &[engine, rows] : others)
     adopt(rows);
 }
@@ -166,20 +226,14 @@ std::vector<std::pair<RunRequest, RunResult>> DemSimulator::known(const std::str
   std::set<std::string> given; // a row of each engine may have it
   for (const RunTable::Row &row : earlier) {
     if (row.request.experiment != experiment || row.number > last_known ||
-        records.count(row.key) == 0 || !is_of_study(row.request))
+        records.count(row.key) == 0)
       continue;
     const std::string text = text_of(row.request);
-    if (keys.count(text) == 0) {
-      // The case may have changed since, or belong to another study.
-      if (key_of(row.request) != row.key)
-        continue;
+    if (keys.count(text) == 0)
       add_to_ledger(row.request, row.key, true);
-    }
     if (keys.at(text) == row.key && given.insert(text).second)
       result.emplace_back(row.request, this->result(row.request, records.at(row.key)));
   }
-  if (!new_keys.empty())
-    table.store_keys(std::exchange(new_keys, {}));
   return result;
 }
 
@@ -380,6 +434,9 @@ std::vector<RunResult> DemSimulator::run(const std::vector<RunRequest> &requests
   for (const RunRequest &request : requests)
     if (keys.count(text_of(request)) == 0 && texts.insert(text_of(request)).second)
       unknown.push_back(case_of(request));
+  for (const StudyCase &one : unknown)
+    remember(one);
+  store_new_keys();
   const std::set<std::string> begun = simulate_missing(unknown);
   for (const StudyCase &one : unknown)
     add_to_ledger(one.request, one.key, begun.count(one.key) == 0);

@@ -3,7 +3,6 @@
 #include <eunoe/core/named_files.h>
 #include <eunoe/core/quoted_text.h>
 #include <eunoe/core/sha256.h>
-#include <eunoe/core/version.h>
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -21,6 +20,22 @@ const std::vector<std::string> quiet_overrides = {"simulation control/output pat
                                                   "simulation control/log frequency = 0",
                                                   "restart/checkpoint = false",
                                                   "restart/restart = false"};
+
+/// What tells cases apart. Entries that have their defaults do not count, nor do comments, so that
+/// a program with more entries, or other words about them, knows its runs again.
+std::string identity_of(const Parameters &parameters)
+{
+  const EntryValues values = values_in(parameters.as_input_file());
+  std::string text;
+  for (const auto &[place, written] : parameters.changed_entries()) {
+    for (const std::string &section : place.first)
+      text += section + "/";
+    // One that was set by another of its names is not in the complete input.
+    const auto value = values.find(place);
+    text += place.second + " = " + (value != values.end() ? value->second : written) + "\n";
+  }
+  return text;
+}
 
 } // namespace
 
@@ -118,7 +133,7 @@ StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunReq
   StudyCase one;
   one.experiment = this;
   one.request = request;
-  std::string input;
+  std::string input, identity;
   EntryValues naming_files;
   try {
     // Ranks may see different files.
@@ -127,31 +142,33 @@ StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunReq
       Problems found;
       const Parameters made = make(one.overrides, found);
       input = made.as_input_file();
+      identity = identity_of(made);
       naming_files = made.file_entries();
       if (!found.empty())
         throw UserError(found);
     });
   } catch (const UserError &error) {
     one.problem = error.what();
-    one.key = sha256(one.problem + text_of(request));
+    one.key = one.old_key = sha256(one.problem + text_of(request));
     return one;
   }
   std::string files;
   for (const auto &[place, digest] : named_files(naming_files, comm))
     files += digest;
   one.names_files = !files.empty();
-  one.key = sha256(files + input);
+  one.key = sha256(files + identity);
+  one.old_key = sha256(files + input);
   return one;
 }
 
 std::string Experiment::recipe(const std::vector<Effect> &factors, const RunRequest &request) const
 {
-  std::string all = engine_digest(); // the engine reads the parameters
+  std::string all;
   for (const auto &[file, text] : texts)
     all += file + "\n" + text + "\n";
   for (const std::string &line : run_overrides(factors, request))
     all += line + "\n";
-  return sha256(all);
+  return all;
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const

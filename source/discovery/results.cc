@@ -211,6 +211,10 @@ void write_answer(const StudyInput &study, const Discovery &discovery,
                              {"unit", o.unit},
                              {"index", o.index_meaning},
                              {"text", o.text}});
+  auto &experiments = answer["experiments"];
+  for (const Experiment &experiment : study.experiments)
+    experiments.push_back(
+        {{"name", experiment.name()}, {"core_seconds", experiment.estimate().core_seconds()}});
   double core_seconds = 0.;
   for (const auto &run : simulator.ledger())
     core_seconds += run.at("core_seconds").get<double>();

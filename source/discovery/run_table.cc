@@ -166,14 +166,14 @@ void RunTable::store_keys(const std::map<std::string, std::string> &keys) const
   });
 }
 
-void RunTable::adopt(const std::vector<std::int64_t> &rows, const std::string &engine) const
+void RunTable::adopt(const std::vector<const Row *> &rows, const std::string &engine) const
 {
   on_first_rank(comm, [&] {
     Connection connection(file);
     connection.run("BEGIN IMMEDIATE");
-    for (const std::int64_t row : rows)
-      connection.run("UPDATE OR IGNORE runs SET engine = ? WHERE number = ?",
-                     {engine, std::to_string(row)});
+    for (const Row *const row : rows)
+      connection.run("UPDATE OR IGNORE runs SET engine = ?, key = ? WHERE number = ?",
+                     {engine, row->key, std::to_string(row->number)});
     connection.run("COMMIT");
   });
 }

@@ -1,7 +1,8 @@
 // A campaign of simulations: the same results on any number of ranks, each run made once, kept in
-// a table and found again, also by another version of the engine if it gives the same bits; runs
+// a table and found again, also by another version of the program if it gives the same bits; runs
 // that fail; seeds; null values.
 
+#include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/dem_simulator.h>
 #include <eunoe/discovery/study_input.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 
 namespace {
 
@@ -19,7 +21,7 @@ using namespace eunoe::discovery;
 
 const std::string folder = DISCOVERY_TESTS;
 const std::string table = "campaign.sqlite", table_alone = "campaign_alone.sqlite",
-                  table_changed = "campaign_changed.sqlite";
+                  table_changed = "campaign_changed.sqlite", table_later = "campaign_later.sqlite";
 
 /// One row per run; the row of a failed run is empty.
 Numbers numbers(const std::vector<RunResult> &results)
@@ -177,11 +179,12 @@ void run_from_table(const Setting &setting, const std::vector<RunResult> &first,
 /// Gives all rows to another engine.
 void rename_engine(const RunTable &rows, const std::string &engine)
 {
-  std::vector<std::int64_t> numbers;
-  for (const RunTable::Row &row : rows.rows())
+  const std::vector<RunTable::Row> all = rows.rows();
+  std::vector<const RunTable::Row *> own;
+  for (const RunTable::Row &row : all)
     if (row.engine == engine_digest())
-      numbers.push_back(row.number);
-  rows.adopt(numbers, engine);
+      own.push_back(&row);
+  rows.adopt(own, engine);
 }
 
 /// Rows of another engine are used if samples of them give the same bits.
@@ -216,28 +219,135 @@ void run_after_a_change(const Setting &setting, const std::vector<RunResult> &fi
   check("and a study is told of each run once", known.size() == 5, std::to_string(known.size()));
 }
 
+/// Copies the rows of this engine into a new table, each changed.
+void copy_rows(const std::string &to, const MPI_Comm comm,
+               const std::function<void(RunTable::Row &)> &change)
+{
+  if (is_first_rank())
+    std::filesystem::remove(to);
+  MPI_Barrier(comm);
+  RunTable copy(to, comm);
+  copy.open();
+  for (RunTable::Row row : RunTable(table, comm).rows()) {
+    if (row.engine != engine_digest())
+      continue;
+    change(row);
+    if (is_first_rank())
+      copy.store(row);
+  }
+  MPI_Barrier(comm);
+}
+
+/// Changes the last bits of what a run with one effect has measured.
+void change_tilt(RunTable::Row &row)
+{
+  if (row.request.amplitudes.count("tilt") > 0)
+    for (Measurement &m : row.record.measurements)
+      m.value *= 1. + 1e-15;
+}
+
 /// Where an engine has changed one effect, the runs with that effect are made again.
 void run_after_a_change_of_an_effect(const Setting &setting, const std::vector<RunResult> &first,
                                      Log &log)
 {
-  const RunTable before(table, setting.comm);
-  RunTable changed(table_changed, setting.comm);
-  changed.open();
-  for (RunTable::Row row : before.rows()) {
-    if (row.engine != engine_digest())
-      continue;
+  copy_rows(table_changed, setting.comm, [](RunTable::Row &row) {
     row.engine = "an engine with another tilt";
-    if (row.request.amplitudes.count("tilt") > 0)
-      for (Measurement &m : row.record.measurements)
-        m.value *= 1. + 1e-15;
-    if (is_first_rank())
-      changed.store(row);
-  }
-  MPI_Barrier(setting.comm);
+    change_tilt(row);
+  });
   DemSimulator simulator(setting.experiments, setting.effects, table_changed, 1, setting.comm, log);
   simulator.find_data_points(1);
   check("what has changed is not adopted", simulator.run(requests) == first);
   check_runs("and the rest is", simulator, 6);
+}
+
+const RunRequest second_packing = {"box", {}, 2}, tilted = {"box", {{"tilt", 1.}}, 3},
+                 tilted_again = {"box", {{"tilt", 1.}}, 4};
+
+/// Entries that are new, and other words about entries, do not change what a case is.
+void run_by_a_later_program(const MPI_Comm comm, const std::vector<RunResult> &first, Log &log)
+{
+  const std::string engine = "an earlier engine";
+  DropSection::is_later = true;
+  const Setting setting = read_setting(comm);
+  copy_rows(table_later, comm, [&](RunTable::Row &row) { row.engine = engine; });
+  {
+    DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, comm, log);
+    simulator.find_data_points(1);
+    check_runs("a program with more entries runs samples again", simulator, 4);
+    simulator.run({tilted_again});
+    check("and adopts the rest", simulator.run(requests) == first && simulator.n_runs() == 6);
+  }
+  copy_rows(table_later, comm, [&](RunTable::Row &row) {
+    row.engine = engine;
+    change_tilt(row);
+  });
+  {
+    DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, comm, log);
+    simulator.find_data_points(1);
+    simulator.run({second_packing});
+    check_runs("where the samples give the same bits", simulator, 4);
+    simulator.run({tilted_again});
+    check_runs("and nothing else", simulator, 5);
+  }
+  DropSection::is_later = false;
+}
+
+/// A default that has changed does not change the key, but the bits.
+void run_with_another_default(const MPI_Comm comm, Log &log)
+{
+  copy_rows(table_later, comm, [](RunTable::Row &row) { row.engine = "an earlier engine"; });
+  DropSection::usual_duration = 0.05003;
+  const Setting setting = read_setting(comm);
+  DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, comm, log);
+  simulator.find_data_points(1);
+  simulator.run({second_packing});
+  check_runs("with another default nothing is adopted", simulator, 5);
+  DropSection::usual_duration = 0.05;
+}
+
+/// Earlier versions of the program took the hash of the complete input for the key.
+void find_old_keys(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+{
+  const auto experiment_of = [&](const RunRequest &request) -> const Experiment & {
+    return setting.experiments[request.experiment == "gentle" ? 1 : 0];
+  };
+  const auto case_of = [&](const RunRequest &request) {
+    return experiment_of(request).make_case(setting.effects, request, setting.comm);
+  };
+  copy_rows(table_later, setting.comm,
+            [&](RunTable::Row &row) { row.key = case_of(row.request).old_key; });
+  for (int start = 0; start < 2; ++start) {
+    DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, setting.comm, log);
+    simulator.find_data_points(1);
+    check("runs of this engine are found by their old keys", simulator.run(requests) == first);
+    check_runs("without any sample", simulator, 0);
+  }
+  for (const RunTable::Row &row : RunTable(table_later, setting.comm).rows())
+    if (row.key != case_of(row.request).key)
+      check("from then on they have today's", false, text_of(row.request));
+
+  // Of another engine and other words about entries, the files and overrides that it has noted
+  // tell what a row is of; this one has noted all but one.
+  const std::string engine = "an earlier engine";
+  std::map<std::string, std::string> notes;
+  copy_rows(table_later, setting.comm, [&](RunTable::Row &row) {
+    row.engine = engine;
+    row.key = case_of(row.request).old_key;
+    if (text_of(row.request) != text_of(second_packing))
+      notes[sha256(engine + experiment_of(row.request).recipe(setting.effects, row.request))] =
+          row.key;
+  });
+  RunTable(table_later, setting.comm).store_keys(notes);
+  DropSection::is_later = true;
+  const Setting later = read_setting(setting.comm);
+  DemSimulator simulator(later.experiments, later.effects, table_later, 1, setting.comm, log);
+  simulator.find_data_points(1);
+  check_runs("what another program has noted is tried", simulator, 4);
+  simulator.run({tilted, tilted_again});
+  check_runs("and adopted", simulator, 4);
+  simulator.run({second_packing});
+  check_runs("and nothing that may be of another case", simulator, 5);
+  DropSection::is_later = false;
 }
 
 } // namespace
@@ -247,7 +357,7 @@ EUNOE_MPI_TEST()
   const MPI_Comm comm = MPI_COMM_WORLD;
   Log log(comm, true);
   if (is_first_rank())
-    for (const std::string &old : {table, table_alone, table_changed})
+    for (const std::string &old : {table, table_alone})
       std::filesystem::remove(old);
   MPI_Barrier(comm);
 
@@ -256,6 +366,13 @@ EUNOE_MPI_TEST()
   run_from_table(setting, first, log);
   run_after_a_change(setting, first, log);
   run_after_a_change_of_an_effect(setting, first, log);
+  {
+    DemSimulator simulator(setting.experiments, setting.effects, table, 1, comm, log);
+    simulator.run({tilted, tilted_again});
+  }
+  run_by_a_later_program(comm, first, log);
+  run_with_another_default(comm, log);
+  find_old_keys(setting, first, log);
   find_rare_points(setting, log);
   lack_a_data_point(setting, log);
 }

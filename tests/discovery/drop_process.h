@@ -25,9 +25,13 @@ public:
     declare::enter(prm, "drop");
     declare::count(prm, "number", n_particles, "Number of particles.", 1);
     declare::count(prm, "seed", seed, "Seed of their places.");
-    declare::not_negative(prm, "duration", duration, "Time at which all is measured (s).");
+    declare::not_negative(prm, "duration", duration,
+                          is_later ? "Time of the measurement (s)."
+                                   : "Time at which all is measured (s).");
     declare::not_negative(prm, "largest speed", largest_speed,
                           "Above it the run breaks off (m/s).");
+    if (is_later)
+      declare::not_negative(prm, "gust", gust, "Speed of a gust that does not blow yet (m/s).");
     declare::leave(prm);
   }
   void check_with(const Parameters &, const ParameterCheck &check) const override
@@ -58,8 +62,13 @@ public:
             {"speed", "m/s", "0", "Root mean square of the speeds."}};
   }
 
+  /// Whether this is a later version of the program, with more entries and other words about them;
+  /// and a default, which may differ from version to version.
+  inline static bool is_later = false;
+  inline static double usual_duration = 0.05;
+
   unsigned int n_particles = 48, seed = 1;
-  double duration = 0.05, largest_speed = 10.;
+  double duration = usual_duration, largest_speed = 10., gust = 0.;
 };
 
 class Drop : public Process

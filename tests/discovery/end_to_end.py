@@ -132,6 +132,7 @@ def check_answer(folder: Path) -> None:
     size = content["amplitudes"][0]
     assert size["lower"] < 0.7 < size["upper"] < 3. * size["lower"], size
     assert content["provenance"]["sha256"].keys() >= {"measured data", "case of box", "effect tilt"}
+    assert {row["name"]: row["core_seconds"] > 0. for row in content["experiments"]} == {"box": True, "short": True}
     ledger = content["ledger"]
     assert len(ledger) == content["simulations"]["made_now"] + content["simulations"]["from_table"]
     assert content["learning curve"][-1]["first"] == "tilt"

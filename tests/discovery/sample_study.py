@@ -80,11 +80,14 @@ def make_content(verdict: str) -> dict:
                              "confounders": [], "source": "tests"} for name, scale in SCALES.items()]
     content["observables"] = [{"experiment": e, "name": o, "unit": "1", "index": "", "text": ""}
                               for e, o in {c[:2] for c in CELLS} | {("thick", "LRD")}]
+    content["experiments"] = [{"name": "layers", "core_seconds": 123.4}, {"name": "heap", "core_seconds": 4.5},
+                              {"name": "thick", "core_seconds": 150.}]
     content["nuisances"] = [{"nuisance": "friction of walls", "value": 0.0213, "prior deviations": 0.71}]
     content["provenance"] = {"version": "0"}
     content["simulations"] = {"made_now": 10, "from_table": 5, "core_hours": 0.2}
-    content["ledger"] = [{"experiment": "layers", "amplitudes": {"cohesion": 3e-4}, "seed": 1, "key": "k",
-                          "cached": False, "core_seconds": 1., "failure": "a <particle> went wrong"}]
+    run = {"experiment": "layers", "key": "k", "cached": False, "core_seconds": 1.}
+    content["ledger"] = [run | {"amplitudes": {"cohesion": 3e-4}, "seed": 1, "failure": "a <particle> went wrong"},
+                         *(run | {"amplitudes": {name: scale}, "seed": 2} for name, scale in SCALES.items())]
     return content
 
 

@@ -295,21 +295,60 @@ bool is_untried(const Discovery &discovery, const std::string &effect)
   return std::count(untried.begin(), untried.end(), effect) == 1;
 }
 
-/// Room for the base model, and for a look at two effects.
-StudyOptions for_two_effects()
+/// Room for the base model, and for one run of each experiment at some ends of ranges.
+StudyOptions with_looks(const std::uint64_t looks)
 {
   StudyOptions options;
-  constexpr std::uint64_t experiments = 2, looks = 2, replicates = 2;
-  options.budget =
-      experiments * (options.null_runs + 2 * options.nuisance_runs + looks * replicates);
+  constexpr std::uint64_t experiments = 2;
+  options.budget = experiments * (options.null_runs + 2 * options.nuisance_runs + looks);
   return options;
+}
+
+bool is_simulated(const Discovery &discovery, const std::string &effect)
+{
+  const auto &effects = discovery.content["effects"];
+  return std::any_of(effects.begin(), effects.end(), [&](const auto &row) {
+    return row["effect"] == effect && row["simulated"].template get<bool>();
+  });
+}
+
+/// Where the budget ends within the first look, it was one at each effect.
+void look_that_is_cut()
+{
+  Nature sound = nature(1001);
+  sound.failures = 0.;
+  for (const std::uint64_t looks : {2u, 7u}) {
+    SyntheticSimulator simulator(sound);
+    simulator.remember();
+    const Discovery d =
+        study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1), with_looks(looks));
+    // Of the six effects one has a range with two ends.
+    bool as_expected = true;
+    for (const std::string name : {"a", "b", "c", "d", "e", "f"})
+      as_expected = as_expected && is_simulated(d, name) == (looks == 7 || name < "c");
+    check("a look that is cut is one at each effect", as_expected, d.content["effects"].dump());
+    std::set<std::pair<std::string, double>> ends;
+    std::set<std::uint32_t> seeds;
+    for (const auto &[request, result] : simulator.known("heap")) {
+      seeds.insert(request.seed);
+      for (const auto &[name, amplitude] : request.amplitudes)
+        if (const Factor &f = simulator.factor(name); f.kind == Factor::Kind::effect) {
+          const double limit = amplitude < 0. ? f.lower : f.upper;
+          if (std::abs(amplitude / limit - 1.) < 1e-2)
+            ends.insert({name, amplitude});
+        }
+    }
+    check("at the ends of the ranges, of seeds that differ",
+          ends.size() == looks && seeds.size() == simulator.known("heap").size(),
+          std::to_string(ends.size()) + ", " + std::to_string(seeds.size()));
+  }
 }
 
 /// Who could try few effects does not say that none is missing.
 void few_effects_tried()
 {
   SyntheticSimulator simulator(nature(1001));
-  const StudyOptions poor = for_two_effects();
+  const StudyOptions poor = with_looks(2);
   const Discovery d = study(simulator, simulator.measure(both, {}, {}, 4, 0.2, 1), poor);
   check("most effects were not tried", d.verdict == Verdict::underpowered,
         d.content["verdict"].get<std::string>());
@@ -338,7 +377,7 @@ void missing_effect_not_tried()
     SyntheticSimulator simulator(nature(1000 + seed));
     const Amplitudes truth = {{"f", simulator.amplitude_of("f", 16., both)}};
     const Discovery d =
-        study(simulator, simulator.measure(both, {}, truth, 4, 0.2, seed), for_two_effects());
+        study(simulator, simulator.measure(both, {}, truth, 4, 0.2, seed), with_looks(2));
     check("of a few effects that were tried none is the answer",
           d.verdict != Verdict::named && d.verdict != Verdict::off_catalogue && is_untried(d, "f"),
           d.content["verdict"].get<std::string>() + ": " + d.content["models"].dump());
@@ -533,6 +572,7 @@ EUNOE_MPI_TEST()
   withdrawn();
   no_room_for_held_out_data();
   held_out_runs_that_fail();
+  look_that_is_cut();
   few_effects_tried();
   effect_that_fails();
   missing_effect_not_tried();

@@ -22,12 +22,15 @@ from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
 from eunoe.discovery.outcomes import Outcome, outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
+from eunoe.discovery.suite import Suite, parse
 from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
 from eunoe.report import of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
+from eunoe.report.discovery_report import add_tie_breakers
 from eunoe.report.discovery_results import Study
 from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, title_of, verdict_text
+from eunoe.report.page import Page
 from eunoe.repository import DOC
 from sample_study import CHANGES, make_study
 
@@ -85,6 +88,18 @@ class PageOfAStudy(InFolder):
         self.assertNotIn("none of them", said(study))
         study.content["p of the fit"] = 0.03
         self.assertIn("describes the data badly (p = 0.03)", said(study))
+
+    def test_what_breaks_a_tie_has_a_cost(self) -> None:
+        make_study(self.folder / "tie", "tie")
+        study = Study(self.folder / "tie")
+        for costs, known in ((study.costs, True), ({}, False)):  # an older answer does not tell them
+            study.costs = costs
+            words = " ".join(verdict_text(study)).replace("\u00a0", " ")
+            self.assertEqual("A run of heap takes about 4.5 s of one core." in words, known, words)
+            page = Page("", "")
+            add_tie_breakers(page, study)
+            row = next(row for row in page.parts[-1].split("<tr>") if "profile" in row)
+            self.assertIn(">4.5<" if known else ">–<", row)
 
     def test_one_effect_or_none_of_the_catalogue(self) -> None:
         study = self.study("tie")
@@ -225,6 +240,85 @@ class CasesOfASuite(unittest.TestCase):
             self.assertEqual(len(case.strengths), {"none": 0, "two": 2}.get(case.kind, 1))
             if case.kind == "confounded":
                 self.assertEqual(list(case.strengths), ["cohesion"])
+
+
+    def test_truths_that_are_deleted_differ(self) -> None:
+        effects = {name: {"sign": "both" if name == "c" else "above", "confounders": ["a"]} for name in "abcdefghijkl"}
+        for tier in TIERS:
+            for few_or_many in (EFFECTS, effects):
+                cases = make_cases(few_or_many, tier, "sixth", 1)
+                deleted = [(*case.strengths, *case.strengths.values()) for case in cases if case.kind == "deleted"]
+                self.assertEqual(len(deleted), TIERS[tier].deleted)
+                self.assertEqual(len(set(deleted)), len(deleted))
+        # Only what came twice is drawn anew: a suite that was begun before goes on with its other cases.
+        names = [case.name for case in make_cases(EFFECTS, "small", "ci", 1)]
+        for name in ("deleted_rolling_resistance+8_24", "deleted_rolling_resistance-8_25", "deleted_cohesion+8_28",
+                     "confounded_cohesion+4_30"):
+            self.assertIn(name, names)
+
+
+class PilotOfASuite(InFolder):
+    """What a suite hides must have been simulated by its pilot."""
+
+    def suite_with(self, **changes: object) -> tuple[Suite, Strengths]:
+        pilot = self.folder / "pilot" / "study"
+        make_study(pilot, "none")
+        content = json.loads((pilot / "discovery.json").read_text(encoding="utf-8"))
+        (pilot / "discovery.json").write_text(json.dumps(content | changes), encoding="utf-8")
+        suite = Suite(parse(["program", "study.prm", str(self.folder), "--tier", "range"]))
+        return suite, Strengths(pilot)
+
+    def gives(self, suite: Suite, case: Case, strengths: Strengths) -> tuple[bool, str]:
+        with contextlib.redirect_stdout(io.StringIO()) as words:
+            return suite.gives_amplitudes(case, strengths), words.getvalue()
+
+    def test_a_pilot_that_is_not_ready_is_refused(self) -> None:
+        known = {"cohesion": [[1e-4, 5.]]}
+        suite, strengths = self.suite_with(strengths=known, untried=["rolling_resistance"],
+                                           ledger=[{"amplitudes": {"cohesion": 1e-4}}])
+        cohesion = Case("c", "single", 1, 1, {"cohesion": 4.})
+        rolling = Case("r", "single", 1, 1, {"rolling_resistance": -4.})
+        suite.refuse_unready_pilot([cohesion], strengths)
+        with self.assertRaisesRegex(Failure, "not ready: .* simulated rolling_resistance below its null value. Fill"):
+            suite.refuse_unready_pilot([cohesion, rolling], strengths)
+        self.assertEqual(self.gives(suite, cohesion, strengths), (True, ""))
+        self.assertAlmostEqual(cohesion.amplitudes["cohesion"], 0.8e-4)
+
+    def test_so_is_one_that_knows_one_side(self) -> None:
+        suite, strengths = self.suite_with()
+        both = [Case(str(side), "single", 1, 1, {"rolling_resistance": side * 4.}) for side in (1., -1.)]
+        suite.refuse_unready_pilot(both[:1], strengths)
+        with self.assertRaisesRegex(Failure, "simulated rolling_resistance below its null value"):
+            suite.refuse_unready_pilot(both, strengths)
+
+    def test_what_cannot_be_simulated_is_left_out_and_said_why(self) -> None:
+        run = {"amplitudes": {"rolling_resistance": 0.1}, "failure": "broken"}
+        suite, strengths = self.suite_with(strengths={}, untried=["rolling_resistance"], ledger=[run])
+        for name, why in (("rolling_resistance", "rolling_resistance failed in all of its runs"),
+                          ("cohesion", "cohesion acts in none of its measured experiments"),
+                          ("charge", "charge is not of its catalogue")):
+            case = Case(name, "single", 1, 1, {name: 4.})
+            suite.refuse_unready_pilot([case], strengths)
+            found, words = self.gives(suite, case, strengths)
+            self.assertFalse(found)
+            self.assertIn(f"left out, as by the pilot {why}", words)
+
+    def test_what_is_weak_in_its_range_is_another_matter(self) -> None:
+        suite, strengths = self.suite_with()
+        suite.options.tier = "small"
+        case = Case("c", "single", 1, 1, {"cohesion": 1e6})
+        suite.refuse_unready_pilot([case], strengths)
+        found, words = self.gives(suite, case, strengths)
+        self.assertFalse(found)
+        self.assertIn("cohesion cannot be so strong in its range", words)
+
+    def test_a_truth_at_the_end_of_its_range_is_deleted_once(self) -> None:
+        suite, strengths = self.suite_with()
+        cases = [Case(f"deleted_{value}", "deleted", 1, 1, {"cohesion": value}, ["cohesion"]) for value in (1e5, 1e6)]
+        self.assertTrue(self.gives(suite, cases[0], strengths)[0])
+        found, words = self.gives(suite, cases[1], strengths)
+        self.assertFalse(found)
+        self.assertIn("its truth was deleted in an earlier case", words)
 
 
 class StrengthOfAnEffect(InFolder):

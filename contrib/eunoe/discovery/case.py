@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import random
+from collections import Counter
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -54,6 +55,18 @@ TIERS = {"ci": Numbers(2, 1, 0, 1, 0), "small": Numbers(12, 1, 6, 6, 6),
          "full": Numbers(100, 3, 40, 40, 40), "range": Numbers(14, 0, 4, 8, 0, 2)}
 
 
+def another_truth(taken: list[tuple[str, float]], effects: dict[str, dict], draw: random.Random) -> tuple[str, float]:
+    """An effect and a strength that are not among those taken: of an effect that is there least often, and on the
+    other side of its null value rather than with another strength."""
+    times = Counter(name for name, _ in taken)
+    fewest = min(times[name] for name in effects)
+    name = draw.choice([name for name in sorted(effects) if times[name] == fewest])
+    sides = {"above": [1], "below": [-1]}.get(effects[name]["sign"]) or draw.sample((-1, 1), 2)
+    # A little weaker, a little stronger, weaker still, ...
+    strengths = (round(STRENGTH_WHEN_DELETED * 1.25 ** ((step + 1) // 2 * (-1) ** step), 1) for step in itertools.count())
+    return next((name, side * strength) for strength in strengths for side in sides if (name, side * strength) not in taken)
+
+
 def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int) -> list[Case]:
     """All cases of a suite, the same for the same arguments.
 
@@ -63,6 +76,8 @@ def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int
     """
     numbers, first = TIERS[tier], FIRST_SEED[seeds]
     draw = random.Random(first)
+    # Apart from the other draws, so that what a suite has made already stays as it was.
+    redraw = random.Random(f"truths instead of those deleted twice, {first}")
     cases: list[Case] = []
 
     def add(kind: str, strengths: dict[str, float], excluded: list[str] | None = None) -> None:
@@ -84,9 +99,11 @@ def make_cases(effects: dict[str, dict], tier: str, seeds: str, study_seeds: int
         add("single", {name: sign(name) * round(strength, 1)})
     for _ in range(numbers.two):
         add("two", {name: sign(name) * STRENGTH_OF_PAIRS for name in draw.sample(names, 2)})
-    for _ in range(numbers.deleted):
-        name = draw.choice(names)
-        add("deleted", {name: sign(name) * STRENGTH_WHEN_DELETED}, [name])
+    deleted = [(name, sign(name) * STRENGTH_WHEN_DELETED) for name in (draw.choice(names) for _ in range(numbers.deleted))]
+    for k, truth in enumerate(deleted):
+        if truth in deleted[:k]:
+            deleted[k] = another_truth(deleted, effects, redraw)
+        add("deleted", dict([deleted[k]]), [deleted[k][0]])
     pairs = [(name, other) for name in names for other in effects[name]["confounders"] if other in effects]
     for _ in range(numbers.confounded if pairs else 0):
         name, _ = draw.choice(pairs)

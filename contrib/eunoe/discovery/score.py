@@ -88,7 +88,9 @@ def measure_strengths(lines: list[dict], suite: Path) -> None:
     known = Strengths(pilot)
     for line in lines:
         case = line["case"]
-        case["strengths"] = {name: known.strength(name, value) for name, value in case["amplitudes"].items()}
+        for name, value in case["amplitudes"].items():
+            if known.knows(name, value - known.null.get(name, 0.)):
+                case["strengths"][name] = known.strength(name, value)
 
 
 def write(outcomes: list[Outcome], label: str, folder: Path) -> None:

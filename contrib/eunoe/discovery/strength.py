@@ -17,6 +17,28 @@ class Strengths:
         content = json.loads((pilot / "discovery.json").read_text(encoding="utf-8"))
         self.null = {e["name"]: e["null_value"] for e in content["catalogue"]}
         self.known = content["strengths"]
+        self.untried = set(content.get("untried", []))
+        # Whether any run came to its end, by effect and side of its null value. An emulator has strengths on both
+        # sides as soon as there are runs on one.
+        self.succeeded: dict[tuple[str, bool], bool] = {}
+        for run in content["ledger"]:
+            for name, amplitude in run["amplitudes"].items():
+                side = name, amplitude > self.null[name]
+                self.succeeded[side] = self.succeeded.get(side, False) or "failure" not in run
+
+    def knows(self, effect: str, strength: float) -> bool:
+        """Whether the pilot has simulated an effect on this side of its null value. Where it has not, a strength of
+        zero says nothing."""
+        return effect in self.known and self.succeeded.get((effect, strength > 0.), False)
+
+    def why_unknown(self, effect: str, strength: float) -> str:
+        """Why the pilot does not know an effect on this side of its null value, though it would with all the runs that
+        it wants; empty if it has not made these yet."""
+        if effect not in self.null:
+            return "is not of its catalogue"
+        if (effect, strength > 0.) in self.succeeded:
+            return "failed in all of its runs"
+        return "" if effect in self.known or effect in self.untried else "acts in none of its measured experiments"
 
     def amplitude(self, effect: str, strength: float) -> tuple[float, float]:
         """The first amplitude with a strength (negative: below the null value), or the range's end, and the

@@ -5,7 +5,8 @@ Usage: contrib/tools suite path/to/eunoe-discovery study.prm folder [--tier ci|s
        [--set "discovery/entry = value" ...] [--part I/N]
 
 A pilot study of data in which nothing is missing says how strong each effect is; the strengths of the
-suite are amplitudes from it. Then the twins are made, then the studies, and in the end the pilot's study
+suite are amplitudes from it. It must have simulated all that is hidden; if its budget is too small for
+that, fill the table first. Then the twins are made, then the studies, and in the end the pilot's study
 once more, as the table knows more by then: scores are by the strengths that this one finds. What is there
 already is not made again, and what was interrupted goes on, so the command may be given again at any time; what
 another command is making is left out.
@@ -83,6 +84,7 @@ class Suite:
         self.folder = options.folder.resolve()
         self.study = options.study.resolve()
         self.failed: list[str] = []
+        self.deleted: list[dict[str, float]] = []
 
     def make_data(self, case: Case, lock: int) -> Path:
         folder = self.folder / case.name
@@ -149,7 +151,9 @@ class Suite:
         strengths = self.pilot("study", [] if is_ablation else self.options.set)
         number, of = self.options.part
         cases = make_cases(effects, self.options.tier, self.options.seeds, self.options.study_seeds)
-        wanted = [case for case in cases if self.options.only in case.name and self.gives_amplitudes(case, strengths)]
+        wanted = [case for case in cases if self.options.only in case.name]
+        self.refuse_unready_pilot(wanted, strengths)
+        wanted = [case for case in wanted if self.gives_amplitudes(case, strengths)]
         for case in wanted:
             if cases.index(case) % of != number - 1:
                 continue
@@ -167,8 +171,26 @@ class Suite:
         if answered and not self.options.only and not is_ablation:
             self.pilot(PILOT_AT_THE_END, self.options.set)
 
+    def refuse_unready_pilot(self, cases: list[Case], strengths: Strengths) -> None:
+        """Failure if the pilot has not simulated all that shall be hidden: how strong that can be is not known, and
+        a suite without it would be another one."""
+        missing = {f"{name} {'above' if value > 0. else 'below'} its null value" for case in cases
+                   for name, value in case.strengths.items()
+                   if not strengths.knows(name, value) and not strengths.why_unknown(name, value)}
+        if missing:
+            table = self.folder / "runs.sqlite"
+            raise Failure(f"The pilot is not ready: its runs were spent before it had simulated "
+                          f"{', '.join(sorted(missing))}. Fill its table ({self.program.path.name} {self.study} "
+                          f"--fill-table --set \"discovery/table of runs = {table}\"), remove "
+                          f"{self.folder / 'pilot' / 'study'}, and give this command again.")
+
     def gives_amplitudes(self, case: Case, strengths: Strengths) -> bool:
-        """Amplitudes from strengths; false if an effect cannot be so strong."""
+        """Amplitudes from strengths; false if an effect cannot be so strong, or the pilot does not know it."""
+        unknown = [f"{name} {strengths.why_unknown(name, value)}" for name, value in case.strengths.items()
+                   if not strengths.knows(name, value)]
+        if unknown:
+            print(f"{case.name}: left out, as by the pilot {', '.join(unknown)}")
+            return False
         found = {name: strengths.amplitude(name, value) for name, value in case.strengths.items()}
         weak = [name for name, (_, reached) in found.items() if reached < abs(case.strengths[name])]
         if weak and (not TIERS[self.options.tier].drawn or min(s for _, s in found.values()) == 0.):
@@ -177,6 +199,11 @@ class Suite:
         for name, (amplitude, reached) in found.items():
             case.amplitudes[name] = amplitude
             case.strengths[name] = math.copysign(reached, case.strengths[name])
+        if case.kind == "deleted":
+            if case.amplitudes in self.deleted:  # at the end of its range
+                print(f"{case.name}: left out, as its truth was deleted in an earlier case")
+                return False
+            self.deleted.append(case.amplitudes)
         return True
 
 

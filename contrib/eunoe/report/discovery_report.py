@@ -35,15 +35,17 @@ def _add_fingerprints(page: Page, study: Study) -> None:
                     "these data.")
 
 
-def _add_tie_breakers(page: Page, study: Study) -> None:
+def add_tie_breakers(page: Page, study: Study) -> None:
     rows = study.content.get("measurements that would break the tie", [])
     if not rows:
         return
     page.heading("What would break the tie")
-    page.table(["Experiment", "Observable", "expected information (bit)", "standard deviations apart"],
+    page.table(["Experiment", "Observable", "expected information (bit)", "standard deviations apart",
+                "core-seconds of a run"],
                [[row["experiment"] + (" (again)" if row["again"] else ""), plain(row["observable"]),
                  f"{number(row['information'], 2)} of {number(row['of'], 2)}",
-                 number(row["separation"], 2)] for row in rows[:8]])
+                 number(row["separation"], 2), number(study.costs[row["experiment"]], 2) if study.costs else "–"]
+                for row in rows[:8]])
 
 
 def _add_decisive(page: Page, study: Study) -> None:
@@ -108,7 +110,7 @@ def discovery_report(study: Study) -> Page:
         page.figure(posterior_figure(study), "What the data say of the amplitude: posterior probability, "
                                              f"median and 95{SPACE}% interval.")
     _add_decisive(page, study)
-    _add_tie_breakers(page, study)
+    add_tie_breakers(page, study)
     page.heading("Where model and measurement differ")
     page.figure(envelope_figure(study, False),
                 "Measured values (points, with two standard errors) and the runs of the models (bands of "

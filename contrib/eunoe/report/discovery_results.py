@@ -35,6 +35,8 @@ class Study:
             raise ReportError(f"{path} is damaged: {error}.") from None
         self.verdict: str = self.content["verdict"]
         self.effects = {e["name"]: e for e in self.content["catalogue"]}
+        # Core-seconds of a run by experiment; older answers do not tell them.
+        self.costs = {e["name"]: e["core_seconds"] for e in self.content.get("experiments", [])}
         self.observables = {(o["experiment"], o["name"]): o for o in self.content["observables"]}
 
     def envelopes(self, held_out: bool) -> dict[tuple[str, str], list[dict]]:

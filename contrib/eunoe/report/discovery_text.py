@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .discovery_results import Study
-from .quantities import SPACE, number, percent
+from .quantities import SPACE, duration, number, percent
 
 TITLES = {"none": "Nothing is missing", "named": "A missing effect is named",
           "tie": "Several effects explain the data alike",
@@ -138,6 +138,9 @@ def _tie(study: Study) -> list[str]:
                          f"expected to give {number(best['information'], 2)} of the "
                          f"{number(best['of'], 2)} bits that are open, and sets the nearest two "
                          f"{number(best['separation'], 2)} standard deviations apart.")
+        if best["experiment"] in study.costs:
+            sentences.append(f"A run of {best['experiment']} takes about {duration(study.costs[best['experiment']])} of "
+                             "one core.")
     return sentences
 
 

@@ -14,8 +14,8 @@
 namespace eunoe::discovery {
 
 /// Runs DEM simulations on groups of ranks, each simulation once, and keeps their results in a
-/// table. What another version of the engine has left there is adopted if samples of it, run again,
-/// give the same bits.
+/// table. What another version of the program has left there is adopted if samples of it, run
+/// again, give the same bits.
 class DemSimulator : public Simulator
 {
 public:
@@ -67,8 +67,12 @@ private:
   {
     return find(request.experiment).make_case(factors, request, comm);
   }
-  /// The key of the case of a request, which is made only if no recipe tells it; collective.
-  std::string key_of(const RunRequest &request);
+  /// The key of the case of a row; empty if the row was made of another case. The case is made
+  /// only if no recipe tells its key; collective.
+  std::string key_of(const RunTable::Row &row);
+  /// Notes the keys of a case by its recipes.
+  void remember(const StudyCase &one);
+  void store_new_keys();
   RunRecord simulate(const StudyCase &one);
   void serve_and_check_stop(unsigned long long step);
   /// Runs those cases of which there is no result, each once.
@@ -86,7 +90,9 @@ private:
   const std::vector<Experiment> &experiments;
   const std::vector<Effect> &factors;
   RunTable table;
-  std::vector<RunTable::Row> earlier; ///< rows that were there at the start
+  /// Rows that were there at the start; once they have been looked through, with today's keys, or
+  /// none if they are of other cases.
+  std::vector<RunTable::Row> earlier;
   std::int64_t last_known = std::numeric_limits<std::int64_t>::max();
   WorkQueue queue;
   MPI_Comm comm;

@@ -17,7 +17,8 @@ struct StudyCase
 {
   const Experiment *experiment;
   std::vector<std::string> overrides;
-  std::string key;     ///< hash of the complete input, with the files that it names
+  std::string key;     ///< hash of the entries that are not defaults, and of the files they name
+  std::string old_key; ///< of the complete input with its comments, as earlier versions had it
   std::string problem; ///< why it cannot be run; empty if it can
   bool names_files = false;
   RunRequest request;
@@ -53,8 +54,8 @@ public:
   StudyCase make_case(const std::vector<Effect> &factors, const RunRequest &request,
                       MPI_Comm comm) const;
 
-  /// Hash of all from which the case of a request is made, as making it takes milliseconds. Throws
-  /// a UserError if a patch does not fit.
+  /// All from which the case of a request is made, as making it takes milliseconds: the texts of
+  /// files, and overrides. Throws a UserError if a patch does not fit.
   std::string recipe(const std::vector<Effect> &factors, const RunRequest &request) const;
 
   /// The parameters of a case with these overrides.

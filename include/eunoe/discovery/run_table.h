@@ -24,8 +24,8 @@ struct RunRecord
 
 /// The table of runs: all finished simulations of a study in one SQLite file, which further studies
 /// use as well, also at the same time. A row has the design point, the result, a key that is a hash
-/// of the complete input, and the digest of the engine that made it. As it takes a while to make an
-/// input, the file also has the keys of recipes, which are hashes of what an input is made from.
+/// of the case, and the digest of the engine that made it. As it takes a while to make a case, the
+/// file also has the keys of recipes, which are hashes of an engine and what it makes a case from.
 class RunTable
 {
 public:
@@ -54,9 +54,9 @@ public:
   /// Adds keys by recipe; collective.
   void store_keys(const std::map<std::string, std::string> &keys) const;
 
-  /// Gives rows, by their numbers, to an engine that was found to give the same results;
-  /// collective.
-  void adopt(const std::vector<std::int64_t> &rows, const std::string &engine) const;
+  /// Gives rows to an engine that was found to give the same results, with the keys that they have
+  /// here; one that has such a row keeps its own. Collective.
+  void adopt(const std::vector<const Row *> &rows, const std::string &engine) const;
 
 private:
   const std::string file;

@@ -88,14 +88,20 @@ void Design::run_effects(const std::function<Target()> &estimate)
       }
   for (int level = 0; level < most_levels && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
+    // The ends of all ranges come first, and all effects in turns, so that a budget that ends, or a
+    // table that is stopped, within this look has something of each.
+    std::vector<unsigned int> turns;
     auto looks = open;
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const auto &[effect, amplitude] : looks)
       if (!samples.has_near(effect, amplitude, replicates, experiments) &&
-          !samples.fails_near(effect, amplitude, experiments))
+          !samples.fails_near(effect, amplitude, experiments)) {
         points.push_back(point(effect, amplitude));
-    samples.run(points, experiments);
+        const bool is_end = amplitude == space.lower(effect) || amplitude == space.upper(effect);
+        turns.push_back(is_end ? 0 : 1);
+      }
+    samples.run(points, experiments, turns);
     const Target target = estimate();
     decltype(open) still;
     for (const auto &[effect, amplitude] : open)

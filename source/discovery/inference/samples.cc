@@ -110,7 +110,11 @@ Samples::Samples(const StudyOptions &options, const FactorSpace &space, Simulato
   for (const std::string &experiment : experiments) {
     samples[experiment];
     failures[experiment];
-    for (const auto &[request, result] : simulator.known(experiment)) {
+    // A table has them in the order in which they were finished, which is partly chance.
+    auto all = simulator.known(experiment);
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto &a, const auto &b) { return a.first.seed < b.first.seed; });
+    for (const auto &[request, result] : all) {
       if (!space.position(request.amplitudes))
         continue;
       add(request, result);
@@ -191,25 +195,46 @@ std::uint64_t Samples::remaining() const
 }
 
 void Samples::run(const std::vector<DesignPoint> &points,
-                  const std::vector<std::string> &experiments, const bool only_missing)
+                  const std::vector<std::string> &experiments, const bool only_missing,
+                  const std::vector<unsigned int> &turns)
 {
-  std::vector<RunRequest> requests;
-  for (const DesignPoint &point : points) {
+  const std::uint64_t room = remaining();
+  std::vector<RunRequest> wanted;
+  // Equal turns keep the order of the points.
+  std::multimap<std::pair<unsigned int, unsigned int>, std::size_t> in_turns;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const DesignPoint &point = points[k];
     const Amplitudes amplitudes = factors.amplitudes(point.position);
     const std::vector<std::string> effects = effects_of(factors, point.position);
     for (unsigned int r = 0; r < point.replicates; ++r) {
-      const std::size_t before = requests.size();
+      const std::size_t before = wanted.size();
       for (const std::string &experiment : experiments)
-        if (requests.size() < remaining() && (only_missing ? r < n_missing(point, experiment)
-                                                           : source.concerns(experiment, effects)))
-          requests.push_back({experiment, amplitudes, next_seed});
-      next_seed += requests.size() > before ? 1 : 0;
+        if ((wanted.size() < room || !turns.empty()) &&
+            (only_missing ? r < n_missing(point, experiment)
+                          : source.concerns(experiment, effects))) {
+          in_turns.emplace(turns.empty() ? std::pair(0u, 0u) : std::pair(turns[k], r),
+                           wanted.size());
+          wanted.push_back({experiment, amplitudes, next_seed});
+        }
+      next_seed += wanted.size() > before ? 1 : 0;
     }
   }
+  std::vector<RunRequest> requests;
+  std::vector<std::size_t> places;
+  for (const auto &[turn, place] : in_turns)
+    if (requests.size() < room) {
+      requests.push_back(wanted[place]);
+      places.push_back(place);
+    }
   asked += requests.size();
   const std::vector<RunResult> results = source.run(requests);
-  for (std::size_t k = 0; k < requests.size(); ++k)
-    add(requests[k], results[k]);
+  // Samples stand in the order of their seeds, in whatever order they were run: twins draw from
+  // them by their places.
+  std::map<std::size_t, RunResult> by_place;
+  for (std::size_t k = 0; k < results.size(); ++k)
+    by_place[places[k]] = results[k];
+  for (const auto &[place, result] : by_place)
+    add(wanted[place], result);
 }
 
 } // namespace eunoe::discovery

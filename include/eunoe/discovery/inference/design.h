@@ -20,8 +20,8 @@ public:
   void run_base();
 
   /// Runs each effect at the ends of its range, and at amplitudes in geometric sequence from its
-  /// scale down to what can just be seen. Depends on the experiments alone, not on what was
-  /// measured.
+  /// scale down to what can just be seen; all effects in turns, the ends of their ranges first.
+  /// Depends on the experiments alone, not on what was measured.
   void run_effects(const std::function<Target()> &estimate);
 
   /// Runs where it is expected to tell most: near the amplitudes at which models would be the

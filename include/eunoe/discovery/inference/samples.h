@@ -76,9 +76,12 @@ public:
           const std::vector<std::string> &experiments);
 
   /// Runs design points, as many as the budget has room for.
-  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments)
+  /// @param turns of the points, if not one after the other: those of the first turn are run before
+  ///   those of the next, and of each turn first one replicate of all. Seeds do not depend on it.
+  void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
+           const std::vector<unsigned int> &turns = {})
   {
-    run(points, experiments, false);
+    run(points, experiments, false, turns);
   }
   /// The same of the replicates that are missing in each experiment.
   void complete(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments)
@@ -122,7 +125,7 @@ public:
 
 private:
   void run(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments,
-           bool only_missing);
+           bool only_missing, const std::vector<unsigned int> &turns);
   void add(const RunRequest &request, const RunResult &result);
   /// Number of runs with an effect alone, and with nearly this amplitude if there is one.
   std::size_t n_near(const std::vector<Sample> &runs, std::size_t effect,
