@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace eunoe {
 
@@ -15,14 +16,17 @@ struct ContactDetectionParameters : public ParameterSection
 {
   std::string method = "dynamic"; ///< constant or dynamic
   unsigned int frequency = 1;
-  double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
-  double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
+  double displacement_share = 0.8; ///< "dynamic contact search size coefficient"
+  /// With which `auto` begins.
+  static constexpr double first_threshold = 1.3;
+  /// Reach of the search over the largest diameter; none: `auto`.
+  std::optional<double> neighborhood_threshold = first_threshold;
 
   /// Separation up to which the search lists pairs (m), for particles of at most
-  /// @p largest_diameter.
+  /// @p largest_diameter; of `auto` that with which it begins.
   double skin(double largest_diameter) const
   {
-    return (neighborhood_threshold - 1.) * largest_diameter;
+    return (neighborhood_threshold.value_or(first_threshold) - 1.) * largest_diameter;
   }
 
   void declare(dealii::ParameterHandler &prm) override;
@@ -36,10 +40,13 @@ class SearchCriterion
 public:
   /// @param skin separation up to which pairs are listed (m)
   SearchCriterion(const ContactDetectionParameters &parameters, double skin, MPI_Comm comm)
-      : parameters(parameters), allowed(std::min(1., parameters.displacement_share) * skin),
-        comm(comm)
+      : parameters(parameters), comm(comm)
   {
+    set_skin(skin);
   }
+
+  /// From the next search on pairs are listed up to another separation (m).
+  void set_skin(const double skin) { allowed = std::min(1., parameters.displacement_share) * skin; }
 
   /// Largest sum of the displacements of two bodies before the next search (m).
   double allowed_displacement() const { return allowed; }
@@ -65,7 +72,7 @@ public:
 
 private:
   const ContactDetectionParameters &parameters;
-  const double allowed;
+  double allowed = 0.;
   MPI_Comm comm;
   /// From the references (m), in this step (paces, m), and the share, on any rank.
   std::array<double, 4> largest = {};
