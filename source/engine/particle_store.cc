@@ -15,6 +15,12 @@ ParticleStore::ParticleStore(const Domain &domain, const double least_width, con
 
 ParticleStore::~ParticleStore() = default;
 
+void ParticleStore::set_reach(const double reach)
+{
+  implementation->reach = reach;
+  implementation->near_cell = implementation->forest.foreign_neighbours(reach);
+}
+
 std::uint64_t ParticleStore::n_global() const
 {
   return implementation->handler.n_global_particles() - implementation->n_left_out;

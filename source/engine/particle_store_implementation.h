@@ -141,7 +141,7 @@ struct ParticleStore::Implementation
 
   const Domain &domain;
   Forest forest;
-  const double reach; ///< largest distance at which a rank's cell may need a particle (m)
+  double reach; ///< largest distance at which a rank's cell may need a particle (m)
   const unsigned int n_extra;
   const std::optional<FieldHandle> asleep;
   Handler handler;

@@ -8,21 +8,51 @@ namespace eunoe {
 
 ParticleSystem::ParticleSystem(Domain &domain, ParticlePhysics physics_, const double skin,
                                const double largest_diameter, Timers &timers)
-    : domain(domain), physics(std::move(physics_)), model(physics.model), skin(skin),
-      largest_diameter(largest_diameter),
-      largest_drift(std::clamp(0.5 * largest_diameter, 2. * skin, 4. * skin)),
-      ledger(domain.outlets().size()), timers(timers),
-      store(domain, 1.001 * (largest_diameter + skin + model.range()),
-            1.001 * (largest_diameter + skin + 2. * largest_drift + model.range()),
-            physics.fields.n_components(), physics.asleep),
-      halo(domain.communicator()),
-      grid(domain.box_from_centre().lower, domain.box_from_centre().upper, domain.periods(),
-           largest_diameter + skin + model.range()),
-      pair_forces(model, domain.periods()), solid_contacts(physics.wall_model),
-      rows(model.history_size()), extra_defaults(physics.fields.initial_values())
+    : domain(domain), physics(std::move(physics_)), model(physics.model),
+      largest_diameter(largest_diameter), skin(skin), ledger(domain.outlets().size()),
+      timers(timers), store(domain, 1.001 * (largest_diameter + skin + model.range()),
+                            reach_of_ghosts(), physics.fields.n_components(), physics.asleep),
+      halo(domain.communicator()), grid(new_grid()), pair_forces(model, domain.periods()),
+      solid_contacts(physics.wall_model), rows(model.history_size()),
+      extra_defaults(physics.fields.initial_values())
 {
   pairs.clear(model.history_size());
   particles.gravity = physics.gravity;
+}
+
+double ParticleSystem::largest_drift() const
+{
+  return std::clamp(0.5 * largest_diameter, 2. * skin, 4. * skin);
+}
+
+double ParticleSystem::reach_of_ghosts() const
+{
+  return 1.001 * (largest_diameter + skin + 2. * largest_drift() + model.range());
+}
+
+ContactGrid ParticleSystem::new_grid() const
+{
+  const Box box = domain.box_from_centre();
+  return {box.lower, box.upper, domain.periods(), largest_diameter + skin + model.range()};
+}
+
+void ParticleSystem::set_skin(const double wanted)
+{
+  skin = wanted;
+  // The cells of the mesh stay: they may be wider or narrower than a search reaches.
+  store.set_reach(reach_of_ghosts());
+  grid = new_grid();
+}
+
+SearchLoad ParticleSystem::search_load() const
+{
+  std::uint64_t n_pairs = 0;
+  // Of a pair across a border of ranks the owner of the first one counts.
+  for (const std::int32_t row : pairs.i)
+    n_pairs += static_cast<std::size_t>(row) < particles.n_owned ? 1 : 0;
+  std::uint64_t sums[3] = {particles.n_owned, particles.n_awake(), n_pairs};
+  MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPI_UINT64_T, MPI_SUM, domain.communicator());
+  return {sums[0], sums[1], sums[2]};
 }
 
 void ParticleSystem::add_forces(const std::vector<Solid> &solids, const double time,

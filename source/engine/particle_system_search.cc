@@ -108,7 +108,7 @@ std::vector<Origin> ParticleSystem::build_lists(const std::vector<Solid> &solids
   std::vector<Origin> origins;
   grid.move_to(domain.centre());
   store.read(particles, grid, origins);
-  halo.build(particles, store, grid, skin + 2. * largest_drift + model.range());
+  halo.build(particles, store, grid, skin + 2. * largest_drift() + model.range());
   drift = 0.;
   pairs.clear(model.history_size());
   grid.find_pairs(particles, skin + model.range(), pairs, &found);
@@ -204,7 +204,7 @@ bool ParticleSystem::search_again(const std::vector<Solid> &solids, const double
   int n_ranks;
   MPI_Comm_size(domain.communicator(), &n_ranks);
   drift += farthest;
-  if (!(drift <= (n_ranks > 1 ? largest_drift : diameters_on_one_rank * largest_diameter)))
+  if (!(drift <= (n_ranks > 1 ? largest_drift() : diameters_on_one_rank * largest_diameter)))
     return false;
   const std::vector<std::size_t> leaving = count_leaving(lost);
   std::uint64_t n_leaving = leaving.size();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace eunoe {
 
@@ -19,31 +20,46 @@ void ContactDetectionParameters::declare(dealii::ParameterHandler &prm)
   declare::at_least(prm, "dynamic contact search size coefficient", displacement_share, 1e-3,
                     "Share of the safe displacement after which the search is repeated; more than "
                     "1 is as 1.");
-  declare::at_least(prm, "neighborhood threshold", neighborhood_threshold, 1.,
-                    "The search lists pairs with separations up to the skin, (threshold - 1) times "
-                    "the largest diameter. Larger: longer lists, fewer searches.");
+  declare::number_or_word(
+      prm, "neighborhood threshold", "auto", format(first_threshold), 1.,
+      std::numeric_limits<double>::max(),
+      "The search lists pairs with separations up to the skin, (threshold - 1) times the largest "
+      "diameter. Larger: longer lists, fewer searches. 'auto': begins with 1.3 and follows the "
+      "flow, from 1.05 to 2.",
+      [this](const std::optional<double> &value) { neighborhood_threshold = value; });
   declare::leave(prm);
   declare::leave(prm);
 }
 
 void ContactDetectionParameters::check(const ParameterCheck &check) const
 {
-  check.require(neighborhood_threshold > 1., {"model parameters", "contact detection"},
-                "neighborhood threshold", "is " + format(neighborhood_threshold) + ".",
+  const ParameterCheck::Path path = {"model parameters", "contact detection"};
+  const double threshold = neighborhood_threshold.value_or(first_threshold);
+  check.require(threshold > 1., path, "neighborhood threshold", "is " + format(threshold) + ".",
                 "Give a value above 1, for example 1.1.");
+  check.require(neighborhood_threshold || method == "dynamic", path, "neighborhood threshold",
+                "is 'auto', which goes by how often particles need a search, and with 'contact "
+                "detection method = constant' there is one every so many steps.",
+                "Give a number, or 'contact detection method = dynamic'.");
 }
 
 SearchCriterion::SearchCriterion(const ContactDetectionParameters &parameters, const double skin,
                                  MPI_Comm comm)
-    : parameters(parameters), skin(skin),
-      allowed(std::min(1., parameters.displacement_share) * skin), comm(comm)
+    : parameters(parameters), comm(comm)
 {
+  set_skin(skin);
   constexpr int n_numbers = 5;
   static_assert(sizeof(Largest) == n_numbers * sizeof(double), "a Largest is numbers only");
   MPI_Type_contiguous(n_numbers, MPI_DOUBLE, &type);
   MPI_Type_commit(&type);
   constexpr int commutes = 1;
   MPI_Op_create(combine, commutes, &operation);
+}
+
+void SearchCriterion::set_skin(const double separation)
+{
+  skin = separation;
+  allowed = std::min(1., parameters.displacement_share) * skin;
 }
 
 SearchCriterion::~SearchCriterion()

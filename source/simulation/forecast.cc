@@ -137,6 +137,9 @@ Forecast Simulation::foresee(const bool writes) const
   judge_jump(of_walls, parameters, 0.5 * of_all.smallest, "", "", forecast.problems);
   judge_searches(std::max(fastest, of_walls), criterion.allowed_displacement(), clock.time_step(),
                  forecast);
+  if (tuner)
+    forecast.facts.push_back("Neighborhood threshold: " + format(system.neighborhood_threshold()) +
+                             " at first, then as the flow needs it");
   if (insertion != nullptr && !is_continued)
     judge_insertion(parameters, *insertion, events, solids.list(), domain, forecast);
   forecast.facts.insert(forecast.facts.end(), parameters.lethe_notes.begin(),

@@ -59,9 +59,8 @@ Skins::Skins(const Parameters &parameters, const Inserter &inserter)
   contact = largest + parameters.contact_model(largest).range();
 }
 
-double Skins::in(const PeriodicBox &box) const
+double Skins::limited(double skin, const PeriodicBox &box) const
 {
-  double skin = wanted;
   for (unsigned int d = 0; d < 3; ++d)
     if (box.is_periodic(d))
       skin = std::min(skin, std::max(least, 0.5 * box.length[d] - contact));
@@ -71,6 +70,17 @@ double Skins::in(const PeriodicBox &box) const
 double skin_of(const Parameters &parameters, const Inserter &inserter, const Domain &domain)
 {
   return Skins(parameters, inserter).in(domain.periods());
+}
+
+std::optional<SkinTuner> skin_tuner_of(const Parameters &parameters, const Inserter &inserter,
+                                       const Domain &domain)
+{
+  if (parameters.detection.neighborhood_threshold)
+    return std::nullopt;
+  const Skins skins(parameters, inserter);
+  const double largest = largest_diameter(parameters, inserter);
+  return SkinTuner(largest, skins.in(domain.periods()),
+                   skins.limited((SkinTuner::largest_threshold - 1.) * largest, domain.periods()));
 }
 
 ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter,

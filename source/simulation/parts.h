@@ -30,11 +30,17 @@ struct Skins
 
   /// The skin in a domain: smaller than wanted where a period is so short that a pair would be
   /// found on both sides.
-  double in(const PeriodicBox &box) const;
+  double in(const PeriodicBox &box) const { return limited(wanted, box); }
+  /// Likewise of another one that is wanted (m).
+  double limited(double skin, const PeriodicBox &box) const;
 };
 
-/// The skin of a run (m).
+/// The skin of a run (m), with which it begins.
 double skin_of(const Parameters &parameters, const Inserter &inserter, const Domain &domain);
+
+/// None where the input gives the skin.
+std::optional<SkinTuner> skin_tuner_of(const Parameters &parameters, const Inserter &inserter,
+                                       const Domain &domain);
 
 ParticlePhysics physics_of(const Parameters &parameters, const Inserter &inserter, Process *process,
                            Sleeper &sleeper);

@@ -20,6 +20,8 @@ void Simulation::save(CheckpointWriter &writer)
   writer.head["solids"] = solids.save();
   if (sleeper.is_enabled())
     writer.head["sleep"] = sleeper.save();
+  if (tuner)
+    writer.head["skin"] = tuner->save();
   writer.head["most_squeezed"] = guard.most_squeezed();
   system.save(writer);
   if (process)
@@ -76,6 +78,11 @@ void Simulation::go_on(const Checkpoint &checkpoint)
   guard.set_most_squeezed(count_in(head.at("most_squeezed")));
   if (sleeper.is_enabled())
     sleeper.load(head.at("sleep"), solids.list().size());
+  // The lists are made with the skin of the last search.
+  if (tuner) {
+    tuner->load(head.at("skin"));
+    use_skin();
+  }
   system.load(checkpoint, solids.list(), parameters.load_balancing, sleeper.get(), false, true);
 }
 

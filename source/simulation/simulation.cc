@@ -8,6 +8,8 @@
 #include "parts.h"
 #include <nlohmann/json.hpp>
 
+#include <limits>
+
 namespace eunoe {
 
 Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
@@ -23,7 +25,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
              progress.timers),
       integrator(parameters.integration.make()),
       criterion(parameters.detection, skin_of(parameters, inserter, domain), comm),
-      balancer(parameters.load_balancing),
+      tuner(skin_tuner_of(parameters, inserter, domain)), balancer(parameters.load_balancing),
       guard(parameters.faults, domain, system.contact_model().get_materials(),
             parameters.contacts.normal_laws(), criterion.longest_way(), clock.time_step()),
       checkpoints(parameters.restart, parameters.control.output_path, comm),
@@ -207,7 +209,7 @@ void Simulation::advance()
     const Timers::Scope scope(progress.timers, Section::ghosts);
     system.update_ghosts();
   }
-  const bool searches = criterion.is_due(solids);
+  const bool searches = criterion.is_due(solids) || (tuner && tuner->is_look_due(clock.step()));
   system.note_step(criterion.largest_paces(), criterion.typical_step(),
                    criterion.largest_near_share());
   if (searches) {
@@ -252,16 +254,37 @@ void Simulation::search()
     system.stir_around_leaving(sleeper.get(), lost, clock.step());
   const auto imbalance = [this] { return system.imbalance(parameters.load_balancing); };
   const LoadBalancingParameters *const balance = balancer.at_search(clock.step(), imbalance);
-  if (balance != nullptr ||
-      !system.search_again(solids.list(), criterion.largest_displacement(), lost))
-    system.search(solids.list(), criterion.largest_displacement(), balance, lost);
+  // With another skin the order of particles and the ghosts are others. All particles follow, so
+  // that none has used up a part of it.
+  const bool is_other_skin = tune_skin();
+  const double farthest =
+      is_other_skin ? std::numeric_limits<double>::infinity() : criterion.largest_displacement();
+  if (is_other_skin || balance != nullptr || !system.search_again(solids.list(), farthest, lost))
+    system.search(solids.list(), farthest, balance, lost);
   note_search();
+}
+
+bool Simulation::tune_skin()
+{
+  if (!tuner || !tuner->tune(clock.step(), system.search_load()))
+    return false;
+  use_skin();
+  return true;
+}
+
+void Simulation::use_skin()
+{
+  system.set_skin(tuner->skin());
+  criterion.set_skin(tuner->skin());
+  guard.set_longest_way(criterion.longest_way());
 }
 
 void Simulation::note_search()
 {
   solids.note_search();
   domain.note_search();
+  if (tuner)
+    tuner->note_search(clock.step());
 }
 
 void Simulation::update_sleep(const bool wake_all, const bool forces_follow)

@@ -95,6 +95,8 @@ void Simulation::write_summary()
   summary["share_asleep"] = progress.share_asleep(comm);
   summary["contact_searches"] = system.n_searches();
   summary["searches_in_place"] = system.n_searches_in_place();
+  summary["neighborhood_threshold"] = system.neighborhood_threshold();
+  summary["threshold_changes"] = tuner ? tuner->n_changes() : 0ULL;
   summary["load_balances"] = system.n_balances();
   summary["most_squeezed_particles"] = guard.most_squeezed();
   add_balance(summary, system, domain);

@@ -49,6 +49,9 @@ ALL_LAWS = ("model parameters/particle particle contact force method = JKR",
             "model parameters/electrostatic charge/cut-off share = 0.2",
             PHYSICS + "particle type 0/surface charge density particles = 2e-5",
             "model parameters/drag/dynamic viscosity = 1e-3", "model parameters/drag/density = 10")
+# The skin follows the flow, which is so fast that it changes.
+TUNED = ("model parameters/contact detection/neighborhood threshold = auto",
+         "insertion info/initial velocity = 0, -3, 0.2")
 # A background mesh that turns and pours out its particles.
 DRUM = str(Path(__file__).with_name("drum.prm"))
 BOUNDARY = "DEM boundary conditions/boundary condition 0/"
@@ -141,6 +144,14 @@ def all_laws(program: str, folder: Path) -> None:
         continued(program, CASE, folder / name, (*settings, BRIEF), 5555, 4, f"With all laws, {name}")
 
 
+def tuned(program: str, folder: Path) -> None:
+    """The same bits where the skin follows the flow, with sleep and without, stopped and continued."""
+    for name, settings in (("awake", TUNED), ("asleep", TUNED + SLEEPY)):
+        reference = continued(program, CASE, folder / name, (*settings, BRIEF), 5555, 4, f"With a tuned skin, {name}")
+        if json.loads((reference.results / "summary.json").read_text())["threshold_changes"] == 0:
+            raise Failure("The skin has not changed, so nothing was tried.")
+
+
 def on_plane(program: str, folder: Path) -> None:
     """The same bits where the places of insertion depend on the particles already present."""
     continued(program, CASE, folder, (*ON_PLANE, *COLLISIONS), 11111, 1, "With insertion on a plane")
@@ -185,6 +196,7 @@ def main(program: str, many_runs: str, folder: Path) -> int:
     attempts.make("write failure", write_failure, reference, folder / "full")
     attempts.make("sleep", sleeping, reference.program, folder / "sleep")
     attempts.make("all laws", all_laws, reference.program, folder / "laws")
+    attempts.make("tuned skin", tuned, reference.program, folder / "tuned")
     attempts.make("plane", on_plane, reference.program, folder / "plane")
     attempts.make("curved mesh", curved, reference.program, folder / "curved")
     attempts.make("kill", killed, reference.program, folder / "killed")

@@ -4,10 +4,7 @@
 // separation and with drag. The first rank runs the case alone, then all ranks run it together.
 // Meanwhile all particles are compared with all others: no list may lack a pair that touches.
 
-#include "../tests.h"
-
-#include <set>
-#include <utility>
+#include "touching.h"
 
 using namespace test;
 
@@ -111,38 +108,8 @@ struct Result
   std::vector<double> load;
   ExactSum lost;
   unsigned long long searches, in_place, balances;
-  unsigned long n_touching = 0, n_missed = 0;
+  Touching touching;
 };
-
-/// Counts the pairs of particles that touch, each once on every rank, and those of them of which
-/// this rank owns one and whose contact it does not know.
-void count_touching(Simulation &simulation, MPI_Comm comm, Result &result)
-{
-  const std::vector<ContactForce> contacts = simulation.contact_forces();
-  const ParticleArrays &p = simulation.get_system().particles;
-  std::set<std::pair<double, double>> known;
-  for (const ContactForce &contact : contacts)
-    if (contact.second >= 0)
-      known.emplace(std::minmax(p.id[contact.first], p.id[contact.second]));
-  std::vector<std::vector<double>> mine;
-  std::set<double> owned;
-  for (std::size_t row = 0; row < p.n_owned; ++row) {
-    const Quad &x = p.position[row];
-    mine.push_back({static_cast<double>(p.id[row]), x.x, x.y, x.z, x.w});
-    owned.insert(p.id[row]);
-  }
-  const std::vector<std::vector<double>> all = of_all_ranks(comm, mine);
-  for (const auto &a : all)
-    for (const auto &b : all) {
-      constexpr double period = 4e-3;
-      const Vec3 apart{a[1] - b[1], a[2] - b[2], std::remainder(a[3] - b[3], period)};
-      if (a[0] >= b[0] || norm(apart) > a[4] + b[4] - 1e-12)
-        continue;
-      ++result.n_touching;
-      const bool is_mine = owned.count(a[0]) + owned.count(b[0]) > 0;
-      result.n_missed += is_mine && known.count({a[0], b[0]}) == 0 ? 1 : 0;
-    }
-}
 
 /// Adhesion, liquid bridges, charges and drag instead of DMT, all strong enough to matter.
 const char *const all_laws = R"(
@@ -185,9 +152,9 @@ Result run(const std::string &laws, const std::string &balancing, MPI_Comm comm)
   unsigned int n = 0;
   test_case.run([&](Simulation &simulation) {
     if (n++ % interval == 0)
-      count_touching(simulation, comm, result);
+      result.touching.count(simulation, 4e-3);
   });
-  MPI_Allreduce(MPI_IN_PLACE, &result.n_missed, 1, MPI_UNSIGNED_LONG, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &result.touching.n_missed, 1, MPI_UNSIGNED_LONG, MPI_SUM, comm);
   result.particles = particle_table(*test_case);
   const SolidLoad load = test_case->global_solid_loads().back();
   for (const ExactSum &component : load.force)
@@ -223,8 +190,9 @@ void compare(const std::string &laws, const std::vector<std::string> &balancings
     check("all particles are there",
           together.particles.size() == alone.particles.size() && together.particles.size() > 150);
     check("the same bits", together.particles == alone.particles);
-    check("no contact is missed", together.n_missed == 0 && together.n_touching > 5000,
-          std::to_string(together.n_missed) + " of " + std::to_string(together.n_touching));
+    const Touching &touching = together.touching;
+    check("no contact is missed", touching.n_missed == 0 && touching.n > 5000,
+          std::to_string(touching.n_missed) + " of " + std::to_string(touching.n));
     check("the same force on the paddle",
           together.load == alone.load && std::abs(alone.load[1]) > 0.);
     if (balancing == none)

@@ -64,6 +64,8 @@ public:
   ParticleGuard(const FaultParameters &parameters, const Domain &domain, const Materials &materials,
                 const NormalLaws &laws, double longest_way, double dt);
 
+  void set_longest_way(double way) { longest_way = way; }
+
   /// What is wrong on this rank.
   Faults inspect(const ParticleArrays &particles, const PairList &pairs,
                  const SolidContacts &solid_contacts, const std::vector<Solid> &solids) const;
@@ -95,7 +97,8 @@ private:
   const Materials &materials;
   const std::vector<double> young_modulus; ///< effective, one per kind of pair
   const NormalLaws laws;
-  const double longest_way, dt;
+  double longest_way;
+  const double dt;
   bool found_too_short = false; ///< a half period
   std::uint64_t most_at_once = 0;
 };

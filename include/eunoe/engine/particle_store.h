@@ -28,6 +28,9 @@ public:
                 std::optional<FieldHandle> asleep);
   ~ParticleStore();
 
+  /// From now on `ranks_near` is asked for up to another reach (m).
+  void set_reach(double reach);
+
   /// Numbers of all ranks: particles, and cells of the mesh that distributes them.
   ///@{
   std::uint64_t n_global() const;

@@ -9,6 +9,7 @@
 #include <eunoe/engine/load.h>
 #include <eunoe/engine/particle_guard.h>
 #include <eunoe/engine/particle_store.h>
+#include <eunoe/engine/skin_tuner.h>
 #include <eunoe/engine/solid_contacts.h>
 #include <eunoe/engine/sparse_contacts.h>
 
@@ -47,6 +48,14 @@ public:
   /// @param largest_diameter of all particles ever (m)
   ParticleSystem(Domain &domain, ParticlePhysics physics, double skin, double largest_diameter,
                  Timers &timers);
+
+  /// Lets pairs be listed up to another separation (m) from now on; `search` must come before all
+  /// else. Collective.
+  void set_skin(double wanted);
+  /// Reach of the search over the largest diameter.
+  double neighborhood_threshold() const { return 1. + skin / largest_diameter; }
+  /// What the lists hold; collective.
+  SearchLoad search_load() const;
 
   const ContactModel &contact_model() const { return physics.model; }
   const ContactModel &wall_model() const { return physics.wall_model; }
@@ -176,6 +185,12 @@ public:
   ParticleArrays particles;
 
 private:
+  /// Distance from where the last `search` found them up to which the ghosts suffice (m): half a
+  /// diameter, from two to four skins. Larger: more ghosts, fewer of the expensive searches.
+  double largest_drift() const;
+  /// Distance of two centres up to which ghosts are needed (m).
+  double reach_of_ghosts() const;
+  ContactGrid new_grid() const;
   /// The outlet through which a particle of a checkpoint has gone since its last search, -1 if
   /// none.
   int outlet_passed(const double *row) const;
@@ -223,10 +238,8 @@ private:
   Domain &domain;
   const ParticlePhysics physics;
   const ContactModel &model;
-  const double skin, largest_diameter;
-  /// Distance from where the last `search` found them up to which the ghosts suffice (m): half a
-  /// diameter, from two to four skins. Larger: more ghosts, fewer of the expensive searches.
-  const double largest_drift;
+  const double largest_diameter;
+  double skin;
   double drift = 0.; ///< at most so far has a particle moved from there (m)
   Ledger ledger;
   Timers &timers;

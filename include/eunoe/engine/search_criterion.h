@@ -6,6 +6,7 @@
 #include <eunoe/state/particle_arrays.h>
 
 #include <algorithm>
+#include <optional>
 
 namespace eunoe {
 
@@ -14,14 +15,17 @@ struct ContactDetectionParameters : public ParameterSection
 {
   std::string method = "dynamic"; ///< constant or dynamic
   unsigned int frequency = 1;
-  double displacement_share = 0.8;     ///< "dynamic contact search size coefficient"
-  double neighborhood_threshold = 1.3; ///< reach of the search over the largest diameter
+  double displacement_share = 0.8; ///< "dynamic contact search size coefficient"
+  /// With which `auto` begins.
+  static constexpr double first_threshold = 1.3;
+  /// Reach of the search over the largest diameter; none: `auto`.
+  std::optional<double> neighborhood_threshold = first_threshold;
 
   /// Separation up to which the search lists pairs (m), for particles of at most
-  /// @p largest_diameter.
+  /// @p largest_diameter; of `auto` that with which it begins.
   double skin(double largest_diameter) const
   {
-    return (neighborhood_threshold - 1.) * largest_diameter;
+    return (neighborhood_threshold.value_or(first_threshold) - 1.) * largest_diameter;
   }
 
   void declare(dealii::ParameterHandler &prm) override;
@@ -38,6 +42,9 @@ public:
   ~SearchCriterion();
   SearchCriterion(const SearchCriterion &) = delete;
   SearchCriterion &operator=(const SearchCriterion &) = delete;
+
+  /// From the next search on pairs are listed up to another separation (m).
+  void set_skin(double separation);
 
   /// Largest sum of the displacements of two bodies before the next search (m).
   double allowed_displacement() const { return allowed; }
@@ -79,7 +86,7 @@ private:
   static void combine(void *one, void *both, int *n, MPI_Datatype *);
 
   const ContactDetectionParameters &parameters;
-  const double skin, allowed;
+  double skin, allowed;
   MPI_Comm comm;
   MPI_Datatype type; ///< a Largest as one piece, which MPI does not divide
   MPI_Op operation;

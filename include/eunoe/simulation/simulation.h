@@ -9,6 +9,7 @@
 #include <eunoe/engine/particle_guard.h>
 #include <eunoe/engine/particle_system.h>
 #include <eunoe/engine/search_criterion.h>
+#include <eunoe/engine/skin_tuner.h>
 #include <eunoe/engine/sleeper.h>
 #include <eunoe/simulation/checkpoints.h>
 #include <eunoe/simulation/forecast.h>
@@ -18,6 +19,7 @@
 #include <eunoe/simulation/progress.h>
 
 #include <functional>
+#include <optional>
 
 namespace eunoe {
 
@@ -112,6 +114,10 @@ private:
   void advance();
   void move_solids();
   void search();
+  /// Whether the coming search is to be made with another skin, which is in use then; collective.
+  bool tune_skin();
+  /// Tells all who need it the skin that has been chosen.
+  void use_skin();
   void note_search();
   /// Looks for particles with something wrong before they are shared out anew; stops the run on all
   /// ranks, or returns the rows of those to take out.
@@ -149,6 +155,7 @@ private:
   MovingSolids solids;
   std::unique_ptr<Integrator> integrator;
   SearchCriterion criterion;
+  std::optional<SkinTuner> tuner; ///< of the skin; none: the input gives it
   LoadBalancer balancer;
   ParticleGuard guard;
   Checkpoints checkpoints;
