@@ -76,36 +76,31 @@ void Design::run_base()
 
 void Design::run_effects(const std::function<Target()> &estimate)
 {
-  struct Ladder
-  {
-    std::size_t effect;
-    double amplitude;
-  };
-  std::vector<Ladder> open, ends;
+  std::vector<std::pair<std::size_t, double>> open, ends; // effects and amplitudes
   for (std::size_t k = 0; k < space.n_effects(); ++k)
     for (const double limit : {space.lower(k), space.upper(k)})
       if (limit != 0.) {
         const double side = limit < 0. ? -1. : 1.;
-        open.push_back({k, std::min(1., std::abs(limit)) * side});
+        open.emplace_back(k, std::min(1., std::abs(limit)) * side);
         // An emulator knows little of amplitudes beyond the last that was run.
         if (std::abs(limit) > 1.)
-          ends.push_back({k, limit});
+          ends.emplace_back(k, limit);
       }
   for (int level = 0; level < most_levels && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
-    std::vector<Ladder> looks = open;
+    auto looks = open;
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
-    for (const Ladder &ladder : looks)
-      if (!samples.has_near(ladder.effect, ladder.amplitude, replicates, experiments) &&
-          !samples.fails_near(ladder.effect, ladder.amplitude, experiments))
-        points.push_back(point(ladder.effect, ladder.amplitude));
+    for (const auto &[effect, amplitude] : looks)
+      if (!samples.has_near(effect, amplitude, replicates, experiments) &&
+          !samples.fails_near(effect, amplitude, experiments))
+        points.push_back(point(effect, amplitude));
     samples.run(points, experiments);
     const Target target = estimate();
-    std::vector<Ladder> still;
-    for (const Ladder &ladder : open)
-      if (strength(target, ladder.effect, ladder.amplitude) > just_visible)
-        still.push_back({ladder.effect, ladder.amplitude * amplitude_ratio});
+    decltype(open) still;
+    for (const auto &[effect, amplitude] : open)
+      if (strength(target, effect, amplitude) > just_visible)
+        still.emplace_back(effect, amplitude * amplitude_ratio);
     open = still;
   }
 }

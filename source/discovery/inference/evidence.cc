@@ -117,12 +117,11 @@ void Evidence::make_grid(const std::size_t k)
     }
     grid[k].insert(grid[k].end(), side.begin(), side.end());
   }
-  std::vector<double> weights;
+  double sum = 0.;
   for (const Place &place : grid[k])
-    weights.push_back(place.log_prior);
-  const double total = grid[k].empty() ? 0. : log_sum(weights);
+    sum += std::exp(place.log_prior);
   for (Place &place : grid[k])
-    place.log_prior -= total;
+    place.log_prior -= std::log(sum);
 }
 
 /// "None of these" is a change of any size, half of it along directions like those of the

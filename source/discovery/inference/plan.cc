@@ -115,31 +115,22 @@ double separation(const Measurable &what, const Predictive &a, const Predictive 
       .norm();
 }
 
-/// Probabilities that add up to one.
-std::vector<Model> normalised(std::vector<Model> models)
-{
-  double sum = 0.;
-  for (const Model &model : models)
-    sum += model.probability;
-  for (Model &model : models)
-    model.probability = std::max(1e-6, model.probability / sum);
-  return models;
-}
-
 /// Ranks the observables of experiments, and whole experiments, by the information that measuring
 /// them is expected to give about which model is true: the mean fall of the entropy of the models'
 /// probabilities over twins of each model (bit). The best come first.
-Json rank_measurements(const Likelihood &likelihood, const std::vector<Model> &models,
+Json rank_measurements(const Likelihood &likelihood, std::vector<Model> models,
                        const std::vector<Expectation> &expectations)
 {
-  const std::vector<Model> candidates = normalised(models);
-  double entropy = 0.;
-  for (const Model &model : candidates)
+  double sum = 0., entropy = 0.;
+  for (const Model &model : models)
+    sum += model.probability;
+  for (Model &model : models) {
+    model.probability = std::max(1e-6, model.probability / sum);
     entropy -= model.probability * std::log2(model.probability);
+  }
   std::vector<std::pair<double, Json>> rows;
   for (const Measurable &what : measurables(likelihood.target())) {
-    const double bits =
-        information(what, candidates, expectations, likelihood.degrees_of_freedom());
+    const double bits = information(what, models, expectations, likelihood.degrees_of_freedom());
     double least = 1e300;
     for (std::size_t m = 1; m < expectations.size(); ++m)
       least = std::min(least, separation(what, expectations[0].twins, expectations[m].twins));
