@@ -165,12 +165,6 @@ Eigen::ArrayXXd Evidence::log_of_places(const std::size_t effect,
   return result;
 }
 
-Eigen::ArrayXd Evidence::log_single(const std::size_t effect,
-                                    const Eigen::Ref<const Eigen::MatrixXd> &data) const
-{
-  return log_sums(log_of_places(effect, data));
-}
-
 Model Evidence::single(const std::size_t effect, const Eigen::VectorXd &data) const
 {
   const Eigen::ArrayXXd of_places = log_of_places(effect, data);
@@ -210,7 +204,7 @@ Evidence::Singles Evidence::singles(const Eigen::Ref<const Eigen::MatrixXd> &dat
     if (const std::size_t k = effects[static_cast<std::size_t>(i)]; k == without)
       result.log_prior(i) = -std::numeric_limits<double>::infinity();
     else
-      result.log_evidence.row(i) = log_single(k, data).transpose();
+      result.log_evidence.row(i) = log_sums(log_of_places(k, data)).transpose();
   result.log_prior(n) = std::log(prior.none_of_these / total);
   result.log_evidence.row(n) = log_discrepancy(data).transpose();
   return result;

@@ -71,14 +71,11 @@ public:
   /// Effects that were simulated, and so have places.
   const std::vector<std::size_t> &usable() const { return effects; }
 
-  /// Log evidence of nothing, of each effect, of the discrepancy, for data in columns.
+  /// Log evidence of nothing for data in columns.
   Eigen::ArrayXd log_nothing(const Eigen::Ref<const Eigen::MatrixXd> &data) const
   {
     return log_likelihoods(nothing(), data);
   }
-  Eigen::ArrayXd log_single(std::size_t effect,
-                            const Eigen::Ref<const Eigen::MatrixXd> &data) const;
-  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
   /// The model of an effect, without its probability.
   Model single(std::size_t effect, const Eigen::VectorXd &data) const;
 
@@ -120,6 +117,7 @@ private:
   double log_density(std::size_t effect, double amplitude) const;
   Eigen::ArrayXXd log_of_places(std::size_t effect,
                                 const Eigen::Ref<const Eigen::MatrixXd> &data) const;
+  Eigen::ArrayXd log_discrepancy(const Eigen::Ref<const Eigen::MatrixXd> &data) const;
 
   const FactorSpace &factors;
   const Prior prior;
