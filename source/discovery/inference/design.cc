@@ -96,7 +96,8 @@ void Design::run_effects(const std::function<Target()> &estimate)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const auto &[effect, amplitude] : looks)
       if (!samples.has_near(effect, amplitude, replicates, experiments) &&
-          !samples.fails_near(effect, amplitude, experiments)) {
+          !samples.fails_near(effect, amplitude, experiments))
+      {
         points.push_back(point(effect, amplitude));
         const bool is_end = amplitude == space.lower(effect) || amplitude == space.upper(effect);
         turns.push_back(is_end ? 0 : 1);

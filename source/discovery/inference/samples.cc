@@ -211,7 +211,8 @@ void Samples::run(const std::vector<DesignPoint> &points,
       for (const std::string &experiment : experiments)
         if ((wanted.size() < room || !turns.empty()) &&
             (only_missing ? r < n_missing(point, experiment)
-                          : source.concerns(experiment, effects))) {
+                          : source.concerns(experiment, effects)))
+        {
           in_turns.emplace(turns.empty() ? std::pair(0u, 0u) : std::pair(turns[k], r),
                            wanted.size());
           wanted.push_back({experiment, amplitudes, next_seed});
