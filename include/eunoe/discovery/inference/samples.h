@@ -86,7 +86,7 @@ public:
   /// The same of the replicates that are missing in each experiment.
   void complete(const std::vector<DesignPoint> &points, const std::vector<std::string> &experiments)
   {
-    run(points, experiments, true);
+    run(points, experiments, true, {});
   }
 
   const std::vector<Sample> &of(const std::string &experiment) const
