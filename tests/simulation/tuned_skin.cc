@@ -19,6 +19,7 @@ std::string input(const std::string &threshold, const std::string &end,
 {
   return "subsection simulation control\n set time step = 4e-6\n set time end = " + end + R"(
       set log frequency = 0
+      set output path = results
     end
     subsection mesh
       set grid type = subdivided_hyper_rectangle
@@ -97,8 +98,11 @@ double largest_difference(const Numbers &a, const Numbers &b)
 {
   double largest = 0.;
   for (std::size_t k = 0; k < 200; ++k)
-    for (const Column c : {c_x, c_y, c_z})
-      largest = std::max(largest, std::abs(a[k][c] - b[k][c]));
+    for (const Column c : {c_x, c_y, c_z}) {
+      const double apart = a[k][c] - b[k][c];
+      // Whether a particle is brought back at a periodic end depends on when contacts are searched.
+      largest = std::max(largest, std::abs(c == c_z ? std::remainder(apart, depth) : apart));
+    }
   return largest;
 }
 
