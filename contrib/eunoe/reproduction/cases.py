@@ -53,6 +53,7 @@ RADIUS, RIMS = f"{SPREADING}/spreader radius R_s", f"{SPREADING}/rim width"
 # They had the radius of the paper's text, and spread layer 0 on a plate at the level of the transfer plate.
 BEFORE = {RIMS: "0", f"{SPREADING}/feedstock level": "0",
           f"{SPREADING}/first layer thickness": "0", RADIUS: "5e-3"}
+LIPS = {f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}
 VARIANTS = {
     "": Variant("as the published input files, at the cheap settings", closely=True),
     "stiff": Variant("the paper's Young's modulus", stiff=True),
@@ -72,8 +73,9 @@ VARIANTS = {
     "slow_feed": Variant("platform at 2 mm/s", {f"{SPREADING}/feedstock platform velocity": "2e-3"}),
     "open": Variant("without rims, fed less", BEFORE, closely=True),
     "open_stiff": Variant("the paper's Young's modulus", base="open", stiff=True, closely=True),
+    "ends": Variant("lips and gap of the small cases alone", {RIMS: "0", **LIPS}),
     "lips": Variant("lips and gap of the small cases, fed less",
-                    {**BEFORE, f"{SPREADING}/lip height": "3e-3", f"{SPREADING}/gap": "0.1e-3"}),
+                    {**BEFORE, **LIPS}),
     "lips_forget": Variant("contacts forget every 10.5 ms", base="lips", forgets=10.5e-3),
     "lips_stiff": Variant("the paper's Young's modulus", base="lips", stiff=True, closely=True),
 }
@@ -198,7 +200,7 @@ CASES = (
     *_series("PS1", 0.25, 3, variant="stiff"),
     *_in_turn(_series("PS1", 0.25, 3, variant="slow_feed"), _series("PS1", 0.25, 3, variant="awake"),
               _series("PS1", 0.25, 3, percent=15.)),
-    *_series("PS1", 0.25, 3, variant="full"),
+    *_in_turn(_series("PS1", 0.25, 3, variant="full"), _series("PS1", 0.25, 3, variant="ends")),
     *_series("PS1", 2., 1),
 )
 

@@ -252,8 +252,8 @@ def verdict_block(findings: Findings) -> str:
     if not findings.plain():
         return NOTHING
     (measured, differences), (simulated, others) = measured_table(findings), simulated_table(findings)
-    return "\n\n".join(["Beside the measurement, of a plate of 7 L1:", as_markdown(measured), "Beside the paper's simulations:",
-                        _block(simulated, findings.all, by_chance([*differences, *others]))])
+    return "\n\n".join(["Beside the measurement, of a plate of 7 L1:", _block(measured, findings.all),
+                        "Beside the paper's simulations:", _block(simulated, findings.all, by_chance([*differences, *others]))])
 
 
 # The pictures that stand below a block, as far as they have been drawn, and what they show.
