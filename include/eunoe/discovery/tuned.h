@@ -8,7 +8,7 @@ namespace eunoe::discovery {
 
 // All numbers that decide what a study answers, or how often it is right, and that could have been
 // chosen otherwise. (Besides them there is what a study file says, StudyOptions. Grids, iterations
-// and limits of arithmetic stand where they are used: answers hardly depend on them.)
+// and limits of arithmetic stand where they are used: answers should hardly depend on them.)
 //
 // Constants were chosen on laboratory A (doc/discovery_rates.md). Where one was compared with
 // another value, or with nothing, the comparison stands beside it. "As first set": the history of
