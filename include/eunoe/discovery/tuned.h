@@ -77,13 +77,15 @@ inline constexpr double least_share = 0.2;
 /// stood at log Bayes factors of 5 to 9 instead of 2 to 3 (a8afbba). The 4 is as first set.
 inline constexpr double weak = 4.;
 /// And if the variances of its modes grow alike within this factor. Scatter in proportion to a
-/// mode's change was taken off instead; that made the covariance 10 % too small (20ba823).
+/// mode's change was taken off instead; that made the covariance 10 % too small (20ba823). The 1.5
+/// is as first set.
 inline constexpr double alike = 1.5;
 /// Growth of variance as a whole, at most, and the standard deviation of its logarithm's prior,
 /// which keeps it near that of the base model where few replicates tell. As first set.
 inline constexpr double most_growth = 10., growth_deviation = 0.7;
 /// Mean of the prior of the share of its own change by which a mode scatters. In the heaps of the
-/// third suite profiles have 0.1, most modes none and heights half (doc/discovery_json.md).
+/// third suite profiles have 0.1, most modes none and heights half (doc/discovery_json.md). As
+/// first set.
 inline constexpr double typical_share = 0.1;
 /// How much a deviation tells of scatter: chaos is not normal, and modes are correlated beyond what
 /// shrinkage leaves. As first set.
@@ -130,7 +132,7 @@ inline constexpr std::size_t n_levels = 5;
 namespace twins {
 
 /// Beyond the largest of so many draws the tail of a statistic is exponential. A p of 0.001 is
-/// right within a factor of three or so (24,000 twins; doc/discovery_json.md).
+/// right within a factor of three or so (24,000 twins; doc/discovery_json.md). As first set.
 inline constexpr std::size_t tail_one_in = 10;
 /// Evidence is tempered at least by this, as twins know nothing of what is wrong with the model
 /// besides (0.7 until a8afbba), and at most by that, as first set.
@@ -138,8 +140,8 @@ inline constexpr double least_temperature = 1., highest_temperature = 3.;
 /// Share of twins in which a detectable amplitude is detected. As first set.
 inline constexpr double power = 0.8;
 /// An effect whose range ends this far below the strength of the data is no lookalike: a strength
-/// is known to one standard deviation, its unit. Weaker twins said that what resembles none is
-/// recognised in 37 %, and it was in 70 % (14 studies of strength 8; 5193b0c).
+/// is known to one standard deviation, its unit. As first set. Weaker twins said that what
+/// resembles none is recognised in 37 %, and it was in 70 % (14 studies of strength 8; 5193b0c).
 inline constexpr double clearly_weaker = 2.;
 
 } // namespace twins
@@ -147,14 +149,14 @@ inline constexpr double clearly_weaker = 2.;
 /// Where runs go.
 namespace runs {
 
-/// Of a design point: two give the scatter there.
+/// Of a design point: two give the scatter there. As first set.
 inline constexpr unsigned int replicates = 2;
 /// Amplitudes of the first look: ratio of the next to the last, the strength below which an effect
 /// has no smaller one, in standard deviations of a run, and their number. As first set.
 inline constexpr double amplitude_ratio = 1. / 3., just_visible = 3.;
 inline constexpr int most_amplitudes = 6;
-/// Part of an emulator's error that counts as change in that strength. (In the evidence all of it
-/// is taken off.) As first set; no reason is noted.
+/// Part of an emulator's error that is taken off the square of that strength (in the evidence it is
+/// all of it). As first set; no reason is noted.
 inline constexpr double error_taken_off = 0.5;
 /// Nuisances of the base model's runs, in prior deviations on either side, and the largest of those
 /// that are drawn for runs of effects. As first set.
@@ -163,18 +165,19 @@ inline constexpr double nuisance_step = 2., most_nuisance = 2.;
 /// need. As first set.
 inline constexpr std::uint64_t fewest_points = 8, one_in = 10;
 /// Of a round's runs. Half of them while nothing was found, before all runs told of the base model
-/// (36e6919).
+/// (36e6919). The tenth is as first set.
 inline constexpr double share_of_base = 0.1;
 /// Hopes of models are tempered by this, as they are not certain. As first set.
 inline constexpr double temperature_of_hopes = 2.;
 /// Runs for the amplitudes of an answer: likelihoods are tempered such that runs which lie far from
 /// the data by chance do not keep others from being made there (bdbfe1e), and runs end at this
-/// share of emulators' error in the variance. It widens an interval by a tenth.
+/// share of emulators' error in the variance. It widens an interval by a tenth. As first
+/// set.
 inline constexpr double temperature_of_amplitudes = 4., known_amplitude = 0.2;
 /// Runs whose amplitudes differ by less than this share are runs of one amplitude. As first set.
 inline constexpr double near = 0.2;
 /// Failures without a success that close an amplitude, as one may be by chance: before, 73 of 1,800
-/// runs of a suite failed at places that had failed (fb5fcd8).
+/// runs of a suite failed at places that had failed (fb5fcd8). As first set.
 inline constexpr std::size_t too_many_failures = 2;
 
 } // namespace runs
@@ -191,7 +194,7 @@ inline constexpr double same_probability = 0.05;
 inline constexpr std::size_t rounds_near_level = 6;
 inline constexpr double near_level = 4., not_near_level = 0.5;
 /// Probability with which another model could join. It is measured by the whole probability, as by
-/// a twentieth of the first model's a tie of several would never end (89ef7dd).
+/// a twentieth of the first model's a tie of several would never end (89ef7dd). As first set.
 inline constexpr double challenger = 0.05;
 /// Standard deviations by which a likelihood may turn out larger than expected, as an effect could
 /// be detected by chance, too (71b5b82). As first set.
@@ -207,7 +210,7 @@ namespace held_out {
 
 /// Of what the base model leaves of the budget, one in so many runs at most is kept for tests, as
 /// without an answer there is nothing to test: 144 of 200 had been kept, and the base model needed
-/// 60 (b16354a).
+/// 60 (b16354a). A half is as first set.
 inline constexpr std::uint64_t kept_one_in = 2;
 /// Shares of a model's posterior at which it is run. As first set.
 inline constexpr double run_shares[] = {0.1, 0.5, 0.9};
