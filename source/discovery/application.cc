@@ -8,6 +8,7 @@
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/results.h>
 #include <eunoe/discovery/synthetic_data.h>
+#include <eunoe/discovery/tuned.h>
 #include <eunoe/simulation/command_line.h>
 #include <eunoe/simulation/forecast.h>
 
@@ -103,12 +104,12 @@ void print_check(const StudyInput &study, const std::size_t n_warnings, Log &log
         n_points += m.point.experiment == experiment.name() ? 1. : 0.;
     const bool is_compared = n_points > 0. || (study.data.fit.empty() && !experiment.is_held_out());
     // First runs; the rest of the budget goes where it is expected to tell most.
-    constexpr double levels = 4., replicates = 2., models = 4.;
+    constexpr double levels = 4., models = tuned::held_out::most_tested;
     const double n = experiment.is_held_out()
                          ? options.validate_runs * (2. + n_nuisances + 1.5 * models)
                      : !is_compared ? 0.
                                     : options.null_runs + 2. * options.nuisance_runs * n_nuisances +
-                                          levels * replicates * n_effects;
+                                          levels * tuned::runs::replicates * n_effects;
     of_base += is_compared && !experiment.is_held_out() ? options.null_runs : 0;
     const RunEstimate &estimate = experiment.estimate();
     const double hours = n * estimate.core_seconds() / 3600.;

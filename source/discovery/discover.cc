@@ -47,7 +47,6 @@ private:
 /// for it.
 bool is_settled(const Json &curve, const Round &round, const double level)
 {
-  constexpr double sure = 0.99, well_known = 0.15;
   const Findings &findings = round.findings;
   if (!is_steady(curve, level) || (findings.detected ? has_challenger(round.evidence, findings)
                                                      : could_be_detected(round.evidence, findings)))
@@ -55,12 +54,12 @@ bool is_settled(const Json &curve, const Round &round, const double level)
   // More runs do not tell an effect from one like it that the catalogue lacks.
   const Model &first = findings.models.front();
   const double of_all = first.is_discrepancy ? 1. : 1. - findings.off_catalogue;
-  if (!findings.detected || first.probability > sure * of_all)
+  if (!findings.detected || first.probability > tuned::ending::sure * of_all)
     return true;
   double largest = 0.;
   for (const Model &model : findings.answer)
     largest = std::max(largest, round.target.unknown_share(round.target.predict(model.best)));
-  return largest < well_known;
+  return largest < tuned::ending::well_known;
 }
 
 /// Verdict where nothing was detected: whether most effects would have been. Those that were never
@@ -209,11 +208,10 @@ private:
 
 std::uint64_t Study::keep_for_tests()
 {
-  constexpr unsigned int most_members = 4;
   const std::uint64_t wanted =
-      held_out.n_runs() +
-      runs_to_test(most_members, options.validate_runs, options.further_experiments, samples);
-  const std::uint64_t kept = std::min(wanted, samples.remaining() / 2);
+      held_out.n_runs() + runs_to_test(tuned::plan::most_models, options.validate_runs,
+                                       options.further_experiments, samples);
+  const std::uint64_t kept = std::min(wanted, samples.remaining() / tuned::held_out::kept_one_in);
   samples.set_aside(kept);
   return kept;
 }

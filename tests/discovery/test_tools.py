@@ -6,6 +6,7 @@ import contextlib
 import importlib.util
 import io
 import json
+import re
 import sys
 import tempfile
 import unittest
@@ -20,18 +21,18 @@ if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib"
 from eunoe.discovery import foreign_heaps
 from eunoe.discovery import score as score_script
 from eunoe.discovery.case import TIERS, Case, make_cases
-from eunoe.discovery.outcomes import Outcome, outcome_of, read, read_lines, score, wilson
+from eunoe.discovery.outcomes import REFUTED, Outcome, outcome_of, read, read_lines, score, wilson
 from eunoe.discovery.strength import Strengths
 from eunoe.discovery.suite import Suite, parse
 from eunoe.folders import alone_with, occupy
 from eunoe.launch import Failure
-from eunoe.report import of_study
+from eunoe.report import discovery_text, of_study
 from eunoe.report.discovery_charts import envelope_figure, gap_figure
 from eunoe.report.discovery_report import add_tie_breakers
 from eunoe.report.discovery_results import Study
-from eunoe.report.discovery_text import TITLES, gap_text, held_out_text, title_of, verdict_text
+from eunoe.report.discovery_text import DOUBTFUL, TITLES, gap_text, held_out_text, title_of, verdict_text
 from eunoe.report.page import Page
-from eunoe.repository import DOC
+from eunoe.repository import DOC, ROOT
 from sample_study import CHANGES, make_study
 
 EFFECTS = {"cohesion": {"sign": "above", "confounders": ["rolling_resistance"]},
@@ -395,6 +396,14 @@ def line_of(strength: float, answer: dict, kind: str = "single", truth: Sequence
 
 def rates_of(outcomes: Iterable[Outcome]) -> dict[str, tuple[int, int]]:
     return {r.name: (r.hits, r.number) for r in score(list(outcomes)).rates}
+
+
+class TunedNumbers(unittest.TestCase):
+    def test_those_of_the_program(self) -> None:
+        text = (ROOT / "include/eunoe/discovery/tuned.h").read_text(encoding="utf-8")
+        rule = {name: float(value) for name, value in re.findall(r"double (refuted|doubtful) = ([\d.]+);", text)}
+        self.assertEqual(rule, {"refuted": REFUTED, "doubtful": DOUBTFUL})
+        self.assertEqual(discovery_text.REFUTED, REFUTED)
 
 
 class Scores(InFolder):

@@ -15,7 +15,7 @@ from .case import STRENGTHS, Case
 
 SOMETHING = ("named", "tie", "off catalogue")
 WITH_A_NAME = ("named", "tie")  # verdicts in which an effect is named or leads
-# A model is refuted by held-out data below this p-value, as in the program's DecisionRule.
+# A model is refuted by held-out data below this p-value, as in the program's tuned.h.
 REFUTED = 0.01
 # Borders between the strengths 2, 4, 8 and 16, where strengths are drawn and not given.
 BORDERS = (0., 2.8, 5.7, 11.3, math.inf)

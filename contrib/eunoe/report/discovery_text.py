@@ -13,7 +13,7 @@ ONE_OR_NONE = "One effect, or something that the catalogue lacks"
 ONE_OR_UNTRIED = "One effect, or something that was not tried"
 MOST_UNTRIED = "Something is missing, and most effects were not tried"
 NONE = "none of the catalogue"
-DOUBTFUL, REFUTED = 0.05, 0.01  # as in the program's DecisionRule
+DOUBTFUL, REFUTED = 0.05, 0.01  # as in the program's tuned.h
 LOOKALIKES = 0.02  # from here on effects that look like another one are worth a word
 BUT_HELD_OUT = "Nothing is missing in the data of the fit, but the held-out data differ"
 

@@ -75,8 +75,8 @@ Calibration calibrate(const Evidence &evidence, const double threshold, const un
   result.stated /= n;
   result.right /= n;
   double highest = -1e300;
-  // Never below 1: twins know nothing of what is wrong with the model besides.
-  for (double temperature = 1.; temperature < 3.; temperature *= 1.05)
+  for (double temperature = tuned::twins::least_temperature;
+       temperature < tuned::twins::highest_temperature; temperature *= 1.05)
     if (const double score = log_score(singles.log_posterior(temperature), truths, detected);
         score > highest)
     {
@@ -96,7 +96,6 @@ std::optional<double> detectable(const Evidence &evidence, const std::size_t eff
                                  const bool above, const double threshold, const std::uint32_t seed)
 {
   constexpr unsigned int draws = 25;
-  constexpr double power = 0.8;
   std::vector<const Evidence::Place *> side;
   for (const Evidence::Place &place : evidence.places(effect))
     if ((place.amplitude > 0.) == above)
@@ -105,7 +104,7 @@ std::optional<double> detectable(const Evidence &evidence, const std::size_t eff
     Twins twins(evidence.target(), seed);
     const Eigen::ArrayXd factors =
         evidence.log_bayes_factors(twins.draw(place.hypothesis.prediction, draws));
-    return static_cast<double>((factors >= threshold).count()) >= power * draws;
+    return static_cast<double>((factors >= threshold).count()) >= tuned::twins::power * draws;
   };
   if (side.empty() || !is_seen(*side.back()))
     return std::nullopt;

@@ -39,10 +39,9 @@ bool is_needless(const Model &model, const std::vector<Model> &answer)
 /// its amplitudes together.
 double log_hope(const Evidence &evidence, const Model &model)
 {
-  // Standard deviations by which a likelihood may turn out larger than expected.
-  constexpr double by_chance = 1.5;
-  return model.effects.size() == 1 ? log_sum(evidence.optimistic(model.effects.front(), by_chance))
-                                   : evidence.optimistic_pair(model);
+  return model.effects.size() == 1
+             ? log_sum(evidence.optimistic(model.effects.front(), tuned::ending::luck))
+             : evidence.optimistic_pair(model);
 }
 
 } // namespace
@@ -155,7 +154,6 @@ void judge(const Evidence &evidence, const DecisionRule &rule, const std::uint32
 
 bool has_challenger(const Evidence &evidence, const Findings &findings)
 {
-  constexpr double enough = 0.05;
   const double temperature = findings.calibration.temperature;
   const Model &first = findings.models.front();
   // With which probability a model would stand beside the others as they are now. (A model outside
@@ -168,7 +166,7 @@ bool has_challenger(const Evidence &evidence, const Findings &findings)
   return std::any_of(findings.models.begin(), findings.models.end(), [&](const Model &model) {
     if (model.is_discrepancy)
       return false;
-    double needed = enough;
+    double needed = tuned::ending::challenger;
     for (const Model &member : findings.answer) {
       if (is_part(model, member))
         return false;

@@ -8,23 +8,13 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Replicates of a design point: two give the scatter there.
-constexpr unsigned int replicates = 2;
-/// Amplitudes of the first look are this far apart.
-constexpr double amplitude_ratio = 1. / 3.;
-/// An amplitude whose change is smaller than this (in standard deviations of a run, Mahalanobis)
-/// has no smaller one after it.
-constexpr double just_visible = 3.;
-constexpr int most_levels = 6;
-/// Design points of a round.
-constexpr std::uint64_t fewest = 8;
-
+/// In standard deviations of a run (Mahalanobis).
 double strength(const Target &target, const std::size_t effect, const double amplitude)
 {
   const Target::Prediction with = target.predict({{effect, amplitude}}),
                            without = target.predict({});
-  return std::sqrt(
-      std::max(0., (with.mean - without.mean).squaredNorm() - 0.5 * with.leverage.sum()));
+  return std::sqrt(std::max(0., (with.mean - without.mean).squaredNorm() -
+                                    tuned::runs::error_taken_off * with.leverage.sum()));
 }
 
 /// Error of an emulator, as a share of the deviation of what is measured.
@@ -44,12 +34,12 @@ Design::Design(const StudyOptions &options, const FactorSpace &space, Samples &s
 
 Eigen::VectorXd Design::draw_nuisances()
 {
-  constexpr double most = 2.;
+  using tuned::runs::most_nuisance;
   Eigen::VectorXd position = space.origin();
   for (std::size_t q = 0; q < space.n_nuisances(); ++q) {
     constexpr double digits = 1e3;
     position(static_cast<Eigen::Index>(space.n_effects() + q)) =
-        std::round(std::clamp(random.normal(), -most, most) * digits) / digits;
+        std::round(std::clamp(random.normal(), -most_nuisance, most_nuisance) * digits) / digits;
   }
   return position;
 }
@@ -61,7 +51,7 @@ DesignPoint Design::point(const std::size_t effect, const double amplitude)
   Eigen::VectorXd position = draw_nuisances();
   position(static_cast<Eigen::Index>(effect)) =
       std::clamp(std::round(amplitude / unit) * unit, space.lower(effect), space.upper(effect));
-  return {position, replicates};
+  return {position, tuned::runs::replicates};
 }
 
 void Design::run_base()
@@ -86,7 +76,7 @@ void Design::run_effects(const std::function<Target()> &estimate)
         if (std::abs(limit) > 1.)
           ends.emplace_back(k, limit);
       }
-  for (int level = 0; level < most_levels && !open.empty(); ++level) {
+  for (int level = 0; level < tuned::runs::most_amplitudes && !open.empty(); ++level) {
     std::vector<DesignPoint> points;
     // The ends of all ranges come first, and all effects in turns, so that a budget that ends, or a
     // table that is stopped, within this look has something of each.
@@ -95,7 +85,7 @@ void Design::run_effects(const std::function<Target()> &estimate)
     if (level == 0)
       looks.insert(looks.end(), ends.begin(), ends.end());
     for (const auto &[effect, amplitude] : looks)
-      if (!samples.has_near(effect, amplitude, replicates, experiments) &&
+      if (!samples.has_near(effect, amplitude, tuned::runs::replicates, experiments) &&
           !samples.fails_near(effect, amplitude, experiments))
       {
         points.push_back(point(effect, amplitude));
@@ -106,8 +96,8 @@ void Design::run_effects(const std::function<Target()> &estimate)
     const Target target = estimate();
     decltype(open) still;
     for (const auto &[effect, amplitude] : open)
-      if (strength(target, effect, amplitude) > just_visible)
-        still.emplace_back(effect, amplitude * amplitude_ratio);
+      if (strength(target, effect, amplitude) > tuned::runs::just_visible)
+        still.emplace_back(effect, amplitude * tuned::runs::amplitude_ratio);
     open = still;
   }
 }
@@ -136,10 +126,8 @@ bool Design::refine(const Evidence &evidence, const Findings &findings)
         logs.push_back(hope);
       }
     }
-  // Tempered, as hopes are not certain.
-  constexpr double temperature = 2.;
   for (double &value : logs)
-    value /= temperature;
+    value /= tuned::runs::temperature_of_hopes;
   const std::vector<double> shares = shares_of(std::move(logs));
   for (std::size_t i = 0; i < list.size(); ++i)
     list[i].weight *= shares[i];
@@ -152,13 +140,13 @@ bool Design::refine(const Evidence &evidence, const Findings &findings)
 
 std::uint64_t Design::size_of_round(const std::uint64_t n_runs) const
 {
-  constexpr std::uint64_t growth = 10;
-  return std::max(fewest, n_runs / growth / experiments.size() / replicates);
+  return std::max(tuned::runs::fewest_points,
+                  n_runs / tuned::runs::one_in / experiments.size() / tuned::runs::replicates);
 }
 
 bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 {
-  constexpr double share_of_base = 0.1;
+  using tuned::runs::share_of_base;
   list.erase(std::remove_if(list.begin(), list.end(),
                             [&](const Wish &wish) {
                               return samples.fails_near(wish.effect, wish.amplitude, experiments);
@@ -179,7 +167,8 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
       if (wish.effect < space.n_effects())
         points.push_back(point(wish.effect, wish.amplitude));
       else
-        points.push_back({points.size() % 2 == 0 ? space.origin() : draw_nuisances(), replicates});
+        points.push_back(
+            {points.size() % 2 == 0 ? space.origin() : draw_nuisances(), tuned::runs::replicates});
   }
   const std::uint64_t before = samples.n_asked();
   samples.run(points, experiments);
@@ -188,9 +177,7 @@ bool Design::run(std::vector<Wish> list, const std::uint64_t n_points)
 
 bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
 {
-  // The end of an interval depends on what lies beyond it; an error of a fifth of the variance
-  // widens an interval by a tenth.
-  constexpr double temperature = 4., well_known = 0.2;
+  // The end of an interval depends on what lies beyond it.
   const Target &target = evidence.target();
   std::vector<Wish> list;
   std::vector<double> logs;
@@ -201,8 +188,8 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
         effects[k] = place.amplitude;
         const Target::Prediction prediction = target.predict(effects);
         list.push_back({k, place.amplitude, unknown(target, prediction)});
-        // Runs that lie far from the data by chance must not keep others from being made there.
-        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction)) / temperature);
+        logs.push_back(evidence.log_optimistic(evidence.prepare(prediction)) /
+                       tuned::runs::temperature_of_amplitudes);
       }
   const std::vector<double> shares = shares_of(std::move(logs));
   double variance = 0.;
@@ -210,7 +197,8 @@ bool Design::sharpen(const Evidence &evidence, const std::vector<Model> &answer)
     variance += shares[i] * list[i].weight * list[i].weight;
     list[i].weight *= shares[i];
   }
-  return variance > well_known && run(std::move(list), fewest);
+  return variance > tuned::runs::known_amplitude &&
+         run(std::move(list), tuned::runs::fewest_points);
 }
 
 bool Design::fill(const Evidence &evidence)

@@ -1,5 +1,6 @@
 #include <eunoe/discovery/inference/emulator.h>
 #include <eunoe/discovery/statistics/covariance.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <cmath>
@@ -86,8 +87,7 @@ std::vector<ExperimentEmulator::Group> ExperimentEmulator::make_groups(
 
 bool ExperimentEmulator::is_near_base(const Group &group) const
 {
-  constexpr double weak = 4.;   // standard deviations of a run
-  constexpr double alike = 1.5; // modes, in variance
+  using tuned::scatter::weak;
   if (group.effect < 0)
     return group.effect == -1;
   const Scatter::Replicates replicates = whitened(group);
@@ -95,7 +95,7 @@ bool ExperimentEmulator::is_near_base(const Group &group) const
   const double noise = static_cast<double>(size()) / replicates.runs;
   return replicates.change.squaredNorm() < weak * weak + noise &&
          chaos.of_modes(k, replicates.amplitude, replicates.change).maxCoeff() <
-             alike * chaos.common(k, replicates.amplitude);
+             tuned::scatter::alike * chaos.common(k, replicates.amplitude);
 }
 
 double ExperimentEmulator::Group::amplitude() const

@@ -86,7 +86,7 @@ double Evidence::optimistic_pair(const Model &pair) const
 /// narrow range.
 void Evidence::make_grid(const std::size_t k)
 {
-  constexpr double share_by_amplitude = 0.1, least_ratio = 1.25;
+  constexpr double least_ratio = 1.25;
   for (const double limit : {factors.lower(k), factors.upper(k)}) {
     if (limit == 0.)
       continue;
@@ -104,13 +104,13 @@ void Evidence::make_grid(const std::size_t k)
       side.push_back({u, 0., 0., strongest, prepare(with)});
     }
     const double step = std::log(limit / first) / (n_places - 1.);
-    const double whole = std::log(side.back().strength / prior.just_visible) + share_by_amplitude;
+    const double whole = std::log(side.back().strength / prior.just_visible) + prior.by_amplitude;
     for (std::size_t i = 0; i < side.size(); ++i) {
       const double here = side[i].strength, below = i == 0 ? here : side[i - 1].strength,
                    above = i + 1 == side.size() ? here : side[i + 1].strength;
       const auto mixed = [&](const double by_strength, const double by_amplitude) {
-        return std::log((1. - share_by_amplitude) * by_strength +
-                        share_by_amplitude * by_amplitude);
+        return std::log((1. - prior.by_amplitude) * by_strength +
+                        prior.by_amplitude * by_amplitude);
       };
       side[i].log_prior = mixed(0.5 * std::log(above / below), whole / n_places);
       side[i].log_reference = mixed(0.5 * (above - below), step * here);
@@ -124,8 +124,8 @@ void Evidence::make_grid(const std::size_t k)
     place.log_prior -= std::log(sum);
 }
 
-/// "None of these" is a change of any size, half of it along directions like those of the
-/// catalogue's effects, half along any.
+/// "None of these" is a change of any size, a share of it along directions like those of the
+/// catalogue's effects, the rest along any.
 std::vector<Evidence::Covariance> Evidence::make_discrepancies() const
 {
   const Eigen::Index n = target().data().size();
@@ -141,7 +141,7 @@ std::vector<Evidence::Covariance> Evidence::make_discrepancies() const
   const double trace = along.trace();
   Eigen::MatrixXd shape = Eigen::MatrixXd::Identity(n, n) / static_cast<double>(n);
   if (trace > 0.)
-    shape = 0.5 * shape + 0.5 * along / trace;
+    shape = (1. - prior.along_effects) * shape + prior.along_effects * along / trace;
   std::vector<Covariance> result;
   for (Eigen::Index l = 0; l < nothing().inverse.cols(); ++l) {
     Eigen::MatrixXd noise =

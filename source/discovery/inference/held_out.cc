@@ -8,14 +8,7 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Models that are tested: those of the answer, and others that held-out data might speak for.
-constexpr std::size_t most_tested = 4;
-/// And in each further round of the rest of the answer, where it has many models or others have
-/// taken the place of refuted ones.
-constexpr std::size_t most_followed = 3;
-constexpr unsigned int most_rounds = 3;
-/// Where the result is in doubt, this many times the runs, as far as the budget has room.
-constexpr unsigned int in_doubt = 3;
+using tuned::held_out::most_tested;
 /// Places in a contest.
 constexpr std::size_t base = 0, first = 1;
 
@@ -83,7 +76,8 @@ HeldOut::Test HeldOut::compare(const Evidence &fit, const std::vector<Model> &wa
 
 bool HeldOut::is_doubtful(const TestedModels &tested, const std::vector<Model> &answer) const
 {
-  const double clearly = 0.1 * rule.refuted, hardly = 4. * rule.doubtful;
+  const double clearly = tuned::held_out::clearly * rule.refuted,
+               hardly = tuned::held_out::hardly * rule.doubtful;
   for (std::size_t m = 0; m < tested.models.size(); ++m)
     if (tested.p[m] > clearly && tested.p[m] < hardly && is_among(tested.models[m], answer))
       return true;
@@ -180,14 +174,14 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
     return {{"result", "the budget has no room to test the answer on held-out data"}};
   std::optional<Test> last;
   std::size_t n_compared = 0;
-  for (unsigned int round = 0; round < most_rounds; ++round) {
+  for (unsigned int round = 0; round < tuned::held_out::most_rounds; ++round) {
     if (round > 0 && models.size() == n_compared)
       break;
     n_compared = models.size();
     try {
       Test test = compare(evidence, models, options.validate_runs);
       if (is_doubtful(test.tested, by_fit.answer))
-        test = compare(evidence, models, in_doubt * options.validate_runs);
+        test = compare(evidence, models, tuned::held_out::in_doubt * options.validate_runs);
       if (!by_fit.answer.empty() && !is_among(by_fit.answer.front(), test.tested.models))
         return {{"result", "no run of the held-out experiments with the answer's effects gave all "
                            "that was measured, so it was not tested"}};
@@ -200,7 +194,7 @@ Json HeldOut::test(const Evidence &evidence, Findings &findings)
     Findings left = by_fit;
     refute(last->tested, Untested::stay, rule, judge_anew, left);
     if (left.verdict != Verdict::off_catalogue)
-      add(left.answer, most_followed, models);
+      add(left.answer, tuned::held_out::most_followed, models);
   }
   const std::optional<std::size_t> leader =
       refute(last->tested, Untested::fall, rule, judge_anew, findings);

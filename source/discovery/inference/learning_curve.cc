@@ -10,14 +10,14 @@ namespace {
 /// Number of last rounds with the same answer.
 std::size_t n_alike(const Json &rounds)
 {
-  constexpr double same = 0.05;
   const Json &last = rounds.back();
   const bool detected = last["verdict"] != name_of(Verdict::none);
   const auto is_alike = [&](const Json &row) {
     return row["verdict"] == last["verdict"] &&
-           (!detected || (row["answer"] == last["answer"] &&
-                          std::abs(row["probability"].get<double>() -
-                                   last["probability"].get<double>()) <= same));
+           (!detected ||
+            (row["answer"] == last["answer"] &&
+             std::abs(row["probability"].get<double>() - last["probability"].get<double>()) <=
+                 tuned::ending::same_probability));
   };
   std::size_t n = 0;
   while (n < rounds.size() && is_alike(rounds[rounds.size() - 1 - n]))
@@ -44,15 +44,15 @@ Json describe_round(const Findings &findings, const FactorSpace &space, const st
 
 bool is_steady(const Json &rounds, const double level)
 {
-  constexpr std::size_t enough = 3, enough_near_the_level = 6;
+  constexpr std::size_t enough = tuned::ending::rounds;
   if (rounds.size() < enough)
     return false;
-  const double clear = std::min(4. * level, 0.5);
+  const double clear = std::min(tuned::ending::near_level * level, tuned::ending::not_near_level);
   const bool is_clear = std::all_of(rounds.end() - enough, rounds.end(), [&](const Json &row) {
     return row["verdict"] != name_of(Verdict::none) ||
            row["p of nothing missing"].get<double>() >= clear;
   });
-  return n_alike(rounds) >= (is_clear ? enough : enough_near_the_level);
+  return n_alike(rounds) >= (is_clear ? enough : tuned::ending::rounds_near_level);
 }
 
 } // namespace eunoe::discovery

@@ -1,4 +1,5 @@
 #include <eunoe/discovery/inference/likelihood.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +12,7 @@ namespace {
 /// distances are too long; the shrunk one has no such error.)
 double degrees_of_t(const Target &target)
 {
-  constexpr double least = 10.;
-  return std::max(least,
+  return std::max(tuned::scatter::least_degrees,
                   target.degrees_of_freedom() + 1. - static_cast<double>(target.data().size()));
 }
 

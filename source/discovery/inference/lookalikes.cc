@@ -13,12 +13,12 @@ namespace {
 std::vector<const Evidence::Place *> places_of(const std::vector<Evidence::Place> &places,
                                                const double strength)
 {
-  constexpr double clearly = 2.; // a strength is known to one standard deviation, its unit
   std::vector<const Evidence::Place *> result;
   for (const bool above : {false, true}) {
     const Evidence::Place *nearest = nullptr;
     for (const Evidence::Place &place : places)
-      if ((place.amplitude > 0.) == above && place.strength > strength - clearly &&
+      if ((place.amplitude > 0.) == above &&
+          place.strength > strength - tuned::twins::clearly_weaker &&
           (!nearest ||
            std::abs(place.strength - strength) <= std::abs(nearest->strength - strength)))
         nearest = &place;

@@ -11,8 +11,7 @@ namespace eunoe::discovery {
 
 namespace {
 
-/// Shares of the posterior at which models are run elsewhere.
-constexpr double run_shares[] = {0.1, 0.5, 0.9};
+using tuned::held_out::run_shares;
 
 /// A measurement: some of the modes of one experiment, as linear functions of the coordinates.
 struct Measurable
@@ -174,16 +173,22 @@ PosteriorDraws draw_prior(const Evidence &evidence, const std::size_t effect,
   return result;
 }
 
-/// Most runs of an experiment that run_near makes for one model.
+/// Runs that run_near makes at one amplitude, or on one side of a nuisance.
+unsigned int runs_at_each(const unsigned int runs)
+{
+  return std::max(1u, runs / tuned::held_out::at_each_one_in);
+}
+
+/// Most runs of an experiment that it makes for one model.
 unsigned int most_runs_near(const unsigned int runs)
 {
-  return static_cast<unsigned int>(std::size(run_shares)) * std::max(1u, runs / 2);
+  return static_cast<unsigned int>(std::size(run_shares)) * runs_at_each(runs);
 }
 
 /// What run_near needs of the base model.
 std::vector<DesignPoint> base_near(const unsigned int runs, const FactorSpace &space)
 {
-  return points_of_base(space, 2 * runs, std::max(1u, runs / 2));
+  return points_of_base(space, tuned::held_out::of_base * runs, runs_at_each(runs));
 }
 
 } // namespace
@@ -201,7 +206,6 @@ std::uint64_t runs_to_test(const unsigned int models, const unsigned int runs,
 void run_near(const Evidence &evidence, const std::vector<Model> &models, const unsigned int runs,
               const std::vector<std::string> &experiments, Samples &samples)
 {
-  const unsigned int few = std::max(1u, runs / 2);
   std::vector<DesignPoint> points = base_near(runs, samples.space());
   for (const Model &model : models)
     for (const std::size_t k : model.effects) {
@@ -210,7 +214,7 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
         const double amplitude = posterior.quantile(share);
         if (samples.has_near(k, amplitude, most_runs_near(runs), experiments))
           continue;
-        points.push_back({samples.space().origin(), few});
+        points.push_back({samples.space().origin(), runs_at_each(runs)});
         points.back().position(static_cast<Eigen::Index>(k)) = amplitude;
       }
     }
@@ -220,8 +224,8 @@ void run_near(const Evidence &evidence, const std::vector<Model> &models, const 
 Json plan_for_tie(const Evidence &evidence, const Findings &findings, const StudyOptions &options,
                   Samples &samples)
 {
-  constexpr std::size_t most_models = 4;
-  constexpr unsigned int draws = 100, repeats = 4;
+  using tuned::plan::most_models;
+  constexpr unsigned int draws = 100;
   std::vector<Model> models = findings.answer;
   // One effect or none of the catalogue: nothing is known of what would tell them apart.
   if (models.size() < 2)
@@ -260,7 +264,7 @@ Json plan_for_tie(const Evidence &evidence, const Findings &findings, const Stud
                     experiments.end());
   experiments.insert(experiments.end(), made.begin(), made.end());
   try {
-    const auto measured = imagined(experiments, samples, repeats, known);
+    const auto measured = imagined(experiments, samples, known);
     if (!measured.empty()) {
       for (Json row : rank(Target(measured, samples, options.model_tolerance), options.seed + 6)) {
         row["again"] = false;

@@ -1,4 +1,5 @@
 #include <eunoe/discovery/inference/samples.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <limits>
@@ -93,10 +94,10 @@ Eigen::MatrixXd runs_of_base(const std::vector<Sample> &samples,
 std::vector<DesignPoint> points_of_base(const FactorSpace &space, const unsigned int at_origin,
                                         const unsigned int on_each_side)
 {
-  constexpr double step = 2.;
+  using tuned::runs::nuisance_step;
   std::vector<DesignPoint> points = {{space.origin(), at_origin}};
   for (std::size_t q = 0; q < space.n_nuisances(); ++q)
-    for (const double side : {-step, step}) {
+    for (const double side : {-nuisance_step, nuisance_step}) {
       points.push_back({space.origin(), on_each_side});
       points.back().position(static_cast<Eigen::Index>(space.n_effects() + q)) = side;
     }
@@ -150,12 +151,11 @@ unsigned int Samples::n_missing(const DesignPoint &point, const std::string &exp
 std::size_t Samples::n_near(const std::vector<Sample> &runs, const std::size_t effect,
                             const std::optional<double> amplitude) const
 {
-  constexpr double near = 0.2;
   const std::vector<std::string> alone = {factors.effect(effect).name};
   const auto k = static_cast<Eigen::Index>(effect);
   return static_cast<std::size_t>(std::count_if(runs.begin(), runs.end(), [&](const Sample &run) {
     return effects_of(factors, run.position) == alone &&
-           (!amplitude || std::abs(run.position(k) / *amplitude - 1.) < near);
+           (!amplitude || std::abs(run.position(k) / *amplitude - 1.) < tuned::runs::near);
   }));
 }
 
@@ -179,10 +179,8 @@ bool Samples::has_near(const std::size_t effect, const std::optional<double> amp
 bool Samples::fails_near(const std::size_t effect, const double amplitude,
                          const std::vector<std::string> &experiments) const
 {
-  // One may have failed by chance.
-  constexpr std::size_t too_many = 2;
   return std::any_of(experiments.begin(), experiments.end(), [&](const std::string &experiment) {
-    return n_near(failures.at(experiment), effect, amplitude) >= too_many &&
+    return n_near(failures.at(experiment), effect, amplitude) >= tuned::runs::too_many_failures &&
            n_near(samples.at(experiment), effect, amplitude) == 0;
   });
 }

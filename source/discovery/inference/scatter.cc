@@ -1,4 +1,5 @@
 #include <eunoe/discovery/inference/scatter.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,9 +14,8 @@ Eigen::ArrayXd Scatter::Replicates::squared_change() const
 
 Eigen::ArrayXd Scatter::Replicates::log_likelihood(const Eigen::ArrayXd &variance) const
 {
-  // Chaos is not normal, and modes are correlated beyond what shrinkage leaves.
-  constexpr double independent_share = 0.5;
-  return -0.5 * independent_share * ((runs - 1.) * variance.log() + square.array() / variance);
+  return -0.5 * tuned::scatter::independent_share *
+         ((runs - 1.) * variance.log() + square.array() / variance);
 }
 
 Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all)
@@ -46,8 +46,7 @@ Scatter::Scatter(const std::size_t n_effects, const std::vector<Replicates> &all
 
 double Scatter::common(const std::size_t effect, const double amplitude) const
 {
-  constexpr double most = 10.;
-  return std::clamp(likeliest(effect, amplitude), 1., most);
+  return std::clamp(likeliest(effect, amplitude), 1., tuned::scatter::most_growth);
 }
 
 Eigen::VectorXd Scatter::of_modes(const std::size_t effect, const double amplitude,
@@ -65,11 +64,11 @@ double Scatter::likeliest(const std::size_t effect, const double amplitude) cons
 /// A prior keeps the growth near that of the base model where few replicates tell.
 void Scatter::fit_growth(const std::size_t effect, const std::vector<const Replicates *> &groups)
 {
-  constexpr double prior_deviation = 0.7, least = -1., most = 2.4, step = 0.2;
+  constexpr double least = -1., most = 2.4, step = 0.2;
   const auto column = static_cast<Eigen::Index>(effect);
   double highest = -std::numeric_limits<double>::infinity(), best = 0.;
   for (double b = least; b < most + 0.5 * step; b += step) {
-    double log_likelihood = -0.5 * std::pow(b / prior_deviation, 2);
+    double log_likelihood = -0.5 * std::pow(b / tuned::scatter::growth_deviation, 2);
     growth[effect] = b;
     for (const Replicates *group : groups)
       log_likelihood += group
@@ -88,7 +87,6 @@ void Scatter::fit_growth(const std::size_t effect, const std::vector<const Repli
 /// exponentially.
 void Scatter::fit_shares(const std::size_t effect, const std::vector<const Replicates *> &groups)
 {
-  constexpr double typical = 0.1;
   constexpr double candidates[] = {0., 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.45, 0.7, 1., 1.5};
   const auto column = static_cast<Eigen::Index>(effect);
   const auto n = static_cast<Eigen::Index>(std::size(candidates));
@@ -98,7 +96,7 @@ void Scatter::fit_shares(const std::size_t effect, const std::vector<const Repli
     // Candidates stand for intervals of unequal width.
     const double width =
         0.5 * (candidates[std::min(i + 1, n - 1)] - candidates[std::max<Eigen::Index>(i - 1, 0)]);
-    logs.col(i).setConstant(std::log(width) - share / typical);
+    logs.col(i).setConstant(std::log(width) - share / tuned::scatter::typical_share);
     for (const Replicates *group : groups)
       logs.col(i) += group->log_likelihood(share * share * group->squared_change() +
                                            likeliest(effect, group->amplitude));

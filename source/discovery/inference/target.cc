@@ -1,5 +1,6 @@
 #include <eunoe/discovery/inference/target.h>
 #include <eunoe/discovery/statistics/covariance.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@ namespace {
 /// observable's typical one, so that a difference in the last digit is not significant.
 Eigen::VectorXd least_deviations(const MeasuredExperiment &measured, const Samples &samples)
 {
-  constexpr double least_share = 0.2;
+  using tuned::scatter::least_share;
   const Eigen::MatrixXd rows = runs_of_base(samples.of(measured.name), measured.columns);
   constexpr Eigen::Index fewest = 4;
   if (rows.rows() < fewest)

@@ -64,8 +64,7 @@ Eigen::MatrixXd Twins::draw(const Target::Prediction &truth, const unsigned int 
 Tail::Tail(const Eigen::ArrayXd &draws) : sorted(draws.begin(), draws.end())
 {
   std::sort(sorted.rbegin(), sorted.rend());
-  constexpr std::size_t one_in = 10;
-  const std::size_t n = sorted.size() / one_in;
+  const std::size_t n = sorted.size() / tuned::twins::tail_one_in;
   if (n < 2)
     return;
   threshold = sorted[n];

@@ -8,8 +8,7 @@
 namespace eunoe::discovery {
 
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
-                                         const Samples &samples, const unsigned int repeats,
-                                         const std::set<DataPoint> &without)
+                                         const Samples &samples, const std::set<DataPoint> &without)
 {
   std::vector<MeasuredPoint> points;
   for (const std::string &experiment : experiments) {
@@ -24,7 +23,7 @@ std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experim
           std::all_of(samples.of(experiment).begin(), samples.of(experiment).end(),
                       [c](const Sample &sample) { return std::isfinite(sample.values(c)); });
       if (without.count(point) == 0 && complete && deviation(c) > 0.)
-        points.push_back({point, base.col(c).mean(), deviation(c), repeats});
+        points.push_back({point, base.col(c).mean(), deviation(c), tuned::plan::repeats});
     }
   }
   return sort_by_experiment(points, samples);
@@ -45,8 +44,7 @@ void Unmeasured::run()
 
 Target Unmeasured::target() const
 {
-  constexpr unsigned int repeats = 4;
-  const auto measured = imagined(experiments, samples, repeats);
+  const auto measured = imagined(experiments, samples);
   if (measured.empty())
     throw UserError(
         "No data point varies and is given by every run, so there is nothing to compare. Ask "

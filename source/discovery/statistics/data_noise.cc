@@ -1,5 +1,6 @@
 #include <eunoe/discovery/statistics/data_noise.h>
 #include <eunoe/discovery/statistics/logarithms.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <cmath>
@@ -88,17 +89,16 @@ double ExcessVariance::draw(RandomStream &random) const
 InstrumentNoise::InstrumentNoise(const Modes &modes, const Eigen::MatrixXd &replicate_covariance,
                                  const Eigen::VectorXd &deviation, const Eigen::VectorXd &repeats)
 {
-  // An instrument is chosen such that its noise is a small part of the scatter, as a rule: half of
-  // the prior (half of a Cauchy distribution) is below `usual`.
-  constexpr double usual = 0.1, lowest = 0.01, highest = 10., step = 1.35;
+  // The prior is half of a Cauchy distribution.
+  using tuned::instrument::coarsest;
+  constexpr double lowest = 0.01, step = 1.35;
   std::vector<double> logs;
-  for (double common = lowest; common < highest; common *= step) {
+  for (double common = lowest; common < coarsest; common *= step) {
     std::vector<ExcessVariance> groups;
-    double log = std::log(common) - std::log1p(std::pow(common / usual, 2));
+    double log = std::log(common) - std::log1p(std::pow(common / tuned::instrument::usual, 2));
     for (const Modes::Group &group : modes.groups()) {
       const Witness w = witness(group, replicate_covariance, deviation, repeats);
-      // An observable that hardly varies between runs says nothing about the others.
-      const bool is_far = w.ratio > highest;
+      const bool is_far = w.ratio > coarsest;
       groups.emplace_back(w.ratio, w.degrees_of_freedom, is_far ? w.ratio : common);
       log += is_far ? 0. : groups.back().log_evidence();
     }

@@ -23,7 +23,7 @@ Eigen::VectorXd base_terms(const Eigen::VectorXd &nuisances)
 double fit_mixture(const Eigen::MatrixXd &logs, Eigen::MatrixXd &probabilities)
 {
   constexpr int iterations = 20;
-  constexpr double in_advance = 0.5;
+  using tuned::kernel::in_advance;
   const Eigen::VectorXd largest = logs.rowwise().maxCoeff();
   const Eigen::MatrixXd likelihoods = (logs.colwise() - largest).array().exp();
   Eigen::VectorXd shares =
@@ -154,12 +154,12 @@ void GaussianProcess::choose_kernel()
       shares = probabilities;
     }
   };
-  for (const double power : {0.45, 0.7, 1.})
-    for (const double roughness : {0.03, 0.3, 1.})
+  for (const double power : tuned::kernel::powers)
+    for (const double roughness : tuned::kernel::roughness)
       consider({power, roughness, 0.});
   const Kernel without = best;
   if (all.front().nuisances.size() > 0)
-    for (const double interaction : {0.01, 0.05, 0.2})
+    for (const double interaction : tuned::kernel::interactions)
       consider({without.power, without.roughness, interaction});
 }
 

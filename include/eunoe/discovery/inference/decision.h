@@ -4,30 +4,11 @@
 #include <eunoe/discovery/inference/calibration.h>
 #include <eunoe/discovery/inference/lookalikes.h>
 #include <eunoe/discovery/study.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <vector>
 
 namespace eunoe::discovery {
-
-/// All that is tuned in the decisions of a study; what it needs besides, its own twins give.
-struct DecisionRule
-{
-  /// Probability that the models of an answer must have together. Larger: fewer wrong names, more
-  /// ties.
-  double credible = 0.95;
-  /// A model that data lie this far from does not describe them. Smaller than the level of the
-  /// study, as many models are looked at.
-  double refuted = 0.01;
-  /// Where data lie this far from a model, "none of these" stays in the answer.
-  double doubtful = 0.05;
-  unsigned int null_draws = 400, twins = 300, predictive_draws = 400;
-
-  /// With fewer draws, for the rounds before the last.
-  DecisionRule quick() const
-  {
-    return {credible, refuted, doubtful, null_draws / 2, twins / 2, predictive_draws / 2};
-  }
-};
 
 /// What a study has found so far.
 struct Findings

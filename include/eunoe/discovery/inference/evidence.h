@@ -2,24 +2,12 @@
 #define eunoe_discovery_inference_evidence_h
 
 #include <eunoe/discovery/inference/likelihood.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <optional>
 #include <vector>
 
 namespace eunoe::discovery {
-
-/// What is not estimated from runs: prior probabilities of the models, given that something is
-/// missing. Each share is divided equally among the models of its kind.
-struct Prior
-{
-  double one_effect = 0.88; ///< a model lacks one effect of the catalogue as a rule
-  /// Seldom two: with more, a pair stands too readily for what is not in the catalogue.
-  double two_effects = 0.02;
-  double none_of_these = 0.1; ///< or something that is not in the catalogue
-  double just_visible = 1.;   ///< strength of the smallest amplitude: below it nothing is seen
-  double least_range = 1e-3;  ///< smallest amplitude that is considered, in scales
-  double weakest_discrepancy = 3., strongest_discrepancy = 48.; ///< strengths off the catalogue
-};
 
 /// A model: effects that are missing, none for "nothing", or a discrepancy of no catalogued shape.
 struct Model

@@ -5,6 +5,7 @@
 #include <eunoe/discovery/inference/emulator.h>
 #include <eunoe/discovery/measured_data.h>
 #include <eunoe/discovery/statistics/data_noise.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <algorithm>
 #include <string>
@@ -53,7 +54,7 @@ public:
   Prediction predict(const EffectPositions &effects) const;
 
   /// The instrument's noise is known by its posterior: levels of equal probability stand for it.
-  static constexpr std::size_t n_noise_levels = 5;
+  static constexpr std::size_t n_noise_levels = tuned::instrument::n_levels;
   /// Variance of each coordinate between data and prediction, nuisances apart, a column for each
   /// level of the instrument's noise.
   Eigen::MatrixXd variances(const Prediction &prediction) const;

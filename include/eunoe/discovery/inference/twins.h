@@ -41,7 +41,7 @@ private:
 };
 
 /// Values of a statistic for draws of a truth, and the probability to be at or above another value.
-/// Beyond the largest tenth of the draws the tail is exponential, so that no p-value is limited by
+/// Beyond some of the largest draws the tail is exponential, so that no p-value is limited by
 /// their number.
 class Tail
 {

@@ -12,7 +12,7 @@ namespace eunoe::discovery {
 /// without an instrument's noise: what stands for data before there are any.
 /// @param without data points that are left out
 std::vector<MeasuredExperiment> imagined(const std::vector<std::string> &experiments,
-                                         const Samples &samples, unsigned int repeats,
+                                         const Samples &samples,
                                          const std::set<DataPoint> &without = {});
 
 /// What is known of experiments before anything is measured.
@@ -25,7 +25,7 @@ public:
   /// Runs the base model and all effects.
   void run();
 
-  /// Experiments of four repeats without an instrument's noise, beside their emulators.
+  /// The experiments, imagined as measured, beside their emulators.
   Target target() const;
 
   const std::vector<std::string> experiments;

@@ -1,7 +1,10 @@
 #ifndef eunoe_discovery_statistics_gaussian_process_h
 #define eunoe_discovery_statistics_gaussian_process_h
 
+#include <eunoe/discovery/tuned.h>
+
 #include <Eigen/Dense>
+#include <iterator>
 #include <vector>
 
 namespace eunoe::discovery {
@@ -64,7 +67,8 @@ public:
   /// @param base what other runs say of the base model
   /// @param variances that a value's kernel may have, from nothing to a strong effect
   GaussianProcess(std::vector<Point> points, const BaseInformation &base,
-                  const std::vector<double> &variances = {0., 0.01, 0.16, 2.5, 40., 650., 1e4});
+                  const std::vector<double> &variances = {std::begin(tuned::kernel::variances),
+                                                          std::end(tuned::kernel::variances)});
 
   struct Prediction
   {

@@ -2,6 +2,7 @@
 #define eunoe_discovery_statistics_modes_h
 
 #include <eunoe/discovery/data_point.h>
+#include <eunoe/discovery/tuned.h>
 
 #include <Eigen/Dense>
 #include <vector>
@@ -30,7 +31,7 @@ public:
   Modes(const std::vector<DataPoint> &points, const Eigen::VectorXd &deviations);
 
   /// Largest number of modes of one observable.
-  static constexpr Eigen::Index most_modes = 8;
+  static constexpr Eigen::Index most_modes = tuned::scatter::most_modes;
 
   Eigen::Index n_modes() const { return matrix.rows(); }
   const std::vector<Group> &groups() const { return all_groups; }
