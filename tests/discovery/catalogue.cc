@@ -1,7 +1,6 @@
 // The effects that come with the program: each is understood, its null value leaves no trace in the
 // input of the micro experiments, and its scale does.
 
-#include <eunoe/core/files.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/study_input.h>
 

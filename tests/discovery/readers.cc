@@ -1,11 +1,14 @@
-// The error messages for bad studies, effects and measurements; and files that are written can be
-// read back.
+// The error messages for bad studies, effects and measurements; what tells cases apart; and files
+// that are written can be read back.
 
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/study_input.h>
 
 #include "../tests.h"
 #include "drop_process.h"
+
+#include <fstream>
+#include <set>
 
 namespace {
 
@@ -124,6 +127,39 @@ void doubts()
         problems.empty() && problems.warnings().empty() && experiment.doubts().size() == 1);
 }
 
+/// The key of a case of the box.
+std::string key_with(const std::vector<std::string> &overrides,
+                     const RunRequest &request = {"box", {}, 1})
+{
+  Problems problems;
+  ExperimentParameters box;
+  box.name = "box";
+  box.case_file = folder + "/drop.prm";
+  box.overrides = overrides;
+  const Experiment experiment(box, MPI_COMM_WORLD, problems);
+  const std::vector<Effect> effects = read_effects({folder + "/effects"}, MPI_COMM_WORLD, problems);
+  const StudyCase one = experiment.make_case(effects, request, MPI_COMM_WORLD);
+  return problems.empty() && one.problem.empty() ? one.key : "";
+}
+
+void keys()
+{
+  const std::string base = key_with({}), file = "readers_named.txt";
+  check("defaults that are written do not make another case",
+        !base.empty() && key_with({"drop/number = 48"}) == base &&
+            key_with({"drop/number = 12", "drop/number = 48"}) == base &&
+            key_with({}, {"box", {{"tilt", 0.}}, 1}) == base);
+  std::set<std::string> different = {
+      base, key_with({"drop/number = 12"}), key_with({}, {"box", {}, 2}),
+      key_with({}, {"box", {{"tilt", 1.}}, 1}), key_with({}, {"box", {{"tilt", -1.}}, 1})};
+  for (const std::string text : {"first", "second"}) {
+    std::ofstream(file) << text;
+    different.insert(key_with({"mesh/file name = " + file}));
+  }
+  check("other values, seeds, effects and contents of files do",
+        different.size() == 7 && different.count("") == 0, std::to_string(different.size()));
+}
+
 void measurements()
 {
   const std::string row = "box,height,0,1e-3,1e-4,3,fit\n";
@@ -169,5 +205,6 @@ EUNOE_MPI_TEST()
   studies();
   effects();
   doubts();
+  keys();
   measurements();
 }

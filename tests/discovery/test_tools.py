@@ -269,6 +269,9 @@ class PilotOfASuite(InFolder):
         suite = Suite(parse(["program", "study.prm", str(self.folder), "--tier", "range"]))
         return suite, Strengths(pilot)
 
+    def run_with(self, experiment: str, **amplitudes: float) -> dict:
+        return {"experiment": experiment, "amplitudes": amplitudes}
+
     def gives(self, suite: Suite, case: Case, strengths: Strengths) -> tuple[bool, str]:
         with contextlib.redirect_stdout(io.StringIO()) as words:
             return suite.gives_amplitudes(case, strengths), words.getvalue()
@@ -276,7 +279,7 @@ class PilotOfASuite(InFolder):
     def test_a_pilot_that_is_not_ready_is_refused(self) -> None:
         known = {"cohesion": [[1e-4, 5.]]}
         suite, strengths = self.suite_with(strengths=known, untried=["rolling_resistance"],
-                                           ledger=[{"amplitudes": {"cohesion": 1e-4}}])
+                                           ledger=[self.run_with("layers", cohesion=1e-4)])
         cohesion = Case("c", "single", 1, 1, {"cohesion": 4.})
         rolling = Case("r", "single", 1, 1, {"rolling_resistance": -4.})
         suite.refuse_unready_pilot([cohesion], strengths)
@@ -292,8 +295,17 @@ class PilotOfASuite(InFolder):
         with self.assertRaisesRegex(Failure, "simulated rolling_resistance below its null value"):
             suite.refuse_unready_pilot(both, strengths)
 
+    def test_runs_of_held_out_experiments_do_not_make_it_ready(self) -> None:
+        rolling = Case("r", "single", 1, 1, {"rolling_resistance": 4.})
+        held_out = self.run_with("thick", rolling_resistance=0.1)
+        for run in (held_out, held_out | {"failure": "broken"}):
+            self.folder /= "suite"
+            suite, strengths = self.suite_with(strengths={}, untried=["rolling_resistance"], ledger=[run])
+            with self.assertRaisesRegex(Failure, "not ready: .* simulated rolling_resistance above its null value"):
+                suite.refuse_unready_pilot([rolling], strengths)
+
     def test_what_cannot_be_simulated_is_left_out_and_said_why(self) -> None:
-        run = {"amplitudes": {"rolling_resistance": 0.1}, "failure": "broken"}
+        run = self.run_with("layers", rolling_resistance=0.1) | {"failure": "broken"}
         suite, strengths = self.suite_with(strengths={}, untried=["rolling_resistance"], ledger=[run])
         for name, why in (("rolling_resistance", "rolling_resistance failed in all of its runs"),
                           ("cohesion", "cohesion acts in none of its measured experiments"),

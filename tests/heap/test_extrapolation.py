@@ -6,6 +6,7 @@ import contextlib
 import io
 import math
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
@@ -35,6 +36,20 @@ class Lines(unittest.TestCase):
     def test_other_fillings_are_not_pooled(self) -> None:
         heaps = [Heap("PS3", fill, disc, 40.) for fill, disc in ((6., 2.), (6., 3.), (12., 4.))]
         self.assertEqual(len(table_of(heaps, 10.)), 1)
+
+    def test_what_is_refused(self) -> None:
+        with tempfile.TemporaryDirectory() as folder:
+            for lines in ("properties,disc_mm\nPS3,2\n", "properties,disc_mm,fill_ratio,heap_base_angle\nPS3,2,6,\n",
+                          "properties,disc_mm,fill_ratio,heap_base_angle\nPS3,2\n"):
+                file = Path(folder) / "other.csv"
+                file.write_text(lines, encoding="utf-8")
+                with contextlib.redirect_stderr(io.StringIO()) as errors:
+                    self.assertEqual(commands.run("heap-extrapolation", [str(file)]), 1)
+                self.assertIn("other.csv is no table of contrib/tools heap-size", errors.getvalue())
+        with contextlib.redirect_stderr(io.StringIO()) as errors, self.assertRaises(SystemExit) as end:
+            commands.run("heap-extrapolation", [str(KEPT), "--to", "0"])
+        self.assertEqual(end.exception.code, 2)
+        self.assertIn("a diameter is positive", errors.getvalue())
 
     def test_the_page_has_what_the_kept_heaps_give(self) -> None:
         output = io.StringIO()

@@ -17,19 +17,22 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 from unittest import mock
 
 if any(importlib.util.find_spec(name) is None for name in ("numpy", "matplotlib", "vtkmodules")):
     print("skipped: numpy, matplotlib or VTK is missing")
     sys.exit(0)
 
+import numpy as np
+
 from eunoe import commands
 from eunoe.intervals import Interval
 from eunoe.pictures.record import digest, read_record
 from eunoe.reproduction.cases import CASES, VARIANTS, Case
 from eunoe.reproduction.page import BLOCKS, OTHER_ENDS, other_ends
-from eunoe.reproduction.results import Findings, length_name
-from eunoe.reproduction.verdict import agreement, in_layers
+from eunoe.reproduction.results import Findings, Result, length_name
+from eunoe.reproduction.verdict import agreement, by_chance, in_layers, simulated_table
 from eunoe.repository import DOC, ROOT
 
 HERE = Path(__file__).resolve().parent
@@ -102,6 +105,16 @@ class Verdict(unittest.TestCase):
                                      ([7, None], 0.5, "earlier, in 1 of 2 runs, on 0.25 of that length"),
                                      ([None, None], 1., "no: in none of 2 runs")):
             self.assertEqual(in_layers(layers, (9, 13), length), said)
+
+    def test_runs_that_cannot_tell_say_nothing(self) -> None:
+        findings = Findings(Path("nowhere"), ())
+        case = Case("PS1", 0.5, 1)
+        for n_layers, rows in ((3, 0), (21, 1)):  # without maps, and of too few layers for a peak
+            layers = SimpleNamespace(layer=np.arange(n_layers), lrd=np.linspace(0.5, 0.6, n_layers))
+            findings.results[case.group] = [Result(case.name, layers, None, None, case, {})]
+            table, differences = simulated_table(findings)
+            self.assertEqual([row[0] for row in table[1:]], ["LRD peaks in layer"] * rows)
+            self.assertEqual(by_chance(differences), "")
 
 
 class Campaign(unittest.TestCase):

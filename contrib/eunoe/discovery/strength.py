@@ -18,11 +18,12 @@ class Strengths:
         self.null = {e["name"]: e["null_value"] for e in content["catalogue"]}
         self.known = content["strengths"]
         self.untried = set(content.get("untried", []))
-        # Whether any run came to its end, by effect and side of its null value. An emulator has strengths on both
-        # sides as soon as there are runs on one.
+        # Whether any run of a measured experiment came to its end, by effect and side of its null value: the table
+        # has runs of held-out experiments, too. An emulator has strengths on both sides as soon as there are runs on one.
+        measured = {row["experiment"] for row in content["envelopes"]}
         self.succeeded: dict[tuple[str, bool], bool] = {}
         for run in content["ledger"]:
-            for name, amplitude in run["amplitudes"].items():
+            for name, amplitude in run["amplitudes"].items() if run["experiment"] in measured else ():
                 side = name, amplitude > self.null[name]
                 self.succeeded[side] = self.succeeded.get(side, False) or "failure" not in run
 

@@ -137,19 +137,19 @@ def in_layers(layers: list[int | None], simulated: tuple[int, int], length: floa
 
 
 def _when(groups: list[Group]) -> Iterator[list[str]]:
-    """In which layers things happen on the paper's plates of another length, and here."""
+    """In which layers things happen on the paper's plates of another length, and here: of the runs that can tell."""
     wanted = {"zones at rest grow from both ends and meet in layer":
-                  (SIMULATED_MEETING, lambda run: run.zones.meet if run.zones else None),
-              "the bed is at rest from layer": (SIMULATED_REST, lambda run: run.zones.at_rest_from if run.zones else None),
-              "LRD peaks in layer": (SIMULATED_PEAK, lambda run: int(run.peak[1]))}
-    for title, (simulated, number) in wanted.items():
+                  (SIMULATED_MEETING, lambda group: [run.zones.meet for run in group.mapped]),
+              "the bed is at rest from layer": (SIMULATED_REST, lambda group: [run.zones.at_rest_from for run in group.mapped]),
+              "LRD peaks in layer":
+                  (SIMULATED_PEAK, lambda group: [int(run.peak[1]) for run in group.runs if not math.isnan(run.peak[1])])}
+    for title, (simulated, found_in) in wanted.items():
         for group in groups:
-            case = group.runs[0].case
-            if case.properties not in simulated:
+            case, layers = group.runs[0].case, found_in(group)
+            if case.properties not in simulated or not layers:
                 continue
             first, last = simulated[case.properties]
             there = f"{first}" if first == last else f"{first} to {last}"
-            layers = [number(run) for run in group.runs]
             yield [title, f"{case.properties}, {length_name(SIMULATED_LENGTH)}: {there}", f"{group.label}: {layers_of(layers)}",
                    in_layers(layers, (first, last), case.length)]
 
@@ -176,8 +176,10 @@ def _longest(findings: Findings) -> list[Group]:
 
 
 def by_chance(differences: list[Interval]) -> str:
-    """How many of so many comparisons would seem to be differences though there is none."""
+    """How many of so many comparisons would seem to be differences though there is none; nothing if none has an interval."""
     known = [found for found in differences if not math.isnan(found.half)]
+    if not known:
+        return ""
     significant = sum(found.is_significant for found in known)
     return (f"{significant} of the {len(known)} differences in these tables that have an interval are significant; if there were "
             f"none, about {max(1, round(0.05 * len(known)))} would be by chance.")

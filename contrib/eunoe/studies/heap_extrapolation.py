@@ -46,8 +46,12 @@ def read_heaps(files: Sequence[Path]) -> list[Heap]:
     heaps = []
     for file in files:
         with file.open(encoding="utf-8", newline="") as table:
-            heaps += [Heap(row["properties"], float(row["fill_ratio"]), float(row["disc_mm"]), float(row["heap_base_angle"]))
-                      for row in csv.DictReader(line for line in table if not line.startswith("#"))]
+            rows = csv.DictReader(line for line in table if not line.startswith("#"))
+            try:
+                heaps += [Heap(row["properties"], float(row["fill_ratio"]), float(row["disc_mm"]), float(row["heap_base_angle"]))
+                          for row in rows]
+            except (KeyError, TypeError, ValueError) as error:
+                raise Failure(f"{file} is no table of contrib/tools heap-size: {type(error).__name__}: {error}.") from None
     return heaps
 
 
@@ -82,6 +86,8 @@ def main(words: list[str]) -> int:
     parser.add_argument("tables", type=Path, nargs="+", help="heap_size.csv")
     parser.add_argument("--to", type=float, default=10., help="diameter of the disc in mm (10)")
     options = parser.parse_args(words)
+    if options.to <= 0.:
+        parser.error("argument --to: a diameter is positive")
     table = table_of(read_heaps(options.tables), options.to)
     if len(table) == 1:
         raise Failure("No property set has heaps of one fill ratio on three discs or more, so no line can be fitted. Run more "

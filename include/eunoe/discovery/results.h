@@ -18,7 +18,7 @@ public:
   /// Creates the folder, or makes sure that it holds the same study. Throws a UserError on every
   /// rank, which says what differs; collective.
   /// @param identity all that decides the study: names, and for each a text whose hash is kept
-  /// @param first_row number of the last row that the table of runs has now
+  /// @param last_row number of the last row that the table of runs has now
   /// @return number of the last row that it had when the study began; nothing if it begins now
   std::optional<std::int64_t> open(const std::map<std::string, std::string> &identity,
                                    std::int64_t last_row);

@@ -5,7 +5,6 @@
 #include <boost/random/discrete_distribution.hpp>
 
 #include <algorithm>
-#include <cmath>
 
 namespace eunoe::discovery {
 
