@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <new>
 
 namespace eunoe {
 
@@ -35,6 +36,10 @@ struct Defect
       is_damage = true;
     } catch (const UserError &problem) {
       text = problem.what();
+    } catch (const std::bad_alloc &) {
+      // It may be whole, and then no older one may take its place.
+      text = "The checkpoint " + path +
+             " needs more memory than there is. Start the run on more nodes.";
     } catch (const std::exception &) {
       // Of JSON, or of a value in it.
       text = "The checkpoint " + path + " is damaged: its head is not understood.";

@@ -141,8 +141,10 @@ void ParticleSystem::rebuild(const std::vector<Solid> &solids,
 
 std::vector<ContactGrid::Moved> ParticleSystem::follow(const double farthest)
 {
-  // References in a domain that moves are where it was at the last search.
-  const double little = std::isfinite(farthest) && !domain.moves() ? 0.25 * farthest : 0.;
+  // References in a domain that moves are where it was at the last search. However far the farthest
+  // has gone, two others that keep theirs must not use up the skin.
+  const double little =
+      std::isfinite(farthest) && !domain.moves() ? 0.25 * std::min(farthest, skin) : 0.;
   std::vector<ContactGrid::Moved> moved;
   for (std::size_t row = 0; row < particles.n_owned; ++row) {
     Quad &x = particles.position[row];

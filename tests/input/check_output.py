@@ -225,6 +225,11 @@ FACTS = {
                                ["Particle type 0: diameters 500 to 1000 um; the time step",
                                 "Disk: 1 picture of about", "  particles:  2 at most, 2 on average",
                                 "  steps:      1200001 of 2e-06 s", "  core-hours: about 4.2e-05 ("]),
+    "a short period": ([*LIST, *PERIOD, "mesh/grid arguments = 4, 4, 1 : 0, 0, 0 : 0.02, 0.02, 0.0021 : true",
+                        "insertion info/list x = 0.005, 0.015", "insertion info/list z = 0.001, 0.001"],
+                       ["A period of the domain is short: the skin is 5e-05 m instead of 0.0003 m"]),
+    "a threshold that follows the flow": ([MODEL + "contact detection/neighborhood threshold = auto"],
+                                          ["Neighborhood threshold: 1.3 at first, then as the flow needs it"]),
 }
 
 # Name, file, settings, a warning or fact, and the number of all warnings. The widest case needs 2.6 TB.

@@ -21,6 +21,8 @@ namespace {
 const std::string input = "set a = 1\n", path = "written.checkpoint", other = "other.checkpoint";
 /// Of the format (bytes).
 constexpr std::size_t chunk = 4194304, title = 19;
+/// How a file is refused whose checksums are not right.
+const std::string at_end = "is cut short, or damaged at its end: the checksums from byte ";
 
 struct SectionOfTest
 {
@@ -195,7 +197,6 @@ void check_damages(const std::string &file, const std::size_t n, const std::size
   expect("two places", with_flipped_bit(flip(7 + title), n - 7),
          damage(0, chunk - 1, ", nor are further ones up to byte " + std::to_string(n - 1)));
 
-  const std::string at_end = "is cut short, or damaged at its end: the checksums from byte ";
   const std::string table = at_end + std::to_string(n) + " on do not fit.";
   expect("length of the contents", flip(n + 1), table);
   expect("checksum of a chunk", flip(n + 8 + 5), table);
@@ -239,6 +240,34 @@ void check_versions(const std::string &file, const std::string &contents, const 
          "is damaged: its head is not understood.");
 }
 
+/// Contents of exactly so many chunks or a byte more or less, without a row.
+void check_lengths()
+{
+  const auto write_and_read = [](const std::size_t n_more) {
+    CheckpointWriter writer(MPI_COMM_WORLD);
+    writer.head["input"] = std::string(n_more, 'x');
+    writer.add_rows("none", {}, Rows());
+    const std::uint64_t size = writer.write(other);
+    const Checkpoint checkpoint(other, MPI_COMM_WORLD);
+    const bool ok = checkpoint.head.at("input").get<std::string>().size() == n_more &&
+                    checkpoint.rows("none").size() == 0;
+    return everywhere(ok) ? size : 0;
+  };
+  const auto behind = [](const std::size_t n) { return 8 + (n + chunk - 1) / chunk * 4 + 8; };
+  const std::uint64_t least = write_and_read(0) - behind(1);
+  for (const std::size_t n : {chunk - 1, chunk, chunk + 1, 2 * chunk}) {
+    check("contents of " + std::to_string(n) + " bytes",
+          write_and_read(n - least) == n + behind(n));
+    std::ifstream stream(other, std::ios::binary);
+    const std::string file{std::istreambuf_iterator<char>(stream), {}};
+    MPI_Barrier(MPI_COMM_WORLD);
+    expect("the last of them", with_flipped_bit(file, n - 1),
+           damage((n - 1) / chunk * chunk, n - 1));
+    const std::string cut = answer(file.substr(0, n));
+    check("cut off", cut.find(at_end) != std::string::npos, "got '" + cut + "'");
+  }
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -257,6 +286,7 @@ EUNOE_MPI_TEST()
   std::memcpy(&n_head, file.data() + title, sizeof n_head);
   check_damages(file, contents.size(), n_head);
   check_versions(file, contents, n_head);
+  check_lengths();
 
   MPI_Barrier(MPI_COMM_WORLD);
   if (is_first_rank())

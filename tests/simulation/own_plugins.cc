@@ -59,7 +59,7 @@ public:
       p.position[k].add(share * dt * p.velocity[k].vec());
       p.start_forces(k);
     });
-    return {0.};
+    return {Travel::unknown}; // so that contacts are searched at every step
   }
   void complete(ParticleArrays &, double) override {}
 

@@ -1,11 +1,12 @@
 // When contacts are searched: as soon as two bodies together may have moved by the allowed share of
 // the skin, on whatever rank they are. These are the two farthest particles, or the farthest and a
 // solid.
-// Reference: two numbers of all, sorted; the steps of a flight.
+// Reference: two numbers of all, sorted; the steps of a flight; all pairs that touch.
 
 #include <eunoe/engine/search_criterion.h>
 
 #include "moving_solids.h"
+#include "touching.h"
 
 #include <limits>
 
@@ -132,6 +133,25 @@ unsigned long long searches_of_flight()
   return flight->get_system().n_searches() - at_start;
 }
 
+/// Two spheres meet, which are at first farther apart than the skin of 0.05 mm, while a third one
+/// goes by 0.5 mm in every step, so that contacts are searched at each.
+Touching meeting_beside_fast_grain()
+{
+  constexpr double dt = 1e-5;
+  Case meeting(box_input(dt, 28. * dt,
+                         "subsection insertion info\n set insertion method = list\n"
+                         " set list x = -0.53e-3, 0.53e-3, -9e-3\n set list y = 0, 0, 5e-3\n"
+                         " set list z = 0, 0, 0\n set list diameters = 1e-3, 1e-3, 1e-3\n"
+                         " set list velocity x = 0.167, -0.167, 50\nend\n"
+                         "subsection model parameters\n subsection contact detection\n"
+                         "  set neighborhood threshold = 1.05\n end\nend\n"));
+  Touching touching;
+  constexpr double no_period = 1.;
+  meeting.run([&](Simulation &simulation) { touching.count(simulation, no_period); });
+  MPI_Allreduce(MPI_IN_PLACE, &touching.n_missed, 1, MPI_UNSIGNED_LONG, MPI_SUM, MPI_COMM_WORLD);
+  return touching;
+}
+
 /// Whether ranks that would list near pairs at different steps are told the same.
 bool is_share_common()
 {
@@ -180,6 +200,10 @@ EUNOE_MPI_TEST()
   // Every 25 steps of 0.0097 mm are more than 80 % of the skin of 0.3 mm.
   const unsigned long long searches = searches_of_flight();
   check("a flight alone", searches == 16, std::to_string(searches) + " searches");
+  const Touching touching = meeting_beside_fast_grain();
+  check("a grain that is faster than the skin hides no contact of others",
+        touching.n > 0 && touching.n_missed == 0,
+        std::to_string(touching.n_missed) + " of " + std::to_string(touching.n) + " missed");
   parameters.frequency = 10;
   check("dynamic looks at every step", is_due(parameters, 1., 1., 9));
   parameters.method = "constant";

@@ -21,7 +21,8 @@ public:
   /// Brings positions to the end of the step and starts the forces of the particles that are awake
   /// anew, see `ParticleArrays::start_forces`.
   /// @param dt (s)
-  /// @return how far the particles that are awake have gone
+  /// @return how far the particles that are awake have gone; `Travel::unknown` lets contacts be
+  ///         searched at every step
   virtual Travel begin_step(ParticleArrays &particles, double dt) = 0;
 
   /// To be called when the forces at the end of the step are complete.
