@@ -24,6 +24,7 @@ from .pictures import picture_name
 from .results import HELD, OPEN, Findings, Result, length_name, origin_of, plain_label
 from .verdict import by_chance, measured_table, simulated_table
 
+EARLY = (YOUNG, (5, 7), (8, 10))  # spans in which a bed is pressed together
 NOTHING = "No run of these has finished yet."
 
 
@@ -73,24 +74,27 @@ def under_way_block(findings: Findings) -> str:
     layers."""
     after = f"layers {LATER[0]} to the last"
     table = [["run", "layers weighed", span(PLATEAU), f"LRD of {after} (%)",
-              f"of the middle half, layers {PLATEAU[0]} to {PLATEAU[1]} (%)", f"of the middle half, {after} (%)", "rise (%)",
+              *(f"bed below, layers {first} to {last} (%)" for first, last in EARLY), "rise of LRD (%)",
               f"gained five layers and more below, layers {PLATEAU[0]} to {PLATEAU[1]} (% of a layer a pass)", f"the same, {after}"]]
     passes = [["run", "pass", "displacement of what lay there (um)", "zones at rest cover (%)",
                "removed (% of the mass before)"]]
-    measured = measured_group(read_measured())
+    measured, scatter = measured_group(read_measured()), CommonScatter(findings.alike())
     for run in findings.under_way:
-        later = (LATER[0], max(run.layers.last, LATER[0]))
-        groups = [(f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}", [run]),
-                  *((group.label, f"{len(group.runs)} runs", group.runs) for group in findings.lengths(run.case.properties)),
-                  (measured.label, f"{len(measured.runs)} repeats", measured.runs)]
-        for name, extent, runs in groups:
-            means = [[one.mean_lrd(PLATEAU) for one in runs], [one.mean_lrd(later) for one in runs],
-                     [one.middle_lrd(PLATEAU) for one in runs], [one.middle_lrd(later) for one in runs],
-                     [one.mean_lrd(later) - one.mean_lrd(PLATEAU) for one in runs],
-                     [one.compaction(PLATEAU) for one in runs], [one.compaction(later) for one in runs]]
-            table.append([name, extent, *(text_of(mean_of(values), 100.) for values in means)])
-            passes += [[name, str(layer), *_pass(runs, layer)] for layer in sorted({1, 5, 10, run.layers.last})
-                       if layer <= run.layers.last and all(one.maps for one in runs)]
+        later = (LATER[0], run.layers.last)
+        groups = [(f"`{run.name}`", f"{len(run.layers)} of {N_LAYERS}", Group(run.name, [run])),
+                  *((group.label, f"{len(group.runs)} runs", group) for group in findings.lengths(run.case.properties)),
+                  (measured.label, f"{len(measured.runs)} repeats", measured)]
+        early: list[Number] = [partial(SpreadRun.mean_lrd, span=PLATEAU), partial(SpreadRun.compaction, span=PLATEAU),
+                               *(partial(SpreadRun.lrd_below, span=layers) for layers in EARLY)]
+        late: list[Number] = [partial(SpreadRun.mean_lrd, span=later), lambda one, later=later: one.mean_lrd(later) - one.mean_lrd(PLATEAU),
+                              partial(SpreadRun.compaction, span=later)]
+        for name, extent, group in groups:
+            lrd, gained, *bed = (text_of(scatter.mean(group, number), 100.) for number in early)
+            lrd_later, rise, gained_later = (text_of(scatter.mean(group, number), 100.) if later[1] >= later[0] else ""
+                                             for number in late)
+            table.append([name, extent, lrd, lrd_later, *bed, rise, gained, gained_later])
+            passes += [[name, str(layer), *_pass(group.runs, layer)] for layer in sorted({1, 5, 10, run.layers.last})
+                       if layer <= run.layers.last and all(one.maps for one in group.runs)]
     if not findings.under_way:
         return "None."
     shown = [*findings.under_way, *(one for run in findings.under_way
@@ -139,7 +143,7 @@ def levels_block(findings: Findings) -> str:
         **{f"above the level after layer {layer} (% of a layer)": partial(SpreadRun.above_level, layer=layer)
            for layer in (first, PLATEAU[1], last)},
         **{f"bed below, layers {layers[0]} to {layers[1]} (%)": partial(SpreadRun.lrd_below, span=layers)
-           for layers in (YOUNG, (5, 7), (8, 10), LATER)},
+           for layers in (*EARLY, LATER)},
         "rise of the bed, first to last (%)": lambda run: run.lrd_below(LATER) - run.lrd_below(YOUNG),
         **{f"CRD after layer {layer} (%)": partial(SpreadRun.crd, layer=layer) for layer in (PLATEAU[1], last)}}
     table: Table = [["", *numbers]]
