@@ -213,7 +213,7 @@ class Campaign(unittest.TestCase):
         (self.states / "die").touch()
         self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 1)
         self.assertIn("No run of these has finished yet.", self.page.read_text())
-        self.assertRegex(self.page.read_text(), r"\| `PS1_L0\.25_seed1` \| 5 of 21 \| +\| +\| +\| +\|")
+        self.assertRegex(self.page.read_text(), r"\| `PS1_L0\.25_seed1` \| 5 of 21 \| +\| +\| 60\.1 \| +\| +\|")
         self.assertIn("5 of 21 layers", self.run_it("--plan", "--only", "PS1_L0.25_seed1")[1])
         self.assertEqual(self.run_it("--only", "PS1_L0.25_seed1")[0], 0)
         self.assertEqual(self.starts(), 2)
