@@ -163,7 +163,13 @@ void DemSimulator::adopt(const std::vector<const RunTable::Row *> &rows)
       if (const auto [sample, is_first] = samples.emplace(part, row);
           !is_first && cost(row) < cost(sample->second))
         sample->second = row;
-  const std::set<std::string> changed = find_changes(samples);
+  std::set<std::string> changed = find_changes(samples);
+  // A default that few runs feel may have changed beside the samples.
+  for (const Experiment &experiment : experiments) {
+    const auto noted = keys_by_recipe.find(experiment.recipe_of_entries(rows.front()->engine));
+    if (noted != keys_by_recipe.end() && experiment.differs_from(noted->second))
+      changed.insert("experiment " + experiment.name());
+  }
   std::vector<const RunTable::Row *> adopted;
   for (const RunTable::Row *const row : rows) {
     const std::vector<std::string> parts = parts_of(row->request);
@@ -182,6 +188,11 @@ void DemSimulator::adopt(const std::vector<const RunTable::Row *> &rows)
 
 void DemSimulator::adopt_earlier_runs()
 {
+  for (const Experiment &experiment : experiments) {
+    const std::string recipe = experiment.recipe_of_entries(engine_digest());
+    if (keys_by_recipe.count(recipe) == 0)
+      keys_by_recipe[recipe] = new_keys[recipe] = experiment.all_entries();
+  }
   std::vector<const RunTable::Row *> renamed;
   std::map<std::string, std::vector<const RunTable::Row *>> others;
   for (RunTable::Row &row : earlier) {

@@ -6,6 +6,8 @@
 #include <eunoe/discovery/experiment.h>
 #include <eunoe/simulation/simulation.h>
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cstdio>
 
@@ -169,6 +171,25 @@ std::string Experiment::recipe(const std::vector<Effect> &factors, const RunRequ
   for (const std::string &line : run_overrides(factors, request))
     all += line + "\n";
   return all;
+}
+
+std::string Experiment::all_entries() const
+{
+  return nlohmann::json(base).dump();
+}
+
+std::string Experiment::recipe_of_entries(const std::string &engine) const
+{
+  return sha256("all entries\n" + engine + recipe({}, {name(), {}, 0}));
+}
+
+bool Experiment::differs_from(const std::string &entries_by_then) const
+{
+  const auto then = nlohmann::json::parse(entries_by_then).get<EntryValues>();
+  return std::any_of(base.begin(), base.end(), [&](const auto &entry) {
+    const auto found = then.find(entry.first);
+    return found != then.end() && found->second != entry.second;
+  });
 }
 
 Parameters Experiment::make(const std::vector<std::string> &overrides, Problems &problems) const

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <regex>
 
 namespace {
 
@@ -292,6 +293,26 @@ void run_by_a_later_program(const MPI_Comm comm, const std::vector<RunResult> &f
   DropSection::is_later = false;
 }
 
+/// A default that no sample feels, but that has changed by what the other engine has noted.
+void run_beside_noted_entries(const Setting &setting, const std::vector<RunResult> &first, Log &log)
+{
+  const std::string engine = "an engine that notes its entries";
+  const Experiment &box = setting.experiments.front();
+  const std::string entries = box.all_entries();
+  const std::string other = std::regex_replace(
+      entries, std::regex("\"log frequency\"\\],\"[^\"]*\""), "\"log frequency\"],\"77\"");
+  check("another value of an entry", other != entries && box.differs_from(other) &&
+                                         !box.differs_from(entries) && !box.differs_from("[]"));
+  for (const auto &[noted, made] : {std::pair(entries, 6u), {other, 8u}}) {
+    copy_rows(table_later, setting.comm, [&](RunTable::Row &row) { row.engine = engine; });
+    RunTable(table_later, setting.comm).store_keys({{box.recipe_of_entries(engine), noted}});
+    DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, setting.comm, log);
+    simulator.find_data_points(1);
+    check("runs of those entries", simulator.run(requests) == first && simulator.n_runs() == made,
+          std::to_string(simulator.n_runs()) + " made");
+  }
+}
+
 /// A default that has changed does not change the key, but the bits.
 void run_with_another_default(const MPI_Comm comm, Log &log)
 {
@@ -371,6 +392,7 @@ EUNOE_MPI_TEST()
     simulator.run({tilted, tilted_again});
   }
   run_by_a_later_program(comm, first, log);
+  run_beside_noted_entries(setting, first, log);
   run_with_another_default(comm, log);
   find_old_keys(setting, first, log);
   find_rare_points(setting, log);

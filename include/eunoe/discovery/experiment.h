@@ -58,6 +58,15 @@ public:
   /// files, and overrides. Throws a UserError if a patch does not fit.
   std::string recipe(const std::vector<Effect> &factors, const RunRequest &request) const;
 
+  /// What all entries of the base case are, as a text; the recipe by which a table of runs keeps
+  /// what they were by an engine; and whether one that had another value by then is still there,
+  /// as its default has changed.
+  ///@{
+  std::string all_entries() const;
+  std::string recipe_of_entries(const std::string &engine) const;
+  bool differs_from(const std::string &entries_by_then) const;
+  ///@}
+
   /// The parameters of a case with these overrides.
   Parameters make(const std::vector<std::string> &overrides, Problems &problems) const;
 

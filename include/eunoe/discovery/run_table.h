@@ -25,7 +25,8 @@ struct RunRecord
 /// The table of runs: all finished simulations of a study in one SQLite file, which further studies
 /// use as well, also at the same time. A row has the design point, the result, a key that is a hash
 /// of the case, and the digest of the engine that made it. As it takes a while to make a case, the
-/// file also has the keys of recipes, which are hashes of an engine and what it makes a case from.
+/// file also has the keys of recipes, which are hashes of an engine and what it makes a case from,
+/// and what all entries of a base case were by an engine.
 class RunTable
 {
 public:
