@@ -148,11 +148,11 @@ def maps_figure(group: Group) -> Figure:
     colours = colormaps["plasma_r"].with_extremes(under=(0.6, 0.6, 0.6))
     _draw_map(figure, left, group, moved, "Displacement (µm)", cmap=colours, norm=LogNorm(1e6 * RESTS_BELOW, largest))
     _draw_zones(left, group)
-    _draw_map(figure, right, group, lrd, f"LRD, mean over {SMOOTHED_LAYERS} layers and {MM * SMOOTHED_LENGTH:g} mm (%)", cmap="viridis",
+    _draw_map(figure, right, group, lrd, "Mean LRD (%)", cmap="viridis",
               norm=Normalize(*np.nanquantile(lrd, (0.02, 0.98))) if np.isfinite(lrd).any() else Normalize(0., 100.))
     left.set_ylabel("Layer")
     left.set_title("(a) Displacement in the pass")
-    right.set_title("(b) Layer relative density")
+    right.set_title(f"(b) LRD, over {SMOOTHED_LAYERS} layers and {MM * SMOOTHED_LENGTH:g} mm")
     return figure
 
 

@@ -203,7 +203,8 @@ def sets_block(findings: Findings) -> str:
 
 def rest_block(findings: Findings) -> str:
     groups = findings.plain()
-    return "\n\n".join(_block(table, _results(groups)) for table in (rest_table(groups), meeting_table(groups)))
+    tables = [table for table in (rest_table(groups), meeting_table(groups)) if len(table) > 1]
+    return "\n\n".join(_block(table, _results(groups)) for table in tables) or NOTHING
 
 
 def _all_about(groups: list[Group]) -> str:

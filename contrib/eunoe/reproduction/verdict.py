@@ -107,7 +107,8 @@ def _growing_with_length(findings: Findings, scatter: CommonScatter) -> Iterator
             label = f"{longer.label}, less {shorter.label}"
             for title, (number, size, unit) in wanted.items():
                 found = scatter.difference(longer, shorter, number)
-                yield [title, "yes" if number is not _rise_below else "of LRD: yes", f"{label}: {text_of(found, size)}{unit}", _sign(found, "+", size)], found
+                simulated = "of LRD: yes" if number is _rise_below else "yes"
+                yield [title, simulated, f"{label}: {text_of(found, size)}{unit}", _sign(found, "+", size)], found
             if properties == "PS3":
                 found = scatter.difference(longer, shorter, lambda run: run.mean_lrd(COMPARED))
                 yield [f"PS3 changes little with the length (layers {COMPARED[0]} to {COMPARED[1]})", "yes",
