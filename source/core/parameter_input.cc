@@ -74,21 +74,30 @@ std::string name_of(const std::string &key)
   return name;
 }
 
-/// Adds those entries of a section of that tree that name files.
+/// Adds the values of those entries of a section of that tree whose kind is wanted.
 /// @param path of the section
-void add_naming_files(const boost::property_tree::ptree &section, Path &path, EntryValues &found)
+/// @param kind a part of the description of their pattern
+void add_values(const boost::property_tree::ptree &section, const std::string &kind, Path &path,
+                EntryValues &found)
 {
-  const std::string file = dealii::Patterns::FileName().description();
   for (const auto &[key, child] : section)
     if (child.count("value") > 0) {
-      // Of one file, or of a list.
-      if (child.get<std::string>("pattern_description").find(file) != std::string::npos)
+      if (kind.empty() ||
+          child.get<std::string>("pattern_description").find(kind) != std::string::npos)
         found[{path, name_of(key)}] = child.get<std::string>("value");
     } else if (child.count("alias") == 0) {
       path.push_back(name_of(key));
-      add_naming_files(child, path, found);
+      add_values(child, kind, path, found);
       path.pop_back();
     }
+}
+
+EntryValues values_of_kind(const dealii::ParameterHandler &prm, const std::string &kind)
+{
+  EntryValues found;
+  Path path;
+  add_values(*TreeOfEntries(prm).tree, kind, path, found);
+  return found;
 }
 
 /// The value of an entry; none of one that is not declared by this name.
@@ -162,13 +171,6 @@ nlohmann::ordered_json description_of(const boost::property_tree::ptree &section
     else if (child.count("alias") == 0)
       description["subsections"][name] = description_of(child);
   return description;
-}
-
-std::string complete_text(const dealii::ParameterHandler &prm)
-{
-  std::ostringstream text;
-  prm.print_parameters(text, dealii::ParameterHandler::PRM);
-  return text.str();
 }
 
 } // namespace
@@ -304,8 +306,8 @@ private:
 
 } // namespace
 
-std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
-                        const std::vector<RepeatedSections> &repeated, Problems &problems)
+void set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
+                 const std::vector<RepeatedSections> &repeated, Problems &problems)
 {
   EntrySetter setter(prm, repeated, problems);
   for (const InputEntry &entry : entries)
@@ -317,15 +319,24 @@ std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &
       if (entry.path == r.path && entry.name == r.entry)
         entry.is_default = entry.value == std::to_string(r.standard);
   }
-  return complete_text(prm);
+}
+
+std::string complete_text(const dealii::ParameterHandler &prm)
+{
+  std::ostringstream text;
+  prm.print_parameters(text, dealii::ParameterHandler::PRM);
+  return text.str();
+}
+
+EntryValues values_of(const dealii::ParameterHandler &prm)
+{
+  return values_of_kind(prm, "");
 }
 
 EntryValues entries_naming_files(const dealii::ParameterHandler &prm)
 {
-  EntryValues found;
-  Path path;
-  add_naming_files(*TreeOfEntries(prm).tree, path, found);
-  return found;
+  // Of one file, or of a list.
+  return values_of_kind(prm, dealii::Patterns::FileName().description());
 }
 
 std::string describe_entries(const dealii::ParameterHandler &prm,

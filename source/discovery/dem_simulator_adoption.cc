@@ -53,11 +53,10 @@ void DemSimulator::remember(const StudyCase &one)
   // Files that a case names may change without their names.
   if (!one.problem.empty() || one.names_files)
     return;
-  const std::string made_from = one.experiment->recipe(factors, one.request);
-  for (const auto &[recipe, key] : {std::pair(recipe_of(engine_digest(), made_from), one.key),
-                                    {old_recipe_of(engine_digest(), made_from), one.old_key}})
-    if (keys_by_recipe[recipe] != key)
-      keys_by_recipe[recipe] = new_keys[recipe] = key;
+  const std::string recipe =
+      recipe_of(engine_digest(), one.experiment->recipe(factors, one.request));
+  if (keys_by_recipe[recipe] != one.key)
+    keys_by_recipe[recipe] = new_keys[recipe] = one.key;
 }
 
 void DemSimulator::store_new_keys()
@@ -68,9 +67,10 @@ void DemSimulator::store_new_keys()
 
 std::string DemSimulator::key_of(const RunTable::Row &row)
 {
+  const Experiment &experiment = find(row.request.experiment);
   std::string made_from;
   try {
-    made_from = find(row.request.experiment).recipe(factors, row.request);
+    made_from = experiment.recipe(factors, row.request);
   } catch (const UserError &) {
     const std::string key = case_of(row.request).key;
     return key == row.key ? key : "";
@@ -79,19 +79,19 @@ std::string DemSimulator::key_of(const RunTable::Row &row)
     const auto found = keys_by_recipe.find(recipe);
     return found == keys_by_recipe.end() ? "" : found->second;
   };
-  std::string key = by_recipe(recipe_of(engine_digest(), made_from)), old_key;
+  std::string key = by_recipe(recipe_of(engine_digest(), made_from));
   if (key.empty()) {
     const StudyCase one = case_of(row.request);
     remember(one);
     key = one.key;
-    old_key = one.old_key;
   }
   // Keys of the complete input change with the program. Then its notes may tell that it made the
   // row from the same files and overrides.
-  const bool is_same = row.key == key || row.key == old_key ||
+  const bool is_same = row.key == key ||
                        row.key == by_recipe(old_recipe_of(engine_digest(), made_from)) ||
                        row.key == by_recipe(recipe_of(row.engine, made_from)) ||
-                       row.key == by_recipe(old_recipe_of(row.engine, made_from));
+                       row.key == by_recipe(old_recipe_of(row.engine, made_from)) ||
+                       row.key == experiment.old_key(factors, row.request, comm);
   return is_same ? key : "";
 }
 

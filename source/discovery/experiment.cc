@@ -27,7 +27,7 @@ const std::vector<std::string> quiet_overrides = {"simulation control/output pat
 /// a program with more entries, or other words about them, knows its runs again.
 std::string identity_of(const Parameters &parameters)
 {
-  const EntryValues values = values_in(parameters.as_input_file());
+  const EntryValues &values = parameters.entries();
   std::string text;
   for (const auto &[place, written] : parameters.changed_entries()) {
     for (const std::string &section : place.first)
@@ -37,6 +37,15 @@ std::string identity_of(const Parameters &parameters)
     text += place.second + " = " + (value != values.end() ? value->second : written) + "\n";
   }
   return text;
+}
+
+/// Digests of files that entries name; collective.
+std::string digests_of(const EntryValues &naming_files, MPI_Comm comm)
+{
+  std::string digests;
+  for (const auto &[place, digest] : named_files(naming_files, comm))
+    digests += digest;
+  return digests;
 }
 
 } // namespace
@@ -55,7 +64,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
   const Parameters read = Parameters::read(
       texts[file], file, parameters.overrides, wrong,
       [&](const std::string &path) { return texts[path] = read_file(path, comm); });
-  base = values_in(read.as_input_file());
+  base = read.entries();
   process = read.process_name;
   // Every run begins from nothing.
   if (base.at({{"restart"}, "restart"}) == "true")
@@ -66,8 +75,7 @@ Experiment::Experiment(const ExperimentParameters &parameters, MPI_Comm comm, Pr
     problems.add(problem.where, problem.what, problem.mend);
   if (!wrong.empty())
     return;
-  for (const auto &[place, digest] : named_files(read.file_entries(), comm))
-    digests += digest;
+  digests = digests_of(read.file_entries(), comm);
   try {
     // Building the parts of a run finds what reading alone cannot.
     std::vector<std::string> list = parameters.overrides;
@@ -135,7 +143,7 @@ StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunReq
   StudyCase one;
   one.experiment = this;
   one.request = request;
-  std::string input, identity;
+  std::string identity;
   EntryValues naming_files;
   try {
     // Ranks may see different files.
@@ -143,7 +151,6 @@ StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunReq
       one.overrides = run_overrides(factors, request);
       Problems found;
       const Parameters made = make(one.overrides, found);
-      input = made.as_input_file();
       identity = identity_of(made);
       naming_files = made.file_entries();
       if (!found.empty())
@@ -151,16 +158,33 @@ StudyCase Experiment::make_case(const std::vector<Effect> &factors, const RunReq
     });
   } catch (const UserError &error) {
     one.problem = error.what();
-    one.key = one.old_key = sha256(one.problem + text_of(request));
+    one.key = sha256(one.problem + text_of(request));
     return one;
   }
-  std::string files;
-  for (const auto &[place, digest] : named_files(naming_files, comm))
-    files += digest;
+  const std::string files = digests_of(naming_files, comm);
   one.names_files = !files.empty();
   one.key = sha256(files + identity);
-  one.old_key = sha256(files + input);
   return one;
+}
+
+std::string Experiment::old_key(const std::vector<Effect> &factors, const RunRequest &request,
+                                MPI_Comm comm) const
+{
+  std::string input;
+  EntryValues naming_files;
+  try {
+    on_every_rank(comm, [&] {
+      Problems found;
+      const Parameters made = make(run_overrides(factors, request), found);
+      if (!found.empty())
+        throw UserError(found);
+      input = made.as_input_file();
+      naming_files = made.file_entries();
+    });
+  } catch (const UserError &) {
+    return "";
+  }
+  return sha256(digests_of(naming_files, comm) + input);
 }
 
 std::string Experiment::recipe(const std::vector<Effect> &factors, const RunRequest &request) const

@@ -263,7 +263,8 @@ StudyParameters StudyParameters::read(const std::string &text, const std::string
   study.nuisances.resize(repeated_sections()[1].count(entries));
   dealii::ParameterHandler prm;
   study.declare(prm, with_synthetic_data);
-  study.complete_input = set_entries(prm, entries, repeated_sections(), problems);
+  set_entries(prm, entries, repeated_sections(), problems);
+  study.complete_input = complete_text(prm);
   if (problems.empty())
     study.check(ParameterCheck(entries, file, problems));
   return study;

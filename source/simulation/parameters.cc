@@ -151,19 +151,27 @@ std::string Parameters::description()
 
 void Parameters::set(std::vector<InputEntry> &entries, Problems &problems)
 {
-  dealii::ParameterHandler prm;
-  declare(prm);
+  const auto prm = std::make_shared<dealii::ParameterHandler>();
+  handler = prm;
+  declare(*prm);
   const std::vector<RepeatedSections> repeated = numbered_sections();
-  complete_input = set_entries(prm, entries, repeated, problems);
-  naming_files = entries_naming_files(prm);
+  set_entries(*prm, entries, repeated, problems);
+  naming_files = entries_naming_files(*prm);
+  values = values_of(*prm);
   for (const InputEntry &entry : entries)
     if (!entry.is_default)
       changed[{entry.path, entry.name}] = entry.value;
   if (control.seed < 0)
     return;
-  std::vector<InputEntry> seeds = turned_seeds(control.seed, values_in(complete_input), entries,
-                                               process_name != "none", problems);
-  complete_input = set_entries(prm, seeds, repeated, problems);
+  std::vector<InputEntry> seeds =
+      turned_seeds(control.seed, values, entries, process_name != "none", problems);
+  set_entries(*prm, seeds, repeated, problems);
+  values = values_of(*prm);
+}
+
+std::string Parameters::as_input_file() const
+{
+  return complete_text(*handler);
 }
 
 Parameters Parameters::of_run() const

@@ -335,8 +335,11 @@ void find_old_keys(const Setting &setting, const std::vector<RunResult> &first, 
   const auto case_of = [&](const RunRequest &request) {
     return experiment_of(request).make_case(setting.effects, request, setting.comm);
   };
+  const auto old_key_of = [&](const RunRequest &request) {
+    return experiment_of(request).old_key(setting.effects, request, setting.comm);
+  };
   copy_rows(table_later, setting.comm,
-            [&](RunTable::Row &row) { row.key = case_of(row.request).old_key; });
+            [&](RunTable::Row &row) { row.key = old_key_of(row.request); });
   for (int start = 0; start < 2; ++start) {
     DemSimulator simulator(setting.experiments, setting.effects, table_later, 1, setting.comm, log);
     simulator.find_data_points(1);
@@ -353,7 +356,7 @@ void find_old_keys(const Setting &setting, const std::vector<RunResult> &first, 
   std::map<std::string, std::string> notes;
   copy_rows(table_later, setting.comm, [&](RunTable::Row &row) {
     row.engine = engine;
-    row.key = case_of(row.request).old_key;
+    row.key = old_key_of(row.request);
     if (text_of(row.request) != text_of(second_packing))
       notes[sha256(engine + experiment_of(row.request).recipe(setting.effects, row.request))] =
           row.key;

@@ -294,6 +294,7 @@ EUNOE_MPI_TEST()
   test::check("present words are understood", of_present.empty());
   test::check("present words give no warning", of_present.warnings().empty());
   test::check("both mean the same", old.as_input_file() == present.as_input_file());
+  test::check("values are those of the text", values_in(old.as_input_file()) == old.entries());
   for (const Problem &warning : of_old.warnings())
     test::print(warning.text());
 

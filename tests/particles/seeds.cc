@@ -148,8 +148,10 @@ void test_rule()
   check("equal seeds are no matter", warnings(input, {own, general + "2"}).empty());
   check("nor are seeds without a general one", warnings(input, {own}).empty());
   Problems problems;
-  const std::string used = read(input, {general + "2"}, problems).as_input_file();
+  const Parameters parameters = read(input, {general + "2"}, problems);
+  const std::string used = parameters.as_input_file();
   const auto values = values_in(used);
+  check("its values are those of the text", values == parameters.entries() && values.size() > 100);
   check("what was used has the seeds that were used",
         values.at({{"powder spreading"}, "seed"}) == "2" &&
             values.at({{"lagrangian physical properties", "particle type 0"},

@@ -22,9 +22,15 @@ struct RepeatedSections
 
 /// Gives values to declared parameters. What is unknown or does not fit goes to @p problems, with a
 /// near name or with what would fit; every entry learns whether it says more than the default.
-/// @return a complete, documented input file with these values
-std::string set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
-                        const std::vector<RepeatedSections> &repeated, Problems &problems);
+void set_entries(dealii::ParameterHandler &prm, std::vector<InputEntry> &entries,
+                 const std::vector<RepeatedSections> &repeated, Problems &problems);
+
+/// A complete, documented input file with the present values. Printing it takes longer than reading
+/// an input does.
+std::string complete_text(const dealii::ParameterHandler &prm);
+
+/// The present values of all entries, as `values_in` finds them in the complete text.
+EntryValues values_of(const dealii::ParameterHandler &prm);
 
 /// The entries that name files which the run reads (`declare::file`), with their values.
 EntryValues entries_naming_files(const dealii::ParameterHandler &prm);

@@ -18,7 +18,6 @@ struct StudyCase
   const Experiment *experiment;
   std::vector<std::string> overrides;
   std::string key;     ///< hash of the entries that are not defaults, and of the files they name
-  std::string old_key; ///< of the complete input with its comments, as earlier versions had it
   std::string problem; ///< why it cannot be run; empty if it can
   bool names_files = false;
   RunRequest request;
@@ -52,6 +51,11 @@ public:
 
   /// The case of a request. All ranks run it, or none if one of them cannot; collective.
   StudyCase make_case(const std::vector<Effect> &factors, const RunRequest &request,
+                      MPI_Comm comm) const;
+
+  /// The key that earlier versions gave such a case: a hash of the complete input with its
+  /// comments, and of the files. Empty if the case cannot be run. Collective.
+  std::string old_key(const std::vector<Effect> &factors, const RunRequest &request,
                       MPI_Comm comm) const;
 
   /// All from which the case of a request is made, as making it takes milliseconds: the texts of

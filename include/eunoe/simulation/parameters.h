@@ -46,7 +46,10 @@ public:
                          const FileLoader &load = {});
 
   /// A complete, documented input file that gives the same parameters as those that were read.
-  const std::string &as_input_file() const { return complete_input; }
+  std::string as_input_file() const;
+
+  /// The values of all entries.
+  const EntryValues &entries() const { return values; }
 
   /// The entries whose values in the input are not their defaults.
   const EntryValues &changed_entries() const { return changed; }
@@ -107,8 +110,9 @@ private:
   std::vector<ParameterSection *> sections();
   void set(std::vector<InputEntry> &entries, Problems &problems);
 
-  std::string complete_input;
-  EntryValues changed, naming_files;
+  /// Has all values, and prints them. Copies share it, as nothing changes it once they are read.
+  std::shared_ptr<const dealii::ParameterHandler> handler;
+  EntryValues values, changed, naming_files;
 };
 
 } // namespace eunoe
