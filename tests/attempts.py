@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
@@ -23,10 +24,12 @@ class Attempts:
         self.failures: list[str] = []
 
     def make(self, name: str, action: Callable[..., Any], *arguments: Any) -> None:
+        start = time.monotonic()
         try:
             action(*arguments)
         except Failure as failure:
             self.failures.append(f"{name}: {failure}")
+        print(f"{name}: {time.monotonic() - start:.1f} s", flush=True)
 
     def make_at_once(self, work: Iterable[tuple], number: int = 4) -> None:
         """Runs checks in parallel, each a name, an action and its arguments. A launcher takes

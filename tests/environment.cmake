@@ -5,6 +5,9 @@ set(ENV{PYTHONPATH} "${CMAKE_CURRENT_LIST_DIR}/../contrib:${CMAKE_CURRENT_LIST_D
 
 # Open MPI starts in half the time without a search for fast networks.
 set(ENV{OMPI_MCA_pml} ob1)
+# When a rank has ended with an error, the launcher does not give the others two seconds to end, too:
+# they have said what they have to say before the first ends.
+set(ENV{OMPI_MCA_odls_base_sigkill_timeout} 0)
 # All ranks share a node. Open MPI 5 complains of networks that it cannot use, in the output.
 set(ENV{OMPI_MCA_btl} ^tcp)
 # Tests have more ranks than some machines have cores. A rank that waits leaves its core to others.

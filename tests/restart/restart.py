@@ -167,9 +167,9 @@ def curved(program: str, folder: Path) -> None:
 
 
 def killed(program: str, folder: Path) -> None:
-    longer = ["simulation control/iteration end = 60000"]
+    longer = ["simulation control/iteration end = 30000"]
     alone = Case(program, CASE, folder.with_name("alone"), longer)
-    restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 8, 1700,
+    restarts, _, lost = kill_and_restart(alone, Case(program, CASE, folder, longer), [1, 2], 4, 1700,
                                    random.Random(3))
     if restarts == 0:
         raise Failure("No kill came after a checkpoint, so nothing was tried.")
