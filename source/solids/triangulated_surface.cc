@@ -131,8 +131,9 @@ public:
   /// @param touches ordered by their distance
   NearPlaces(const TriangulatedSurface &surface, const std::vector<Touch> &touches,
              const Vec3 &centre, const double radius, const double reach)
-      : facets(surface.facets), flat_vertex(surface.flat_vertex), touches(touches), centre(centre),
-        tolerance(1e-10 * radius), same_place(1e-4 * radius), reach(reach)
+      : surface(surface), facets(surface.facets), flat_vertex(surface.flat_vertex),
+        touches(touches), centre(centre), tolerance(1e-10 * radius), same_place(1e-4 * radius),
+        reach(reach)
   {
   }
 
@@ -169,15 +170,30 @@ private:
     return vertex[0] == corner || vertex[1] == corner || vertex[2] == corner;
   }
 
-  /// An edge or corner counts if no triangle that shares it comes nearer: then the distance to
-  /// the whole surface has a minimum there.
+  /// An edge or corner counts if no triangle that contains it comes nearer: then the distance to
+  /// the whole surface has a minimum there. As a rule that is a triangle that shares it.
   bool is_minimum(const Touch &touch) const
   {
-    return touch.n_corners == 0 ||
+    if (touch.n_corners == 0)
+      return true;
+    const auto comes_nearer = [&](const Touch &other) {
+      return other.distance < touch.distance - tolerance;
+    };
+    const auto shares_it = [&](const Touch &other) {
+      return shares(other.facet, touch.corner[0]) &&
+             (touch.n_corners == 1 || shares(other.facet, touch.corner[1]));
+    };
+    // One that abuts on it, as where a long edge meets two short ones, contains it to round-off
+    // only. The edge may be above it by as much, which makes no place of its own either.
+    const auto abuts_on_it = [&](const Touch &other) {
+      return surface.closest(centre + touch.offset, other.facet).distance < same_place;
+    };
+    return std::none_of(
+               touches.begin(), touches.end(),
+               [&](const Touch &other) { return comes_nearer(other) && shares_it(other); }) &&
            std::none_of(touches.begin(), touches.end(), [&](const Touch &other) {
-             return other.distance < touch.distance - tolerance &&
-                    shares(other.facet, touch.corner[0]) &&
-                    (touch.n_corners == 1 || shares(other.facet, touch.corner[1]));
+             return !shares_it(other) && (other.n_corners == 0 || comes_nearer(other)) &&
+                    abuts_on_it(other);
            });
   }
 
@@ -236,6 +252,7 @@ private:
     return true;
   }
 
+  const TriangulatedSurface &surface;
   const std::vector<Facet> &facets;
   const std::vector<bool> &flat_vertex;
   const std::vector<Touch> &touches;

@@ -79,6 +79,34 @@ void examine_merging()
                                         at(2, 0) != at(2, 1) && at(0, 0) != at(0, 1));
 }
 
+/// Spheres that touch two plates which meet at x = 0.
+/// @return how many of them do not have one contact, straight below
+int n_wrong_over_seam(const TriangulatedSurface &plates, const double R)
+{
+  int wrong = 0;
+  for (double x = -0.5 * R; x < 0.5 * R; x += 1e-3 * R) {
+    const Vec3 centre = {x, 0.9 * R, 0.37e-3};
+    const auto found = contacts(plates, centre, R);
+    wrong += found.size() == 1 && std::abs(found[0].distance - centre.y) < 1e-6 * R ? 0 : 1;
+  }
+  return wrong;
+}
+
+void examine_seam_without_common_corners()
+{
+  // One plate has a long edge where the other has two short ones, and the corner between them lies
+  // beside the long edge by as much as single precision leaves.
+  const double R = 1e-4;
+  for (const double beside : {0., 1e-10}) {
+    TriangleMesh plates = shapes::plane({-1e-3, 0., 0.}, {1e-3, 0., 0.}, {0., 0., 1e-3});
+    plates.add_quad({0., 0., 0.}, {beside, beside, 0.4e-3}, {1e-3, 0., 0.4e-3}, {1e-3, 0., 0.});
+    plates.add_quad({beside, beside, 0.4e-3}, {0., 0., 1e-3}, {1e-3, 0., 1e-3}, {1e-3, 0., 0.4e-3});
+    const int wrong = n_wrong_over_seam(TriangulatedSurface(plates), R);
+    check("one contact where a long edge meets two short ones", wrong == 0,
+          std::to_string(wrong) + " have not");
+  }
+}
+
 void examine_seam()
 {
   // Two plates made separately, whose common edges agree to round-off only.
@@ -88,13 +116,10 @@ void examine_seam()
   const TriangulatedSurface seamless(plates);
   plates.vertices[4].y = plates.vertices[5].y = 1e-2 * R;
   const TriangulatedSurface stepped(plates);
-  int wrong = 0, steps = 0;
-  for (double x = -0.5 * R; x < 0.5 * R; x += 1e-3 * R) {
-    const Vec3 centre = {x, 0.9 * R, 0.37e-3};
-    const auto found = contacts(seamless, centre, R);
-    wrong += found.size() == 1 && std::abs(found[0].distance - centre.y) < 1e-6 * R ? 0 : 1;
-    steps += contacts(stepped, centre, R).size() > 1 ? 1 : 0;
-  }
+  const int wrong = n_wrong_over_seam(seamless, R);
+  int steps = 0;
+  for (double x = -0.5 * R; x < 0.5 * R; x += 1e-3 * R)
+    steps += contacts(stepped, {x, 0.9 * R, 0.37e-3}, R).size() > 1 ? 1 : 0;
   check("one contact over the seam", wrong == 0, std::to_string(wrong) + " have not");
   check("a step is no seam", steps > 0);
 }
@@ -107,4 +132,5 @@ EUNOE_TEST()
   examine_flat_triangles();
   examine_merging();
   examine_seam();
+  examine_seam_without_common_corners();
 }
