@@ -1,5 +1,6 @@
 // What a simulation is made of, and how it goes through time.
 
+#include <eunoe/core/first_rank.h>
 #include <eunoe/core/version.h>
 #include <eunoe/simulation/simulation.h>
 
@@ -200,6 +201,8 @@ void Simulation::advance()
     const Timers::Scope scope(progress.timers, Section::integration);
     travel = integrator->begin_step(system.particles, clock.time_step());
   }
+  if (!is_integrator_checked)
+    check_integrator();
   // Sleepers keep the displacement from before their sleep.
   travel.include(system.particles.sleepers_moved2);
   criterion.ask(clock.step(), travel, system.near_share());
@@ -226,6 +229,21 @@ void Simulation::advance()
   compute_forces();
   integrator->end_step();
   progress.count_step(system.n_global(), system.particles.n_owned - system.particles.n_awake());
+}
+
+/// That of a plug-in may have been written for forces that begin at zero, and all would float.
+void Simulation::check_integrator()
+{
+  if (system.n_global() == 0)
+    return;
+  on_every_rank(communicator(), [this] {
+    if (!system.particles.have_their_weights())
+      throw UserError("The integration method '" +
+                      parameters.entries().at({{"model parameters"}, "integration method"}) +
+                      "' leaves particles without their weight. Its begin_step must call "
+                      "ParticleArrays::start_forces for each that is awake.");
+  });
+  is_integrator_checked = true;
 }
 
 const ParticleArrays &Simulation::complete_step()

@@ -54,6 +54,16 @@ void ParticleArrays::wake_all()
   sleepers_moved2 = TwoLargest();
 }
 
+bool ParticleArrays::have_their_weights() const
+{
+  bool have_all = true;
+  for_each_awake([&](const std::size_t row) {
+    have_all = have_all && norm_square(force[row].vec() - mass(row) * gravity) == 0. &&
+               norm_square(torque[row].vec()) == 0.;
+  });
+  return have_all;
+}
+
 void ParticleArrays::clear_forces_on_sleepers()
 {
   for (std::size_t row = 0; row < n_owned; ++row)

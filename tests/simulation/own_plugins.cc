@@ -57,15 +57,22 @@ public:
     p.for_each_awake([&](const std::size_t k) {
       p.velocity[k].add(dt / p.mass(k) * p.force[k].vec());
       p.position[k].add(share * dt * p.velocity[k].vec());
-      p.start_forces(k);
+      if (gives_weight)
+        p.start_forces(k);
+      else
+        p.force[k] = p.torque[k] = Quad();
     });
     return {Travel::unknown}; // so that contacts are searched at every step
   }
   void complete(ParticleArrays &, double) override {}
 
+  static bool gives_weight;
+
 private:
   const double share;
 };
+
+bool Syrup::gives_weight = true;
 
 class SyrupSection : public IntegratorSection
 {
@@ -264,6 +271,8 @@ EUNOE_MPI_TEST()
 {
   const double dt = 1e-5;
   const unsigned int n = 20;
+  const std::string gravity =
+      "subsection lagrangian physical properties\n set g = 0, 0, -9.81\nend\n";
   Case test_case(box_input(dt, n * dt, input("0.5", "4e-3", "2e-3")));
   test_case.run();
   const std::vector<double> particle = particle_table(*test_case).at(0);
@@ -275,6 +284,18 @@ EUNOE_MPI_TEST()
   check("the size distribution gives the diameter", diameter == 1e-3 || diameter == 2e-3);
   const auto sizes = test_case->get_parameters().physics.types[0].sizes.make();
   check("its own entry counts", sizes->diameter(0.4) == 1e-3 && sizes->diameter(0.6) == 2e-3);
+
+  Syrup::gives_weight = false;
+  std::string refusal;
+  try {
+    Case(box_input(dt, n * dt, input("0.5", "4e-3", "2e-3") + gravity)).run();
+  } catch (const UserError &error) {
+    refusal = error.what();
+  }
+  check("an integrator that forgets the weight is refused",
+        refusal == "The integration method 'syrup' leaves particles without their weight. Its "
+                   "begin_step must call ParticleArrays::start_forces for each that is awake.",
+        refusal);
 
   const std::string wrong = problems_of(input("2", "3", "-1"));
   check("their values are checked", wrong == "is not positive. is above 1 m. is above 1. ", wrong);

@@ -112,6 +112,8 @@ private:
   void begin_results(bool goes_on);
   /// The time step.
   void advance();
+  /// Throws a UserError if the integrator does not do what forces rest on; collective.
+  void check_integrator();
   void move_solids();
   void search();
   /// Whether the coming search is to be made with another skin, which is in use then; collective.
@@ -154,6 +156,7 @@ private:
   ParticleSystem system;
   MovingSolids solids;
   std::unique_ptr<Integrator> integrator;
+  bool is_integrator_checked = false; ///< at the first step with particles
   SearchCriterion criterion;
   std::optional<SkinTuner> tuner; ///< of the skin; none: the input gives it
   LoadBalancer balancer;

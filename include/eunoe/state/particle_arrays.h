@@ -133,6 +133,8 @@ struct ParticleArrays
     force[row] = {0. + m * gravity.x, 0. + m * gravity.y, 0. + m * gravity.z, 0.};
     torque[row] = Quad();
   }
+  /// Whether the sums of all that are awake have just begun.
+  bool have_their_weights() const;
   /// Forces on sleepers have no meaning, and must not add up over the steps.
   void clear_forces_on_sleepers();
   /// Only on those that feel any.
