@@ -5,6 +5,7 @@
 
 #include "format.h"
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -16,6 +17,14 @@ namespace eunoe {
 using namespace checkpoint_format;
 
 namespace {
+
+std::string node_name()
+{
+  std::array<char, MPI_MAX_PROCESSOR_NAME> name = {};
+  int length = 0;
+  MPI_Get_processor_name(name.data(), &length);
+  return std::string(name.data(), static_cast<std::size_t>(length));
+}
 
 /// What is wrong with a checkpoint, if anything.
 struct Defect
@@ -100,15 +109,36 @@ struct Checkpoint::File
     throw DamagedCheckpoint("The checkpoint " + path + " " + what);
   }
 
-  void read(void *data, std::uint64_t n)
+  /// Refuses a file that the system does not give this node. It may be whole, so no older one may
+  /// take its place, for which it would be removed.
+  [[noreturn]] void refuse_unread(const int error) const
   {
-    if (n > 0 && std::fread(data, 1, n, stream) != n)
-      refuse("cannot be read: " +
-             std::string(std::feof(stream) != 0 ? "it ends too early" : std::strerror(errno)) +
-             ".");
+    const bool is_forbidden = error == EACCES || error == EPERM;
+    throw UserError(
+        "The checkpoint " + path + " cannot be read on " + node_name() + ": " +
+        std::strerror(error) +
+        (is_forbidden
+             ? ". Mend its permissions."
+             : ". Look after the file system of that node, or move the file away to go on from an "
+               "older one."));
   }
 
-  void seek(std::uint64_t begin) { std::fseek(stream, static_cast<long>(begin), SEEK_SET); }
+  void read(void *data, std::uint64_t n)
+  {
+    if (n == 0 || std::fread(data, 1, n, stream) == n)
+      return;
+    const int error = errno;
+    if (std::feof(stream) != 0)
+      refuse("cannot be read: it ends too early.");
+    refuse_unread(error);
+  }
+
+  void seek(std::uint64_t begin)
+  {
+    // It may read, too.
+    if (std::fseek(stream, static_cast<long>(begin), SEEK_SET) != 0)
+      refuse_unread(errno);
+  }
 
   /// Reads bytes and adds them to the checksums while they are in the cache.
   void read_at(std::uint64_t begin, void *const data, const std::uint64_t n,
@@ -129,17 +159,18 @@ struct Checkpoint::File
   void require_open()
   {
     if (stream == nullptr) {
-      const std::string text = "cannot be read: " + std::string(std::strerror(open_error)) + ".";
       if (open_error == ENOENT && is_first_rank(comm))
-        refuse(text);
+        refuse("cannot be read: " + std::string(std::strerror(open_error)) + ".");
       if (open_error == ENOENT)
         throw UserError("The checkpoint " + path +
                         " is not seen by every node. Put it into a folder that all share.");
-      throw UserError("The checkpoint " + path + " " + text + " Mend its permissions.");
+      refuse_unread(open_error);
     }
     std::error_code failure;
     size = std::filesystem::file_size(path, failure);
-    if (failure || size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
+    if (failure)
+      refuse_unread(failure.value());
+    if (size < format_name.size() + 2 + 2 * sizeof(std::uint64_t))
       refuse("is cut short: it has " + std::to_string(size) + " bytes.");
   }
 

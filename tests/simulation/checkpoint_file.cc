@@ -1,6 +1,6 @@
 // The file of a checkpoint: every rank reads what was written, and a damaged file is refused on
-// every rank with the place of the damage. Reference: rows follow from their keys, and the
-// checksums are computed here, too, in another way.
+// every rank with the place of the damage; one that a rank cannot read is not called damaged.
+// Reference: rows follow from their keys, and the checksums are computed here, too, in another way.
 
 #include <eunoe/checkpoint/checkpoint_file.h>
 #include <eunoe/core/files.h>
@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numeric>
@@ -149,13 +150,13 @@ void write_other(const std::string &bytes)
   MPI_Barrier(MPI_COMM_WORLD);
 }
 
-/// What is said on every rank of a file of these bytes.
-std::string answer(const std::string &bytes)
+/// What is said on every rank of a file.
+/// @param file its name on this rank
+std::string answer_to(const std::string &file)
 {
-  write_other(bytes);
   std::string text = "It is read.";
   try {
-    const Checkpoint checkpoint(other, MPI_COMM_WORLD);
+    const Checkpoint checkpoint(file, MPI_COMM_WORLD);
   } catch (const DamagedCheckpoint &error) {
     text = std::string("Damage: ") + error.what();
   } catch (const UserError &error) {
@@ -163,6 +164,13 @@ std::string answer(const std::string &bytes)
   }
   const std::string of_first = broadcast(text, MPI_COMM_WORLD);
   return everywhere(text == of_first) ? text : "The ranks say different things.";
+}
+
+/// What is said on every rank of a file of these bytes.
+std::string answer(const std::string &bytes)
+{
+  write_other(bytes);
+  return answer_to(other);
 }
 
 void expect(const std::string &name, const std::string &bytes, const std::string &sentence,
@@ -268,6 +276,37 @@ void check_lengths()
   }
 }
 
+/// Whether a file can be opened, and no byte of it be read.
+bool fails(const std::string &file)
+{
+  std::FILE *const stream = std::fopen(file.c_str(), "rb");
+  const bool does = stream != nullptr && std::fgetc(stream) == EOF && std::ferror(stream) != 0;
+  if (stream != nullptr)
+    std::fclose(stream);
+  return does;
+}
+
+/// Files that only the last rank cannot read, as if its node alone had trouble.
+void check_failures()
+{
+  const std::string folder = "folder.checkpoint";
+  if (is_first_rank())
+    std::filesystem::create_directory(folder);
+  MPI_Barrier(MPI_COMM_WORLD);
+  check("a folder cannot be read", fails(folder));
+  // On Linux it has a length and no bytes, as a loopback has no speed.
+  for (const std::string &file : {folder, std::string("/sys/class/net/lo/speed")}) {
+    const std::string begin = "Refused: The checkpoint " + file + " cannot be read on ";
+    const std::string text =
+        everywhere(fails(file)) ? answer_to(rank == n_ranks - 1 ? file : path) : begin;
+    check("not read by the last rank", text.compare(0, begin.size(), begin) == 0,
+          "got '" + text + "'");
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (is_first_rank())
+    std::filesystem::remove(folder);
+}
+
 } // namespace
 
 EUNOE_MPI_TEST()
@@ -287,6 +326,7 @@ EUNOE_MPI_TEST()
   check_damages(file, contents.size(), n_head);
   check_versions(file, contents, n_head);
   check_lengths();
+  check_failures();
 
   MPI_Barrier(MPI_COMM_WORLD);
   if (is_first_rank())

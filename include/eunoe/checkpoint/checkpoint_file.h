@@ -61,7 +61,8 @@ class Checkpoint
 public:
   /// Reads the whole file once, each rank the head and its share of the rows, and verifies it;
   /// collective. Throws a DamagedCheckpoint on every rank, or a UserError for a file that may be
-  /// whole but cannot be read, as one of another version.
+  /// whole but cannot be read, as one of another version or one that the system does not give a
+  /// node.
   Checkpoint(const std::string &path, MPI_Comm comm);
   ~Checkpoint();
 
