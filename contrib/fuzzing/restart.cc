@@ -10,6 +10,9 @@ namespace {
 
 using eunoe::Parameters;
 
+/// A name as a run gives it, as all others are passed over.
+const std::string checkpoint = "restart_000000000040.checkpoint";
+
 std::string read_text(const std::string &path)
 {
   std::ostringstream all;
@@ -27,7 +30,6 @@ public:
     path = chosen != nullptr ? chosen : EUNOE_SOURCE "/contrib/fuzzing/seeds/restart.prm";
     text = read_text(path);
     std::filesystem::create_directories(folder);
-    std::ofstream(folder / "restart.latest") << "any.checkpoint\n";
     input = read().as_input_file();
   }
   ~Case() { std::filesystem::remove_all(folder); }
@@ -46,7 +48,9 @@ public:
 
   void continue_from(const std::string &image) const
   {
-    std::ofstream(folder / "any.checkpoint", std::ios::binary) << image;
+    // The run before may have left its own.
+    std::ofstream(folder / "restart.latest") << checkpoint + "\n";
+    std::ofstream(folder / checkpoint, std::ios::binary) << image;
     Parameters parameters = read();
     eunoe::Log log(MPI_COMM_WORLD, true);
     try {
