@@ -116,7 +116,7 @@ void Checkpoints::open(Log &log)
   std::vector<std::string> others;
   if (!checkpoint && !parameters.folder.empty())
     others = {parameters.folder};
-  else if (!checkpoint && parameters.restart == "true")
+  else if (!checkpoint && parameters.restart == "true" && !store.was_begun_anew())
     others = folders_nearby();
   if (others.size() > 1) {
     std::string list;

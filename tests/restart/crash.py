@@ -187,7 +187,10 @@ def begun_anew(stopped: QuickCase, folder: Path) -> None:
             raise Failure(f"exit code {run.returncode}\n{run.stdout}{run.stderr}")
 
     end = "simulation control/iteration end = "
+    # Nor from those of a run beside it.
+    shutil.copytree(stopped.results, case.folder / "beside")
     answer(2, "was stopped before its first checkpoint.", "restart/restart = true", LAST)
+    shutil.rmtree(case.folder / "beside")
     for name in (NEWEST, OLDER):
         if (case.results / name).read_bytes() != (stopped.results / name).read_bytes():
             raise Failure("a checkpoint of the run before is gone")
