@@ -115,9 +115,14 @@ void CheckpointStore::begin_anew()
 std::vector<std::string> CheckpointStore::find(std::string &defect)
 {
   std::string names, problem;
-  if (is_first_rank(comm)) {
+  on_first_rank(comm, [&] {
     std::error_code failure;
     if (read_index().names.empty()) {
+      // A run that begins anew as it sees nothing might do so over the results of another.
+      const fs::directory_iterator look(folder, failure);
+      if (failure && failure != std::errc::no_such_file_or_directory)
+        throw UserError("The checkpoints in " + folder + " cannot be looked for: " +
+                        failure.message() + ". Check the name of the folder and its permissions.");
       if (fs::exists(index(), failure))
         problem = index() + " is empty or damaged.";
       else if (!present().empty())
@@ -125,7 +130,7 @@ std::vector<std::string> CheckpointStore::find(std::string &defect)
     }
     for (const std::string &file : candidates())
       names += file + "\n";
-  }
+  });
   defect = broadcast(problem, comm);
   std::istringstream lines(broadcast(names, comm));
   std::vector<std::string> found;

@@ -292,7 +292,9 @@ def refused(program: Program) -> None:
              "particles that lie outside the mesh of this input.", 2),
             ((END + "7000", kind + "particle type 0/number of particles = 1"),
              "Keep it, and give further particles as a type behind the others.", 2),
-            ((END + "7000", "restart/restart folder = nowhere"), "nowhere holds no checkpoint 'restart'.", 2)):
+            ((END + "7000", "restart/restart folder = nowhere"), "nowhere holds no checkpoint 'restart'.", 2),
+            ((END + "7000", "restart/restart folder = case.prm"),
+             "The checkpoints in case.prm cannot be looked for: Not a directory.", 2)):
         expect(program.run("case.prm", *start, *settings, code=code), sentence)
     expect(program.run("one_type.prm", *start, END + "7000", kind + "number of particle types = 1", code=2),
            "holds particles of type 1, and the input has the types 0 to 0.")
