@@ -109,6 +109,8 @@ void CheckpointStore::begin_anew()
       text += each + "\n";
     if (!all.empty())
       write_file(index(), text, true);
+    else // Those that it names are gone, for which a run that goes on would be refused.
+      remove_file(index());
   });
 }
 

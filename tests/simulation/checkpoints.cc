@@ -151,4 +151,15 @@ EUNOE_MPI_TEST()
                "restart_000000000060.checkpoint\nrestart_000000000050.checkpoint\n");
   check("another run went on", is_refused(later) && !is_refused(of_other));
   check("a run that begins anew does not mind", !is_refused(checkpoints));
+
+  const std::string emptied = "checkpoints_taken_away";
+  create_folder(emptied, MPI_COMM_WORLD);
+  if (is_first_rank())
+    write_file(emptied + "/restart.latest", "restart_000000000060.checkpoint\n");
+  MPI_Barrier(MPI_COMM_WORLD);
+  CheckpointStore store(emptied, "restart", 2, MPI_COMM_WORLD);
+  store.begin_anew();
+  std::vector<std::string> defects;
+  check("a list of none goes with a new run",
+        store.open_newest(defects) == nullptr && defects.empty());
 }

@@ -45,7 +45,7 @@ public:
   /// are still there; collective.
   bool was_begun_anew() const;
 
-  /// Marks those that are there as of an earlier run; collective.
+  /// Marks those that are there as of an earlier run, and forgets those that are gone; collective.
   void begin_anew();
 
   /// Gives the one that was opened a second name, "<name>_phase_<step>.checkpoint", by which it
