@@ -13,6 +13,9 @@ using Json = nlohmann::ordered_json;
 
 const std::string key = "layout";
 
+/// Doubles of a particle, more than anything needs.
+constexpr unsigned int most_extra = 1u << 20;
+
 } // namespace
 
 void SavedLayout::write(Json &head, const ParticleFields &fields, const ContactModel &pairs,
@@ -38,6 +41,9 @@ SavedLayout::SavedLayout(const Json &head, const ParticleFields &fields, const C
   std::map<std::string, std::pair<unsigned int, unsigned int>> saved; // place and number
   for (const Json &field : layout.at("fields")) {
     const auto n = count_in<unsigned int>(field.at("components"));
+    // Of a damaged one the sum would begin again at 0.
+    if (n > most_extra - saved_extra)
+      throw std::invalid_argument("these are no components");
     saved[field.at("name")] = {saved_extra, n};
     saved_extra += n;
   }

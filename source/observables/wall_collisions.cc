@@ -209,8 +209,11 @@ public:
       if (values.size() != numbers.size())
         throw std::invalid_argument("this is no particle near a wall");
       std::transform(values.begin(), values.end(), numbers.begin(), number_in);
+      if (!(numbers[0] >= 0. && numbers[0] <= std::numeric_limits<ParticleId>::max() &&
+            numbers[1] >= 0. && numbers[1] < static_cast<double>(walls.size())))
+        throw std::invalid_argument("this is no particle near a wall");
       Approach approach = Approach::of(numbers);
-      approach.wall = walls.at(static_cast<std::size_t>(approach.wall));
+      approach.wall = walls[static_cast<std::size_t>(approach.wall)];
       if (approach.wall >= 0)
         kept.push_back(approach);
     }

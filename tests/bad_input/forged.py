@@ -102,6 +102,8 @@ FORGERIES = (
     ("no tally", set_head("ledger/lost", []), "its head lacks what the case needs."),
     ("a sum that overflows", wrong_words, NO_NUMBER),
     ("ids that run over", set_head("insertion/next_id", 2**32), NO_NUMBER),
+    ("components that run over",
+     lambda head, rows: head["layout"]["fields"].append({"name": "more", "components": 2**32 - 1}), NO_NUMBER),
     ("no pictures", set_head("outputs", {}), "its head lacks what the case needs."),
     ("an id", set_number(0, -1.), NOT_OF_CASE),
     ("a type", set_number(1, 1.), NOT_OF_CASE),

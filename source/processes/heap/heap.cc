@@ -1,4 +1,5 @@
 #include <eunoe/checkpoint/checkpoint_file.h>
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/processes/heap/heap.h>
 
 #include <algorithm>
@@ -44,11 +45,14 @@ void Heap::resume(Simulation &simulation, const Checkpoint &checkpoint)
 {
   describe(simulation);
   const auto &saved = checkpoint.head.at("heap");
-  phase = static_cast<Phase>(saved.at("phase").get<int>());
-  phase_start = saved.at("phase_start");
-  calm_since = saved.at("calm_since");
-  lift_start = saved.at("lift_start");
-  lift_way = saved.at("lift_way");
+  const auto phase_number = count_in<unsigned int>(saved.at("phase"));
+  if (phase_number > static_cast<unsigned int>(Phase::done) || !saved.at("results").is_object())
+    throw checkpoint.damaged("its heap is not that of the case.");
+  phase = static_cast<Phase>(phase_number);
+  phase_start = number_in(saved.at("phase_start"));
+  calm_since = number_in(saved.at("calm_since"));
+  lift_start = number_in(saved.at("lift_start"));
+  lift_way = number_in(saved.at("lift_way"));
   results.keys = saved.at("results");
   results.measured = measurements_in(saved.at("measured"));
   if (lift_start >= 0.)

@@ -1,6 +1,7 @@
 #ifndef eunoe_processes_heap_heap_h
 #define eunoe_processes_heap_heap_h
 
+#include <eunoe/checkpoint/head_values.h>
 #include <eunoe/processes/heap/measurement.h>
 
 namespace eunoe::heap {
@@ -29,7 +30,8 @@ public:
   /// Whether the run of a checkpoint has measured its heap.
   static bool is_done(const nlohmann::ordered_json &head)
   {
-    return head.at("heap").at("phase").get<int>() == static_cast<int>(Phase::done);
+    return count_in<unsigned int>(head.at("heap").at("phase")) ==
+           static_cast<unsigned int>(Phase::done);
   }
   void add_to_summary(nlohmann::ordered_json &summary) const override
   {
