@@ -266,6 +266,9 @@ struct Checkpoint::File
         mine.starts[k + 1] = mine.starts[k] + lengths[k];
       n_values = mine.starts.back();
     });
+    // Where one has no lengths, the others would blame the file for the sum that does not fit.
+    if (defect.is_anywhere(comm))
+      return;
     std::uint64_t before = 0, all = 0;
     MPI_Exscan(&n_values, &before, 1, MPI_UINT64_T, MPI_SUM, comm);
     MPI_Allreduce(&n_values, &all, 1, MPI_UINT64_T, MPI_SUM, comm);
