@@ -4,6 +4,7 @@
 #include <eunoe/core/sha256.h>
 #include <eunoe/core/version.h>
 #include <eunoe/discovery/results.h>
+#include <eunoe/simulation/command_line.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -114,8 +115,12 @@ std::optional<std::int64_t> StudyFolder::open(const std::map<std::string, std::s
 {
   const std::string began = "last row of the table at the start";
   create_folder(path, comm);
-  lock = std::make_unique<RunLock>(file("running.lock"), "The folder " + path,
-                                   "Wait until it ends, or choose another 'output path'.", comm);
+  try {
+    lock = std::make_unique<RunLock>(file("running.lock"), "The folder " + path,
+                                     "Wait until it ends, or choose another 'output path'.", comm);
+  } catch (const UserError &error) {
+    throw RefusedInput(error);
+  }
   nlohmann::ordered_json mine;
   for (const auto &[name, text] : identity)
     mine[name] = sha256(text);
@@ -133,10 +138,10 @@ std::optional<std::int64_t> StudyFolder::open(const std::map<std::string, std::s
     if (!mine.contains(name) && name != began)
       differ.push_back(name);
   if (!differ.empty())
-    throw UserError("The folder " + path +
-                    " holds another study; what differs: " + boost::join(differ, ", ") +
-                    ". Choose another 'output path', or remove the folder. (With the same 'table "
-                    "of runs' no run is made twice.)");
+    throw RefusedInput(UserError(
+        "The folder " + path + " holds another study; what differs: " + boost::join(differ, ", ") +
+        ". Choose another 'output path', or remove the folder. (With the same 'table of runs' no "
+        "run is made twice.)"));
   return before->value(began, std::int64_t(0));
 }
 

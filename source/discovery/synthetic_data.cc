@@ -7,6 +7,7 @@
 #include <eunoe/discovery/measured_csv.h>
 #include <eunoe/discovery/results.h>
 #include <eunoe/discovery/synthetic_data.h>
+#include <eunoe/simulation/command_line.h>
 
 #include <boost/algorithm/string.hpp>
 
@@ -219,12 +220,16 @@ void make_synthetic_data(const StudyParameters &study, const std::vector<Effect>
 {
   const SyntheticDataParameters &synthetic = study.synthetic;
   const std::string data_file = study.measured_data, sealed_file = synthetic.sealed_file;
-  on_first_rank(comm, [&] {
-    std::error_code failure;
-    for (const std::string &file : {data_file, sealed_file})
-      if (std::filesystem::exists(file, failure))
-        throw UserError(file + " is there already. Remove it, or name another file.");
-  });
+  try {
+    on_first_rank(comm, [&] {
+      std::error_code failure;
+      for (const std::string &file : {data_file, sealed_file})
+        if (std::filesystem::exists(file, failure))
+          throw UserError(file + " is there already. Remove it, or name another file.");
+    });
+  } catch (const UserError &error) {
+    throw RefusedInput(error);
+  }
 
   NormalNumbers normal(synthetic.seed);
   const Truth truth = draw_truth(synthetic, factors, normal);

@@ -71,7 +71,7 @@ def make_data(program: Program) -> None:
     assert f"sealed truth sha256: {hashlib.sha256(sealed).hexdigest()}" in data
     assert json.loads(sealed)["effects"] == {"tilt": 0.7}
     assert "tilt" not in data and ",held-out\n" in data and ",fit\n" in data
-    expect(program.run("--make-twin", "truth.prm"), FAILED, "is there already")
+    expect(program.run("--make-twin", "truth.prm"), BAD_INPUT, "is there already")
     expect(program.run("--make-twin", "truth.prm", "--set", "twin/observables = drift, heigth", "--set",
                        "discovery/measured data = few/few.csv", "--set", "twin/sealed file = few.json"), FAILED,
            "no experiment measures 'heigth'")
@@ -241,7 +241,7 @@ def main() -> None:
     reference = folder / "output"
     expect(program.run("study.prm", "--verdict-exit-code"), NAMED)
     check_answer(reference)
-    expect(program.run("study.prm", "--set", "discovery/seed = 2"), FAILED,
+    expect(program.run("study.prm", "--set", "discovery/seed = 2"), BAD_INPUT,
            "holds another study; what differs: study file")
     check_resume(program, reference)
     check_second_measurement(program)
