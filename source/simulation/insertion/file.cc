@@ -221,10 +221,16 @@ public:
                    "particles as their type has, or without an end if that number is 0.");
   }
 
-  void check(const InsertionSettings &, const ParameterCheck &check) const override
+  void check(const InsertionSettings &settings, const ParameterCheck &check) const override
   {
-    check.require(!files.empty(), {InsertionParameters::section}, "list of input files",
-                  "is empty.", "Name at least one file.");
+    const ParameterCheck::Path path = {InsertionParameters::section};
+    check.require(!files.empty(), path, "list of input files", "is empty.",
+                  "Name at least one file.");
+    check.advise(settings.frequency > 0 || files.size() < 2, path, "list of input files",
+                 "names " + std::to_string(files.size()) +
+                     " files, one an event, and with an 'insertion frequency' of 0 there is one "
+                     "event, so that only the first is used.",
+                 "Give an 'insertion frequency', or one file.");
   }
 
   void announce(const InsertionSettings &, const PhysicalProperties &, Log &log) const override
