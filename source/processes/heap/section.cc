@@ -80,6 +80,7 @@ RunEstimate HeapParameters::estimate(const Parameters &parameters) const
   estimate.steps = (filling + lifting + resting) / parameters.control.time_step;
   estimate.particles = 0.7 * a.n_particles;
   estimate.most_particles = a.n_particles;
+  estimate.pictures = picture ? 1. : 0.;
   return estimate;
 }
 

@@ -112,7 +112,7 @@ void SpreadingParameters::check_dosing(const ParameterCheck &check) const
     check.advise(fed >= taken, {section}, entry,
                  "feeds " + format(std::max(100. * fed / taken, 0.)) + " % of what " + what +
                      " takes, so that the end of the plate stays bare.",
-                 "Give more: the paper's strokes feed five times a layer.");
+                 "Give more: the paper's strokes feed nearly six times a layer.");
   };
   advise((first_stroke - passes_below) * w1, first_thickness * w3 + clearance * (w2 + w3),
          "first feedstock stroke", "the first layer and the clearance over the plates");
