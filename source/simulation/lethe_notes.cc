@@ -110,6 +110,17 @@ public:
     });
   }
 
+  /// Whether a boundary turns or slides in place.
+  bool has_sliding_boundaries() const
+  {
+    return std::any_of(entries.begin(), entries.end(), [this](const InputEntry &entry) {
+      return entry.path.size() == 2 && entry.path[0] == "DEM boundary conditions" &&
+             (has(entry.path, "type", "translational") ||
+              (has(entry.path, "type", "rotational") &&
+               number(entry.path, "rotational speed", 0.) != 0.));
+    });
+  }
+
   bool has_turning_solids() const
   {
     return std::any_of(entries.begin(), entries.end(), [this](const InputEntry &entry) {
@@ -168,6 +179,10 @@ void add_notes_on_laws(const Reader &input, std::vector<std::string> &notes)
     notes.emplace_back("Lethe: rolling resistance at walls and solids goes by the spin of the "
                        "particle alone; here by its spin relative to theirs, so that a particle "
                        "that turns with them meets none.");
+  if (input.has_sliding_boundaries())
+    notes.emplace_back("Lethe: a wall that turns or slides in place has its whole velocity there, "
+                       "also along the normal of a facet, which damping takes for an approach or a "
+                       "retreat; here only the part along the wall counts.");
   if (input.has_turning_solids())
     notes.emplace_back("Lethe: the surface of a solid that turns with w moves with (|x - c| w) x n "
                        "there, where x is the particle's centre, c the centre of rotation and n "
