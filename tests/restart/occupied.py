@@ -47,7 +47,8 @@ class Running:
     def __enter__(self) -> Running:
         self.process = subprocess.Popen(self.words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         end = time.monotonic() + PATIENT_SECONDS
-        while not (self.results / "energies.csv").exists():
+        # The table comes first, the input that was used when the run begins.
+        while not all((self.results / name).exists() for name in ("energies.csv", "used.prm")):
             if time.monotonic() > end or self.process.poll() is not None:
                 self.process.kill()
                 raise Failure("the first run does not begin")
