@@ -1,18 +1,19 @@
 """The costs of cases (particles, steps, core-hours) in the tables of cluster.md and
 powder_spreading.md are those that --check prints now, to the digits that the pages give.
 
-Usage: check_costs.py path/to/eunoe-particles
+Usage: check_costs.py path/to/many-runs
 """
 
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
+import tempfile
 from functools import lru_cache
 from pathlib import Path
 
 from eunoe.launch import Failure, overrides
+from many_runs import ManyRuns
 
 ROOT = Path(__file__).resolve().parents[2]
 NUMBER = r"([\d.,]+(?:e[+-]?\d+)?)"
@@ -23,10 +24,9 @@ PROCEDURE = "powder spreading/feedstock "
 
 
 @lru_cache(maxsize=None)
-def costs(program: str, case: str, *settings: str) -> dict[str, float]:
+def costs(program: ManyRuns, case: str, *settings: str) -> dict[str, float]:
     """The costs that --check prints for a case of prm/spreading."""
-    done = subprocess.run([program, f"prm/spreading/{case}.prm", "--check", *overrides(settings)], cwd=ROOT, text=True,
-                          capture_output=True, check=False)
+    done = program(f"prm/spreading/{case}.prm", "--check", *overrides(settings), cwd=ROOT)
     found = {name: re.search(pattern, done.stdout) for name, pattern in PRINTED.items()}
     if done.returncode != 0 or None in found.values():
         raise Failure(f"{case} {settings}: no costs in\n{done.stdout}{done.stderr}")
@@ -58,7 +58,7 @@ def rows(page: str, head: str) -> list[list[str]]:
 
 
 class Comparison:
-    def __init__(self, program: str) -> None:
+    def __init__(self, program: ManyRuns) -> None:
         self.program = program
         self.wrong: list[str] = []
         self.number = 0
@@ -72,7 +72,7 @@ class Comparison:
                                   f"--check says {found[name]:g}")
 
 
-def compare_all(program: str) -> Comparison:
+def compare_all(program: ManyRuns) -> Comparison:
     result = Comparison(program)
     names = ("particles", "steps", "core-hours")
     for case, *cells in rows("cluster.md", "| case | particles at most | steps | core-hours |"):
@@ -93,14 +93,18 @@ def compare_all(program: str) -> Comparison:
 
 
 def main(program: str) -> int:
-    try:
-        result = compare_all(program)
-    except Failure as failure:
-        print(failure)
-        return 1
+    with tempfile.TemporaryDirectory() as folder:
+        particles = ManyRuns(program, Path(folder))
+        try:
+            result = compare_all(particles)
+        except Failure as failure:
+            print(failure)
+            return 1
+        finally:
+            particles.close()
     print("\n".join(result.wrong) if result.wrong else f"{result.number} numbers agree")
     return 1 if result.wrong or result.number < 41 else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(str(Path(sys.argv[1]).resolve())))
+    sys.exit(main(sys.argv[1]))
