@@ -7,6 +7,7 @@ Usage: occupied.py path/to/eunoe-particles folder
 from __future__ import annotations
 
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -59,14 +60,26 @@ class Running:
         self.process.kill()
         self.process.wait()
 
+    def pause(self) -> None:
+        """Leaves the processor to the runs that are refused, which need not wait for this one."""
+        self.process.send_signal(signal.SIGSTOP)
+
     def must_go_on(self) -> None:
-        if self.process.poll() is not None:
-            raise Failure("the first run has ended")
+        """After a pause. It has gone on when it has written more."""
+        table = self.results / "energies.csv"
+        before = table.stat().st_size
+        self.process.send_signal(signal.SIGCONT)
+        end = time.monotonic() + PATIENT_SECONDS
+        while table.stat().st_size == before:
+            if time.monotonic() > end or self.process.poll() is not None:
+                raise Failure("the first run does not go on")
+            time.sleep(0.05)
 
 
 def second_run(program: str, folder: Path) -> None:
     results = folder / "results"
     with Running(program, results) as first:
+        first.pause()
         used, before = (results / "used.prm").read_bytes(), names(results)
         for ranks in (1, 2):
             answer([*mpirun(ranks), *command(program, results, *SHORT)], 2,
@@ -88,6 +101,7 @@ def place_of_checkpoints(program: str, folder: Path) -> None:
     """Two runs with folders of their own may share one for checkpoints, under different names."""
     place = folder / "checkpoints"
     with Running(program, folder / "one", f"restart/filename = {place}/same") as first:
+        first.pause()
         answer(command(program, folder / "two", *SHORT, f"restart/filename = {place}/same"), 2,
                f"The place of the checkpoints {place}/same is in use by another run",
                "choose another 'filename'")
