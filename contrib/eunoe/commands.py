@@ -32,6 +32,7 @@ COMMANDS = {
         "late-pass": ("benchmarks.late_pass", "measures what sleeping particles save"),
         "collapse": ("benchmarks.collapse", "compares the collapse of a column with LAMMPS"),
         "slot": ("benchmarks.slot_rate", "compares the discharge through a slot with LAMMPS and LIGGGHTS"),
+        "kernel-cycles": ("benchmarks.kernel_cycles", "tells what the kernels take on a processor that is not at hand"),
         "predict-scaling": ("scaling.predict", "predicts what a case takes on many ranks"),
     },
     "Studies": {

@@ -18,7 +18,7 @@ except ImportError:
     print("skipped: numpy is missing")
     sys.exit(77)
 
-from eunoe.benchmarks import bed, blade, slot, slot_rate, table
+from eunoe.benchmarks import bed, blade, kernel_cycles, slot, slot_rate, table
 from eunoe.benchmarks.programs import CASES, Lammps, Liggghts, Peer, loop_seconds
 from eunoe.launch import Failure
 from eunoe.tables import as_markdown, as_text
@@ -87,6 +87,28 @@ class Logs(unittest.TestCase):
     def test_a_log_without_a_loop_is_refused(self):
         with self.assertRaises(Failure):
             loop_seconds("ERROR: Lost atoms", "LAMMPS")
+
+
+class Kernels(unittest.TestCase):
+    LOOP = [(0, "vmovapd (%rdi),%zmm0"), (4, "vdivpd %zmm1,%zmm0,%zmm2"), (8, "jne 4 <kernel+0x4>"), (12, "ret")]
+
+    def test_instructions_are_read(self):
+        text = "kernel():\n    10:\tvmulpd 0x8(%rip),%zmm0,%zmm0        # 20 <x>\n    16:\tret\n"
+        self.assertEqual(kernel_cycles.instructions(text), [(16, "vmulpd 0x8(%rip),%zmm0,%zmm0"), (22, "ret")])
+
+    def test_the_loop_with_the_divisions_counts(self):
+        lines, contacts = kernel_cycles.hot_part(self.LOOP)
+        self.assertEqual(lines, ["vdivpd %zmm1,%zmm0,%zmm2", "jne 4 <kernel+0x4>"])
+        self.assertEqual(contacts, 8)
+        self.assertEqual(kernel_cycles.readable(lines), "vdivpd %zmm1,%zmm0,%zmm2\nnop\n")
+
+    def test_without_a_loop_a_block_is_unrolled(self):
+        straight = [self.LOOP[0], self.LOOP[1], self.LOOP[3]]
+        self.assertEqual(kernel_cycles.hot_part(straight), ([text for _, text in straight], 32))
+
+    def test_a_missing_analyser_is_named(self):
+        with self.assertRaisesRegex(Failure, "There is no program 'llvm-mca-0'"):
+            kernel_cycles.cycles("llvm-mca-0", "znver4", "nop")
 
 
 class Bed(unittest.TestCase):
