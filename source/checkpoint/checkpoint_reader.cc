@@ -2,10 +2,10 @@
 #include <eunoe/checkpoint/head_values.h>
 #include <eunoe/core/files.h>
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/machine.h>
 
 #include "format.h"
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -17,14 +17,6 @@ namespace eunoe {
 using namespace checkpoint_format;
 
 namespace {
-
-std::string node_name()
-{
-  std::array<char, MPI_MAX_PROCESSOR_NAME> name = {};
-  int length = 0;
-  MPI_Get_processor_name(name.data(), &length);
-  return std::string(name.data(), static_cast<std::size_t>(length));
-}
 
 /// What is wrong with a checkpoint, if anything.
 struct Defect
@@ -115,7 +107,7 @@ struct Checkpoint::File
   {
     const bool is_forbidden = error == EACCES || error == EPERM;
     throw UserError(
-        "The checkpoint " + path + " cannot be read on " + node_name() + ": " +
+        "The checkpoint " + path + " cannot be read on " + host_name() + ": " +
         std::strerror(error) +
         (is_forbidden
              ? ". Mend its permissions."

@@ -1,5 +1,6 @@
 #include <eunoe/core/machine.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -24,6 +25,12 @@ fs::path nearest_existing(const std::string &path)
 }
 
 } // namespace
+
+std::string host_name()
+{
+  std::array<char, 256> name = {};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
+}
 
 double usable_memory()
 {

@@ -1,4 +1,5 @@
 #include <eunoe/core/first_rank.h>
+#include <eunoe/core/machine.h>
 #include <eunoe/core/problems.h>
 #include <eunoe/core/run_lock.h>
 
@@ -36,12 +37,6 @@ std::set<std::string> &own_locks()
 {
   static std::set<std::string> paths;
   return paths;
-}
-
-std::string host_name()
-{
-  std::array<char, 256> name = {};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
 }
 
 } // namespace

@@ -15,6 +15,9 @@ double free_disk_space(const std::string &path);
 /// Why a folder could not be created or written to, empty if nothing stands against it. Looks only.
 std::string obstacle_to_folder(const std::string &path);
 
+/// Of this machine, for messages.
+std::string host_name();
+
 /// "1.2 GB" or "35 MB".
 std::string format_bytes(double bytes);
 
