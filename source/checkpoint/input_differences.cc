@@ -56,14 +56,13 @@ void note(const std::pair<Path, std::string> &place, const std::string &what, Pr
 
 } // namespace
 
-void find_input_differences(const std::string &now, const std::string &then,
+void find_input_differences(const EntryValues &now, const EntryValues &then,
                             const EntryValues &changed, const std::string &checkpoint,
                             Problems &problems)
 {
-  const EntryValues entries_now = values_in(now), entries_then = values_in(then);
-  for (const auto &[place, value] : entries_now) {
-    const auto before = entries_then.find(place);
-    if (before == entries_then.end()) {
+  for (const auto &[place, value] : now) {
+    const auto before = then.find(place);
+    if (before == then.end()) {
       if (changed.count(place) > 0)
         note(place, "is set, and was not known in the run that wrote " + checkpoint + ".",
              problems);
@@ -73,8 +72,8 @@ void find_input_differences(const std::string &now, const std::string &then,
                "' in the run that wrote " + checkpoint + ".",
            problems);
   }
-  for (const auto &[place, value] : entries_then)
-    if (entries_now.count(place) == 0)
+  for (const auto &[place, value] : then)
+    if (now.count(place) == 0)
       note(place, "is missing, and was '" + value + "' in the run that wrote " + checkpoint + ".",
            problems);
 }

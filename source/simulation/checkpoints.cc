@@ -136,7 +136,7 @@ void Checkpoints::open(Log &log)
       log.warning(defect);
 }
 
-void Checkpoints::find(const std::string &input, const EntryValues &changed,
+void Checkpoints::find(const EntryValues &input, const EntryValues &changed,
                        const EntryValues &naming_files, const ControlParameters &control,
                        const PhaseJudge &judge, Log &log, Problems &problems)
 {
@@ -170,7 +170,8 @@ void Checkpoints::find(const std::string &input, const EntryValues &changed,
   if (!head.contains("input") || !head["input"].is_string())
     throw checkpoint->damaged("it does not hold the input of its run.");
   Problems differences;
-  find_input_differences(input, head["input"], changed, checkpoint->path, differences);
+  EntryValues entries = values_in(head["input"]);
+  find_input_differences(input, entries, changed, checkpoint->path, differences);
   // Those of older versions do not know the files of their run.
   if (head.contains("files"))
     understand([&](const nlohmann::ordered_json &of_run) {
@@ -178,7 +179,6 @@ void Checkpoints::find(const std::string &input, const EntryValues &changed,
                             differences);
     });
   // Where checkpoints have a path of their own, the results may lie elsewhere.
-  EntryValues entries = values_in(head["input"]);
   has_own_results =
       is_own_folder &&
       (is_same_folder(folder, control.output_path) ||

@@ -40,7 +40,7 @@ Simulation::Simulation(const Parameters &input, MPI_Comm comm, Log &log)
              " m instead of " + format(skins.wanted) + " m, so contacts are searched more often.");
   std::vector<Solid> all = given_solids(problems);
   checkpoints.find(
-      parameters.as_input_file(), parameters.changed_entries(), parameters.file_entries(),
+      parameters.entries(), parameters.changed_entries(), parameters.file_entries(),
       parameters.control,
       [this](const Problems &differences, const nlohmann::ordered_json &head, Problems &found) {
         check_phase(parameters, differences, head, found);

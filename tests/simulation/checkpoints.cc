@@ -38,7 +38,7 @@ std::size_t n_problems(Checkpoints &checkpoints, unsigned long long n_steps,
   control.iteration_end = n_steps;
   control.output_path = folder;
   checkpoints.find(
-      text, changed, {}, control,
+      values_in(text), changed, {}, control,
       [&fixed](const Problems &differences, const nlohmann::ordered_json &, Problems &found) {
         for (const Problem &difference : differences.all())
           for (const std::string &section : fixed)

@@ -11,10 +11,10 @@ namespace eunoe {
 /// Notes every entry in which two complete inputs differ and which a run must not change when it
 /// continues from a checkpoint: all but those on its end, output, log, load balancing and
 /// checkpoints. An entry that the program did not know then, and that has its default now, is none.
-/// @param now,then texts of complete input files
+/// @param now,then all entries
 /// @param changed the entries that now have other values than their defaults
 /// @param checkpoint its path, for messages
-void find_input_differences(const std::string &now, const std::string &then,
+void find_input_differences(const EntryValues &now, const EntryValues &then,
                             const EntryValues &changed, const std::string &checkpoint,
                             Problems &problems);
 

@@ -31,11 +31,11 @@ public:
                                         const nlohmann::ordered_json &head, Problems &problems)>;
 
   /// Opens the one from which the run is to continue, if there is one; collective.
-  /// @param input complete text of the present input
+  /// @param input all entries of the present input
   /// @param changed its entries that do not have their defaults
   /// @param naming_files its entries that name files which the run reads
   /// @param control says when the run ends
-  void find(const std::string &input, const EntryValues &changed, const EntryValues &naming_files,
+  void find(const EntryValues &input, const EntryValues &changed, const EntryValues &naming_files,
             const ControlParameters &control, const PhaseJudge &judge, Log &log,
             Problems &problems);
   /// The one that was opened, null if the run begins anew.

@@ -110,7 +110,8 @@ private:
   std::vector<ParameterSection *> sections();
   void set(std::vector<InputEntry> &entries, Problems &problems);
 
-  /// Has all values, and prints them. Copies share it, as nothing changes it once they are read.
+  /// Has all values, and prints them. Copies share it. As it would write into the object that was
+  /// read, it is not to be changed afterwards.
   std::shared_ptr<const dealii::ParameterHandler> handler;
   EntryValues values, changed, naming_files;
 };
