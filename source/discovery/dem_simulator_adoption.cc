@@ -85,14 +85,22 @@ std::string DemSimulator::key_of(const RunTable::Row &row)
     remember(one);
     key = one.key;
   }
+  if (row.key == key)
+    return key;
   // Keys of the complete input change with the program. Then its notes may tell that it made the
   // row from the same files and overrides.
-  const bool is_same = row.key == key ||
-                       row.key == by_recipe(old_recipe_of(engine_digest(), made_from)) ||
-                       row.key == by_recipe(recipe_of(row.engine, made_from)) ||
-                       row.key == by_recipe(old_recipe_of(row.engine, made_from)) ||
-                       row.key == experiment.old_key(factors, row.request, comm);
-  return is_same ? key : "";
+  if (row.key == by_recipe(recipe_of(row.engine, made_from)) ||
+      row.key == by_recipe(old_recipe_of(row.engine, made_from)))
+    return key;
+  const std::string recipe = old_recipe_of(engine_digest(), made_from);
+  std::string old_key = by_recipe(recipe);
+  if (old_key.empty()) {
+    old_key = experiment.old_key(factors, row.request, comm);
+    // Noted as `remember` does it: of cases whose files cannot change.
+    if (keys_by_recipe.count(recipe_of(engine_digest(), made_from)) > 0)
+      keys_by_recipe[recipe] = new_keys[recipe] = old_key;
+  }
+  return row.key == old_key ? key : "";
 }
 
 /// Runs simulations of another engine again, as far as this one has not made them.

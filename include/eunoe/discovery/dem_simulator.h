@@ -70,7 +70,7 @@ private:
   /// The key of the case of a row; empty if the row was made of another case. The case is made
   /// only if no recipe tells its key; collective.
   std::string key_of(const RunTable::Row &row);
-  /// Notes the keys of a case by its recipes.
+  /// Notes the key of a case by its recipe.
   void remember(const StudyCase &one);
   void store_new_keys();
   RunRecord simulate(const StudyCase &one);
