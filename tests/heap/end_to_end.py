@@ -43,6 +43,14 @@ def summary(folder: Path) -> dict:
     return json.loads((folder / "summary.json").read_text())
 
 
+def check_forecast(program: str, folder: Path) -> None:
+    """The picture of the heap counts among what goes to the disk."""
+    for wanted, said in (("true", "1 picture of"), ("false", "no pictures")):
+        out = subprocess.run([*command(program, folder, 1, f"heap/heap picture = {wanted}"), "--check"], check=True,
+                             text=True, stdout=subprocess.PIPE).stdout
+        assert any(line.startswith("Disk:") and said in line for line in out.splitlines()), out
+
+
 def check_same(reference: Path, other: Path, names: tuple[str, ...] = TABLES) -> None:
     for name in names:
         assert (reference / name).read_bytes() == (other / name).read_bytes(), f"{name} of {other} differs"
@@ -178,6 +186,7 @@ def main() -> int:
     program, folder = sys.argv[1], Path(sys.argv[2])
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
+    check_forecast(program, folder / "one")
     run(program, folder / "one")
     check_results(folder / "one")
     check_comparison(program, folder / "two", folder / "one")

@@ -89,6 +89,10 @@ DOUBTFUL = {
         ["so that they do not stick to walls and solids"]),
     "a list that comes once": ([*LIST, TYPE + "number of particles = 5"],
                                ["entry 'insertion frequency': is 0, so that the particles come once: 2 of 5."]),
+    "files of which only the first comes": (
+        [FILE[0], FILE[1] + ", three.csv", TYPE + "number = 2"],
+        ["names 2 files, one an event, and with an 'insertion frequency' of 0 there is one event",
+         "so that only the first 2 particles of the files come"]),
     "no such boundary": ([CONDITION + "number of boundary conditions = 1",
                           CONDITION + "boundary condition 0/boundary id = 17"],
                          ["the mesh has no boundary 17, so the condition has no effect."]),
